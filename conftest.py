@@ -35,9 +35,11 @@ def pytest_xdist_auto_num_workers(config):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Share the tests out among processes by file: the cells of a notebook have one kernel, many tests one fixture.
+    """Share the tests out among processes by file: the cells of a notebook have one kernel, many
+    tests one fixture.
 
-    Those that stand apart come one by one, after the larger files, so that no process is left without work.
+    Those that stand apart come one by one, after the larger files, so that no process is left
+    without work.
     """
 
     class ByFile(LoadFileScheduling):
@@ -52,8 +54,12 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    # What is installed must be what stands in pyproject.toml: entry points are read from the installed metadata.
-    if not any(entry.value == "orientation_course" for entry in metadata.entry_points(group="coursework.plugins")):
+    # What is installed must be what stands in pyproject.toml: entry points are read from the
+    # installed metadata.
+    if not any(
+        entry.value == "orientation_course"
+        for entry in metadata.entry_points(group="coursework.plugins")
+    ):
         raise pytest.UsageError("What is installed is older than pyproject.toml: run `make setup`.")
     nbval.plugin.IPyNbCell.compare_outputs = stored_outputs.compare_outputs
     nbval.plugin.IPyNbCell.format_output_compare = stored_outputs.format_output_compare
@@ -61,8 +67,10 @@ def pytest_configure(config):
     config.pluginmanager.register(times.Times(config))
     config.addinivalue_line(
         "markers",
-        "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of all tests of the file "
-        "that name the same thing, only so many run every time, spread evenly over all; the rest is long",
+        "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of "
+        "all tests of the file "
+        "that name the same thing, only so many run every time, spread evenly over all; the "
+        "rest is long",
     )
 
 
@@ -119,8 +127,8 @@ def browser():
         chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
         open_context = chromium.new_context
 
-        # Conditions that a test waits for are programs, which the pages' own policy forbids: only tests that look
-        # at what the policy does (``bypass_csp=False``) have it enforced.
+        # Conditions that a test waits for are programs, which the pages' own policy forbids: only
+        # tests that look at what the policy does (``bypass_csp=False``) have it enforced.
         def open_patient_context(**options):
             context = open_context(**{"bypass_csp": True, **options})
             context.set_default_timeout(PATIENCE)

@@ -1,8 +1,8 @@
 """One table of ratios, all measured in this run: ``python -m benchmarks``.
 
-Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``; so have their
-first views on a slow telephone: ``python -m benchmarks.first_view``, the figures that move:
-``python -m benchmarks.moving``, the essay: ``python -m benchmarks.essay``, and grading:
+Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``;
+so have their first views on a slow telephone: ``python -m benchmarks.first_view``, the figures that
+move: ``python -m benchmarks.moving``, the essay: ``python -m benchmarks.essay``, and grading:
 ``python -m benchmarks.grading``.
 """
 
@@ -16,23 +16,34 @@ PEERS = ("SciPy", "pytransform3d", "SymPy")
 
 
 def main():
-    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "pytransform3d", "sympy"))
+    packages = ", ".join(
+        f"{name} {version(name)}" for name in ("numpy", "scipy", "pytransform3d", "sympy")
+    )
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
-    print("The time of orientation, and how many times as long the others take (medians of processor time; below")
     print(
-        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, symbols.py and "
+        "The time of orientation, and how many times as long the others take (medians of processor "
+        "time; below"
+    )
+    print(
+        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, "
+        "symbols.py and "
         "imports.py.\n"
     )
     print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in PEERS)} |")
     print(f"|---|---|---|{'---|' * len(PEERS)}")
     for what, size, seconds in itertools.chain(conversions.rows(), symbols.rows(), imports.rows()):
-        print(_line(what, f"{size:,}", _in_words(seconds["orientation"] / size), seconds), flush=True)
+        print(
+            _line(what, f"{size:,}", _in_words(seconds["orientation"] / size), seconds), flush=True
+        )
     for what, operations in symbols.sizes():
         print(_line(what, "1", f"{operations['orientation']:,}", operations))
 
 
 def _line(what, size, ours, measured):
-    ratios = (f"{measured[peer] / measured['orientation']:.3g} x" if measured.get(peer) else "" for peer in PEERS)
+    ratios = (
+        f"{measured[peer] / measured['orientation']:.3g} x" if measured.get(peer) else ""
+        for peer in PEERS
+    )
     return f"| {what} | {size} | {ours} | {' | '.join(ratios)} |"
 
 

@@ -1,9 +1,9 @@
 """How calmly each chapter can be read: ``python benchmarks/calm.py [--pages]``.
 
-Prose is what stands in a chapter's text outside of its boxes. Its runs end at whatever interrupts a reader: a cell of
-code or a prediction. Headings, formulas and figures belong to the run; exercises and recap come after it and are
-counted apart. With ``--pages`` the controls of each built page are counted too, those of its article, once it has come
-alive.
+Prose is what stands in a chapter's text outside of its boxes. Its runs end at whatever interrupts a
+reader: a cell of code or a prediction. Headings, formulas and figures belong to the run; exercises
+and recap come after it and are counted apart. With ``--pages`` the controls of each built page are
+counted too, those of its article, once it has come alive.
 """
 
 import re
@@ -24,12 +24,19 @@ ASKS = {"predict": "predictions", "exercise": "exercises", "recap": "recaps"}
 
 def chapters():
     parts = yaml.safe_load((BOOK / "_toc.yml").read_text("utf8"))["parts"]
-    return [page["file"] for part in parts for page in part["chapters"] if page["file"].startswith("chapters/")]
+    return [
+        page["file"]
+        for part in parts
+        for page in part["chapters"]
+        if page["file"].startswith("chapters/")
+    ]
 
 
 def words(text):
     """Words as they are read: each formula is one."""
-    text = re.sub(r"^(\([\w-]+\)=|#+ .*|\|.*)$", " ", FORMULA.sub(" formula ", text), flags=re.MULTILINE)
+    text = re.sub(
+        r"^(\([\w-]+\)=|#+ .*|\|.*)$", " ", FORMULA.sub(" formula ", text), flags=re.MULTILINE
+    )
     return len(re.findall(r"[A-Za-zÀ-ž][\w’'-]*", text))
 
 
@@ -81,8 +88,10 @@ def controls(pages):
             page.goto((BOOK / "_build" / "html" / f"{name}.html").as_uri())
             page.wait_for_timeout(1500)
             found[name] = page.evaluate(
-                "() => [...document.querySelectorAll('.bd-article :is(button, input, select, summary, [role=slider])')]"
-                ".filter((one) => one.checkVisibility({ opacityProperty: true, visibilityProperty: true })).length"
+                "() => [...document.querySelectorAll('.bd-article :is(button, input, select, "
+                "summary, [role=slider])')]"
+                ".filter((one) => one.checkVisibility({ opacityProperty: true, visibilityProperty: "
+                "true })).length"
             )
     return found
 
@@ -91,12 +100,18 @@ def main():
     names = chapters()
     seen = controls(names) if "--pages" in sys.argv else {}
     total = {}
-    print("chapter                      words   run  cells figures predict. exercises recap  controls")
+    print(
+        "chapter                      words   run  cells figures predict. exercises recap  controls"
+    )
     everything = []
     for name in names:
         runs, counts = measure(name)
         everything += runs
-        row = [sum(runs), statistics.median(runs), *(counts[kind] for kind in ("cells", "figures", "predictions"))]
+        row = [
+            sum(runs),
+            statistics.median(runs),
+            *(counts[kind] for kind in ("cells", "figures", "predictions")),
+        ]
         row += [counts["exercises"], counts["questions"], seen.get(name, 0)]
         total = {k: total.get(k, 0) + value for k, value in enumerate(row)}
         print(f"{name[9:]:27}", "".join(f"{value:8.0f}" for value in row))

@@ -1,7 +1,9 @@
-"""What a student waits for: the time of `check` for 62 wrong answers: ``python -m benchmarks.checks``.
+"""What a student waits for: the time of `check` for 62 wrong answers: ``python -m
+benchmarks.checks``.
 
-Each is read, looked up, looked up again with common slips undone, and looked up among the answers of classmates, since
-somebody has said who they are. The least of several times is kept: whatever else the machine does only adds.
+Each is read, looked up, looked up again with common slips undone, and looked up among the answers
+of classmates, since somebody has said who they are. The least of several times is kept: whatever
+else the machine does only adds.
 """
 
 import os
@@ -21,21 +23,37 @@ COUNT, ROUNDS = 62, 9
 
 
 def wrong_answer(question: Question):
-    """An answer of the right kind to a question, made of its own symbols, that hardly is the right one."""
-    numbers = [sm.Symbol(name) for name in question.symbols] + [0.3, 0.7, -0.4, 1.1, 0.9, -1.3, 0.2, 0.6, 2.1]
+    """An answer of the right kind to a question, made of its own symbols, that hardly is the right
+    one.
+    """
+    numbers = [sm.Symbol(name) for name in question.symbols] + [
+        0.3,
+        0.7,
+        -0.4,
+        1.1,
+        0.9,
+        -1.3,
+        0.2,
+        0.6,
+        2.1,
+    ]
     if question.tolerance is None:
         numbers = [sm.nsimplify(one) for one in numbers]
     rows, columns = question.shape or (3, 3)
     made = {
         "direction cosine matrix": lambda: dcm_from_body_fixed(numbers[:3], "xyz"),
-        "matrix": lambda: sm.Matrix(rows, columns, lambda row, column: numbers[(row + 2 * column) % len(numbers)]),
+        "matrix": lambda: sm.Matrix(
+            rows, columns, lambda row, column: numbers[(row + 2 * column) % len(numbers)]
+        ),
         "quaternion": lambda: quaternion_from_axis_angle((1, 2, 2), numbers[0]),
         "vector": lambda: sm.Matrix(numbers[: question.length or 3]),
         "expression": lambda: 3 * numbers[0] + numbers[1],
         "Euler angles": lambda: [0.31, 0.17, 0.29],
         "axis and angle": lambda: [[0.6, 0, 0.8], 0.41],
         "sequence": lambda: "xyx",
-        "words": lambda: [question.options[k % len(question.options)] for k in range(question.length or 1)],
+        "words": lambda: [
+            question.options[k % len(question.options)] for k in range(question.length or 1)
+        ],
         "choice": lambda: question.options[-1],
         "truth values": lambda: [True] * (question.length or 1),
     }
@@ -78,7 +96,10 @@ def main():
     took = [row[2] for row in found]
     once = min(_slow_hash() for _ in range(ROUNDS))
     middle = statistics.median(took)
-    print(f"{len(took)} answers: median {middle:.1f} ms, at most {took[-1]:.1f}; one slow hash {once:.1f}")
+    print(
+        f"{len(took)} answers: median {middle:.1f} ms, at most {took[-1]:.1f}; one slow hash "
+        f"{once:.1f}"
+    )
 
 
 def _slow_hash():

@@ -1,11 +1,11 @@
 """Conversions of numbers, against SciPy and pytransform3d.
 
-Everybody is given the same orientations as float arrays in the form that their library documents, and
-must return the same ones in that form, checked before anything is timed. Matrices are therefore
-transposed for SciPy and pytransform3d beforehand, outside of the time. SciPy's way always leads through a
-``Rotation``; it has no axis with an angle, so a rotation vector is made of the two, and split again,
-within the time. At N = 1 one item is converted by one call, with the functions for one item. Where
-pytransform3d has no function for batches there is no time.
+Everybody is given the same orientations as float arrays in the form that their library documents,
+and must return the same ones in that form, checked before anything is timed. Matrices are therefore
+transposed for SciPy and pytransform3d beforehand, outside of the time. SciPy's way always leads
+through a ``Rotation``; it has no axis with an angle, so a rotation vector is made of the two, and
+split again, within the time. At N = 1 one item is converted by one call, with the functions for one
+item. Where pytransform3d has no function for batches there is no time.
 """
 
 import numpy as np
@@ -81,23 +81,34 @@ def _conversions(size):
             "pytransform3d": (
                 (lambda: single.active_matrix_from_intrinsic_euler_zxy(angles), transposed)
                 if one
-                else (lambda: batch.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles), transposed)
+                else (
+                    lambda: batch.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles),
+                    transposed,
+                )
             ),
         },
         "matrix to Euler angles zxy": {
             "orientation": (lambda: orientation.body_fixed_from_dcm(dcm, "zxy"), from_angles),
             "SciPy": (lambda: Rotation.from_matrix(matrix).as_euler("ZXY"), from_angles),
             "pytransform3d": (
-                (lambda: single.intrinsic_euler_zxy_from_active_matrix(matrix), from_angles) if one else None
+                (lambda: single.intrinsic_euler_zxy_from_active_matrix(matrix), from_angles)
+                if one
+                else None
             ),
         },
         "axis and angle to matrix": {
             "orientation": (lambda: orientation.dcm_from_axis_angle(axis, angle), itself),
-            "SciPy": (lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_matrix(), transposed),
+            "SciPy": (
+                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_matrix(),
+                transposed,
+            ),
             "pytransform3d": (
                 (lambda: single.matrix_from_axis_angle(both), transposed)
                 if one
-                else (lambda: batch.matrices_from_compact_axis_angles(axes=axis, angles=angle), transposed)
+                else (
+                    lambda: batch.matrices_from_compact_axis_angles(axes=axis, angles=angle),
+                    transposed,
+                )
             ),
         },
         "matrix to axis and angle": {
@@ -119,17 +130,29 @@ def _conversions(size):
             ),
         },
         "matrix to rotation vector": {
-            "orientation": (lambda: orientation.rotation_vector_from_dcm(dcm), orientation.dcm_from_rotation_vector),
-            "SciPy": (lambda: Rotation.from_matrix(matrix).as_rotvec(), orientation.dcm_from_rotation_vector),
+            "orientation": (
+                lambda: orientation.rotation_vector_from_dcm(dcm),
+                orientation.dcm_from_rotation_vector,
+            ),
+            "SciPy": (
+                lambda: Rotation.from_matrix(matrix).as_rotvec(),
+                orientation.dcm_from_rotation_vector,
+            ),
             "pytransform3d": (
-                (lambda: single.compact_axis_angle_from_matrix(matrix), orientation.dcm_from_rotation_vector)
+                (
+                    lambda: single.compact_axis_angle_from_matrix(matrix),
+                    orientation.dcm_from_rotation_vector,
+                )
                 if one
                 else None
             ),
         },
         "quaternion to matrix": {
             "orientation": (lambda: orientation.dcm_from_quaternion(quaternion), itself),
-            "SciPy": (lambda: Rotation.from_quat(quaternion, scalar_first=True).as_matrix(), transposed),
+            "SciPy": (
+                lambda: Rotation.from_quat(quaternion, scalar_first=True).as_matrix(),
+                transposed,
+            ),
             "pytransform3d": (
                 (lambda: single.matrix_from_quaternion(quaternion), transposed)
                 if one
@@ -137,12 +160,21 @@ def _conversions(size):
             ),
         },
         "matrix to quaternion": {
-            "orientation": (lambda: orientation.quaternion_from_dcm(dcm), orientation.dcm_from_quaternion),
-            "SciPy": (lambda: Rotation.from_matrix(matrix).as_quat(scalar_first=True), orientation.dcm_from_quaternion),
+            "orientation": (
+                lambda: orientation.quaternion_from_dcm(dcm),
+                orientation.dcm_from_quaternion,
+            ),
+            "SciPy": (
+                lambda: Rotation.from_matrix(matrix).as_quat(scalar_first=True),
+                orientation.dcm_from_quaternion,
+            ),
             "pytransform3d": (
                 (lambda: single.quaternion_from_matrix(matrix), orientation.dcm_from_quaternion)
                 if one
-                else (lambda: batch.quaternions_from_matrices(matrix), orientation.dcm_from_quaternion)
+                else (
+                    lambda: batch.quaternions_from_matrices(matrix),
+                    orientation.dcm_from_quaternion,
+                )
             ),
         },
         "axis and angle to quaternion": {
@@ -151,11 +183,15 @@ def _conversions(size):
                 orientation.dcm_from_quaternion,
             ),
             "SciPy": (
-                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_quat(scalar_first=True),
+                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_quat(
+                    scalar_first=True
+                ),
                 orientation.dcm_from_quaternion,
             ),
             "pytransform3d": (
-                (lambda: single.quaternion_from_axis_angle(both), orientation.dcm_from_quaternion) if one else None
+                (lambda: single.quaternion_from_axis_angle(both), orientation.dcm_from_quaternion)
+                if one
+                else None
             ),
         },
         "product of quaternions": {
@@ -165,14 +201,21 @@ def _conversions(size):
             ),
             "SciPy": (
                 lambda: (
-                    Rotation.from_quat(quaternion, scalar_first=True) * Rotation.from_quat(other, scalar_first=True)
+                    Rotation.from_quat(quaternion, scalar_first=True)
+                    * Rotation.from_quat(other, scalar_first=True)
                 ).as_quat(scalar_first=True),
                 orientation.dcm_from_quaternion,
             ),
             "pytransform3d": (
-                (lambda: single.concatenate_quaternions(quaternion, other), orientation.dcm_from_quaternion)
+                (
+                    lambda: single.concatenate_quaternions(quaternion, other),
+                    orientation.dcm_from_quaternion,
+                )
                 if one
-                else (lambda: batch.batch_concatenate_quaternions(quaternion, other), orientation.dcm_from_quaternion)
+                else (
+                    lambda: batch.batch_concatenate_quaternions(quaternion, other),
+                    orientation.dcm_from_quaternion,
+                )
             ),
         },
     }

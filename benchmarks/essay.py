@@ -1,12 +1,14 @@
-"""How soon and how smoothly the essay's gimbal can be dragged: ``python -m benchmarks.essay [page ...]``.
+"""How soon and how smoothly the essay's gimbal can be dragged: ``python -m benchmarks.essay [page
+...]``.
 
-The book must be built. Each page with the gimbal, the essay and the front page, is opened as on a telephone, by a
-browser that pretends to have a processor some times as slow, from a server that compresses. Told are, in seconds since
-the page was asked for, its largest paint, when the gimbal was there and when the first drag had moved it; by how much
-the page shifted; and what a dragged picture costs the page's script: its event and its frame, median and the slowest
-twentieth, by the clock and, beside it, in the main thread's own processor time, which does not count what else this
-machine does. Where graphics are drawn by the processor, as in headless browsers, pictures come as slowly as those are
-drawn, which is told as pictures a second and is no matter of script.
+The book must be built. Each page with the gimbal, the essay and the front page, is opened as on a
+telephone, by a browser that pretends to have a processor some times as slow, from a server that
+compresses. Told are, in seconds since the page was asked for, its largest paint, when the gimbal
+was there and when the first drag had moved it; by how much the page shifted; and what a dragged
+picture costs the page's script: its event and its frame, median and the slowest twentieth, by the
+clock and, beside it, in the main thread's own processor time, which does not count what else this
+machine does. Where graphics are drawn by the processor, as in headless browsers, pictures come as
+slowly as those are drawn, which is told as pictures a second and is no matter of script.
 """
 
 import os
@@ -24,7 +26,12 @@ from .first_view import SITE, Compressing
 
 PAGES = ("rotations", "index")
 SLOWED, ROUNDS, PICTURES = (1, 4, 6), 3, 40
-PHONE = {"viewport": {"width": 380, "height": 780}, "device_scale_factor": 2, "is_mobile": True, "has_touch": True}
+PHONE = {
+    "viewport": {"width": 380, "height": 780},
+    "device_scale_factor": 2,
+    "is_mobile": True,
+    "has_touch": True,
+}
 WATCH = """
 window.seen = { shift: 0, paint: 0, ready: 0 };
 const watch = (type, take) =>
@@ -115,13 +122,21 @@ def main():
                 visits = []
                 for _ in range(ROUNDS):
                     browser = playwright.chromium.launch(executable_path=find(), args=list(FLAGS))
-                    visits.append(measure(browser, f"http://127.0.0.1:{book.server_port}/{page}.html", slowed))
+                    visits.append(
+                        measure(browser, f"http://127.0.0.1:{book.server_port}/{page}.html", slowed)
+                    )
                     browser.close()
                 if head is None:
                     head = list(visits[0])
-                    print(f"| page | slowed | {' | '.join(head)} | load |\n{'|---' * (len(head) + 3)}|")
+                    print(
+                        f"| page | slowed | {' | '.join(head)} | load |\n"
+                        f"{'|---' * (len(head) + 3)}|"
+                    )
                 row = [f"{statistics.median(visit[name] for visit in visits):.3g}" for name in head]
-                print(f"| {page} | {slowed} | {' | '.join(row)} | {os.getloadavg()[0]:.1f} |", flush=True)
+                print(
+                    f"| {page} | {slowed} | {' | '.join(row)} | {os.getloadavg()[0]:.1f} |",
+                    flush=True,
+                )
 
 
 if __name__ == "__main__":

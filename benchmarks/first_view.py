@@ -1,14 +1,17 @@
-"""The first view of pages on a slow telephone, as Lighthouse tells it: ``python -m benchmarks.first_view [page ...]``.
+"""The first view of pages on a slow telephone, as Lighthouse tells it: ``python -m
+benchmarks.first_view [page ...]``.
 
-Each page that ``make book`` built is opened from a server that compresses and from one that does not. Lighthouse, which
-comes from npm, works out from the page's requests and tasks how a slow telephone on a slow line would fare.
+Each page that ``make book`` built is opened from a server that compresses and from one that does
+not. Lighthouse, which comes from npm, works out from the page's requests and tasks how a slow
+telephone on a slow line would fare.
 
-A task is weighed by the time for which it had the processor, not by that which passed: on a machine that does other
-things as well, Lighthouse would count those against the page. So what it has recorded is first set right, and then
-judged. The speed index alone still knows of the time that passed: the busier the machine, the worse it is.
+A task is weighed by the time for which it had the processor, not by that which passed: on a machine
+that does other things as well, Lighthouse would count those against the page. So what it has
+recorded is first set right, and then judged. The speed index alone still knows of the time that
+passed: the busier the machine, the worse it is.
 
-Lighthouse takes a page for shown no sooner than all of it has come. The last column but one says when the first view
-was seen in a browser on a line as slow: the median of three.
+Lighthouse takes a page for shown no sooner than all of it has come. The last column but one says
+when the first view was seen in a browser on a line as slow: the median of three.
 """
 
 import bisect
@@ -60,7 +63,11 @@ class Compressing(Handler):
             return
         content = gzip.compress(path.read_bytes(), 6)
         self.send_response(200)
-        for name, value in (("Type", self.guess_type(path)), ("Encoding", "gzip"), ("Length", len(content))):
+        for name, value in (
+            ("Type", self.guess_type(path)),
+            ("Encoding", "gzip"),
+            ("Length", len(content)),
+        ):
             self.send_header(f"Content-{name}", str(value))
         self.end_headers()
         self.wfile.write(content)
@@ -71,7 +78,16 @@ def program():
     found = SCRATCH / "node_modules" / "lighthouse" / "cli" / "index.js"
     if not found.is_file():
         npm = Path(sys.executable).with_name("npm")
-        command = [npm, "install", "--silent", "--ignore-scripts", "--no-audit", "--no-fund", "--prefix", SCRATCH]
+        command = [
+            npm,
+            "install",
+            "--silent",
+            "--ignore-scripts",
+            "--no-audit",
+            "--no-fund",
+            "--prefix",
+            SCRATCH,
+        ]
         environment = os.environ | {"PATH": f"{npm.parent}{os.pathsep}{os.environ['PATH']}"}
         SCRATCH.mkdir(parents=True, exist_ok=True)
         subprocess.run([*command, LIGHTHOUSE], check=True, env=environment)
@@ -79,13 +95,17 @@ def program():
 
 
 def by_processor_time(trace):
-    """Give each task of a trace the time for which it had the processor, and what happened in it its share of that."""
+    """Give each task of a trace the time for which it had the processor, and what happened in it
+    its share of that.
+    """
     threads = defaultdict(list)
     for event in trace["traceEvents"]:
         threads[event.get("pid"), event.get("tid")].append(event)
     for events in threads.values():
         tasks = [
-            event for event in events if event["name"].endswith("RunTask") and event.get("dur") and "tdur" in event
+            event
+            for event in events
+            if event["name"].endswith("RunTask") and event.get("dur") and "tdur" in event
         ]
         starts, lengths, shares, end = [], [], [], 0
         for task in sorted(tasks, key=lambda task: (task["ts"], -task["dur"])):
@@ -115,7 +135,9 @@ def judge(lighthouse, address):
     with tempfile.TemporaryDirectory() as folder:
         command = [NODE, lighthouse, address, "--quiet"]
         browser = "--chrome-flags=--headless=new --no-sandbox"
-        subprocess.run([*command, f"-G={folder}", browser], check=True, env=environment, capture_output=True)
+        subprocess.run(
+            [*command, f"-G={folder}", browser], check=True, env=environment, capture_output=True
+        )
         [recorded] = Path(folder).glob("*.trace.json")
         trace = json.loads(recorded.read_text("utf8"))
         by_processor_time(trace)
@@ -127,13 +149,20 @@ def judge(lighthouse, address):
 
 
 #: Lighthouse's slow line: the way there and back, and bytes a second.
-SLOW = {"offline": False, "latency": 150, "downloadThroughput": 1_474_560 / 8, "uploadThroughput": 675_000 / 8}
+SLOW = {
+    "offline": False,
+    "latency": 150,
+    "downloadThroughput": 1_474_560 / 8,
+    "uploadThroughput": 675_000 / 8,
+}
 SEEN = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
 
 
 def seen_on_a_slow_line(browser, address):
     """Seconds until the first view of the page at ``address`` is seen, on a telephone's screen."""
-    context = browser.new_context(viewport={"width": 412, "height": 823}, device_scale_factor=1.75, is_mobile=True)
+    context = browser.new_context(
+        viewport={"width": 412, "height": 823}, device_scale_factor=1.75, is_mobile=True
+    )
     page = context.new_page()
     line = context.new_cdp_session(page)
     line.send("Network.enable")
@@ -151,7 +180,9 @@ def main():
         sys.exit("The book is not built: run `make book` first.")
     lighthouse = program()
     print(
-        "| page | server |", " | ".join([*CATEGORIES, *(name for name, _, _ in MEASURES.values())]), "| seen | load |"
+        "| page | server |",
+        " | ".join([*CATEGORIES, *(name for name, _, _ in MEASURES.values())]),
+        "| seen | load |",
     )
     print("|---" * (len(CATEGORIES) + len(MEASURES) + 4) + "|")
     for kind, handler in (("compressing", Compressing), ("plain", Handler)):
@@ -168,7 +199,12 @@ def main():
                 f"{found['audits'][name]['numericValue'] / divisor:.3g} {unit}".strip()
                 for name, (_, divisor, unit) in MEASURES.items()
             ]
-            print(f"| {page} | {kind} |", " | ".join([*scores, *numbers]), f"| {seen:.2f} s | {load:.1f} |", flush=True)
+            print(
+                f"| {page} | {kind} |",
+                " | ".join([*scores, *numbers]),
+                f"| {seen:.2f} s | {load:.1f} |",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

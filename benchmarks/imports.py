@@ -19,8 +19,15 @@ def rows():
     for _ in range(ROUNDS):
         for name, package in PACKAGES.items():
             code = (
-                f"import time, numpy\nstart = time.process_time()\nimport {package}\nprint(time.process_time() - start)"
+                f"import time, numpy\nstart = time.process_time()\nimport {package}\n"
+                "print(time.process_time() - start)"
             )
-            done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+            done = subprocess.run(
+                [sys.executable, "-c", code], capture_output=True, text=True, check=True
+            )
             samples[name].append(float(done.stdout))
-    yield "import, beyond NumPy", 1, {name: statistics.median(times) for name, times in samples.items()}
+    yield (
+        "import, beyond NumPy",
+        1,
+        {name: statistics.median(times) for name, times in samples.items()},
+    )

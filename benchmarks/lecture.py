@@ -1,9 +1,9 @@
 """How much of a hall's screen a lecture uses: ``python benchmarks/lecture.py [chapters...]``.
 
-The book must be built. Each lecture is gone through at 1280 by 720: how many steps it has, in how many of them a
-drawing is seen, what share of the screen the largest drawing of such a step fills (the box round what is drawn, without
-the empty margin of its sheet), in how many a drawing stands without a word beside it, and how many are higher than the
-screen.
+The book must be built. Each lecture is gone through at 1280 by 720: how many steps it has, in how
+many of them a drawing is seen, what share of the screen the largest drawing of such a step fills
+(the box round what is drawn, without the empty margin of its sheet), in how many a drawing stands
+without a word beside it, and how many are higher than the screen.
 """
 
 import statistics
@@ -45,7 +45,10 @@ STEPS = """() => {
 
 def main():
     names = [f"chapters/{name}" for name in sys.argv[1:]] or chapters()
-    print("chapter                      steps  drawn  share: least median most (%)  without words  too high")
+    print(
+        "chapter                      steps  drawn  share: least median most (%)  without words  "
+        "too high"
+    )
     everything = []
     with open_browser() as browser:
         page = browser.new_page(viewport={"width": WIDTH, "height": HEIGHT})
@@ -63,7 +66,9 @@ def print_line(name, steps):
     shares = [100 * step[0] for step in drawn] or [0]
     row = f"{min(shares):12.0f}{statistics.median(shares):7.0f}{max(shares):5.0f}"
     silent = sum(not words for _, words, _ in drawn)
-    print(f"{name:27}{len(steps):7}{len(drawn):7}{row}{silent:18}{sum(bool(high) for *_, high in steps):10}")
+    print(
+        f"{name:27}{len(steps):7}{len(drawn):7}{row}{silent:18}{sum(bool(high) for *_, high in steps):10}"
+    )
 
 
 if __name__ == "__main__":

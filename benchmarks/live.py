@@ -1,11 +1,13 @@
-"""Code in the page: time from pressing Run to the first result, and what is downloaded: ``python -m benchmarks.live``.
+"""Code in the page: time from pressing Run to the first result, and what is downloaded: ``python -m
+benchmarks.live``.
 
-One chapter of the book as ``make book`` built it, in headless Chromium, from a local server. Cold is a fresh
-browser with an empty cache; warm is a new visit in the same browser. The time runs from the press on the first
-SymPy cell's Run until its formula is typeset on the page. Beside it stands the time of the bare runtime in the same
-browser: Pyodide started in a worker, and SymPy imported. What each later cell costs beyond its own work is the time
-of an assignment: code, message, outcome and page together. JupyterLite's time runs from opening the notebook of an
-exercise until its first cell, which imports SymPy and ``coursework``, has run.
+One chapter of the book as ``make book`` built it, in headless Chromium, from a local server. Cold
+is a fresh browser with an empty cache; warm is a new visit in the same browser. The time runs from
+the press on the first SymPy cell's Run until its formula is typeset on the page. Beside it stands
+the time of the bare runtime in the same browser: Pyodide started in a worker, and SymPy imported.
+What each later cell costs beyond its own work is the time of an assignment: code, message, outcome
+and page together. JupyterLite's time runs from opening the notebook of an exercise until its first
+cell, which imports SymPy and ``coursework``, has run.
 """
 
 import gzip
@@ -76,7 +78,9 @@ WRITE = """
 
 
 def visit(context, address):
-    """Press Run on the first SymPy cell; return the page, the cell's number, the seconds and what was asked for."""
+    """Press Run on the first SymPy cell; return the page, the cell's number, the seconds and what
+    was asked for.
+    """
     page = context.new_page()
     asked = []
     page.on("requestfinished", lambda request: asked.append(request.url))
@@ -89,19 +93,26 @@ def visit(context, address):
 
 
 def open_notebook(context, site):
-    """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked for."""
+    """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked
+    for.
+    """
     page = context.new_page()
     asked = []
     context.on(
         "response",
-        lambda response: response.status == 200 and not response.from_service_worker and asked.append(response.url),
+        lambda response: (
+            response.status == 200
+            and not response.from_service_worker
+            and asked.append(response.url)
+        ),
     )
     start = time.monotonic()
     page.goto(f"{site}{NOTEBOOK}")
     page.locator(".jp-CodeCell").first.click()
     page.keyboard.press("Shift+Enter")
     page.wait_for_function(
-        r"document.querySelector('.jp-CodeCell .jp-InputPrompt')?.innerText.match(/\d/)", timeout=120_000
+        r"document.querySelector('.jp-CodeCell .jp-InputPrompt')?.innerText.match(/\d/)",
+        timeout=120_000,
     )
     seconds = time.monotonic() - start
     page.close()
@@ -126,7 +137,9 @@ def cell_overhead(page, number):
 
 def weight(urls):
     """Megabytes after gzip of what was asked for."""
-    bodies = [urllib.request.urlopen(url).read() for url in dict.fromkeys(urls) if url.startswith("http")]
+    bodies = [
+        urllib.request.urlopen(url).read() for url in dict.fromkeys(urls) if url.startswith("http")
+    ]
     return sum(len(gzip.compress(body, 6)) for body in bodies) / 1e6
 
 

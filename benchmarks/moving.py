@@ -1,9 +1,10 @@
-"""What a drag of each moving figure costs, and what all of them weigh: ``python -m benchmarks.moving``.
+"""What a drag of each moving figure costs, and what all of them weigh: ``python -m
+benchmarks.moving``.
 
-A figure stands alone on a page opened from disk. Its first slider is moved once for each picture, as a
-drag moves it. What the page's main thread needs for one picture is scripts, style, layout and painting; it
-is processor time, which does not count what else this machine does, and is given for a processor four
-times as slow as this one. A picture that takes longer than 16 ms comes late.
+A figure stands alone on a page opened from disk. Its first slider is moved once for each picture,
+as a drag moves it. What the page's main thread needs for one picture is scripts, style, layout and
+painting; it is processor time, which does not count what else this machine does, and is given for a
+processor four times as slow as this one. A picture that takes longer than 16 ms comes late.
 
 Weight is that of the scripts that a page loads, after gzip.
 """
@@ -85,7 +86,8 @@ def main():
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
         print(
-            f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as slow; a picture has "
+            f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as "
+            "slow; a picture has "
             f"{FRAME} ms.\n"
         )
         print("| figure | main thread, ms for each picture of a drag | kB after gzip |")
@@ -97,7 +99,10 @@ def main():
             print(f"| {figure.kind} | {spent:.1f} | {weights[-1] / 1000:.1f} |", flush=True)
         browser.close()
     print(f"| what they share | | {weights[0] / 1000:.1f} |")
-    print(f"| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of {HEAVIEST // 1000} at most |")
+    print(
+        f"| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of "
+        f"{HEAVIEST // 1000} at most |"
+    )
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 """Weight of a page, and time until its mathematics is shown: ``python -m benchmarks.pages``.
 
-One chapter of the book as ``make book`` built it, against the same notebook built the stock Jupyter Book
-way: default settings, mathematics set in the reader's browser by MathJax 3. Stock pages fetch MathJax
-from a server of others; here it comes from npm and is served from the same place as all else, which is
-kind to the stock page: no far server, no second connection. Whatever else a page asks of other servers is
-refused and counted.
+One chapter of the book as ``make book`` built it, against the same notebook built the stock Jupyter
+Book way: default settings, mathematics set in the reader's browser by MathJax 3. Stock pages fetch
+MathJax from a server of others; here it comes from npm and is served from the same place as all
+else, which is kind to the stock page: no far server, no second connection. Whatever else a page
+asks of other servers is refused and counted.
 
-Both pages are opened in turns, each time in a fresh browser with an empty cache. Weight is what each
-response weighs after gzip. Mathematics is shown when every formula is set, its typefaces are there, and
-the browser has painted two frames since.
+Both pages are opened in turns, each time in a fresh browser with an empty cache. Weight is what
+each response weighs after gzip. Mathematics is shown when every formula is set, its typefaces are
+there, and the browser has painted two frames since.
 """
 
 import gzip
@@ -50,7 +50,9 @@ FORMULAS = "() => document.querySelectorAll('.katex, mjx-container').length"
 
 
 def stock_book():
-    """Build the chapter with nothing but what a new Jupyter Book has, and return the site's folder."""
+    """Build the chapter with nothing but what a new Jupyter Book has, and return the site's
+    folder.
+    """
     if SCRATCH.exists():
         shutil.rmtree(SCRATCH)
     source = SCRATCH / "source"
@@ -64,7 +66,10 @@ def stock_book():
         "title": "Orientation of Reference Frames",
         "execute": {"execute_notebooks": "off"},
         "bibtex_bibfiles": ["references.bib"],
-        "sphinx": {"extra_extensions": ["sphinx_exercise"], "config": {"mathjax_path": "mathjax/es5/tex-mml-chtml.js"}},
+        "sphinx": {
+            "extra_extensions": ["sphinx_exercise"],
+            "config": {"mathjax_path": "mathjax/es5/tex-mml-chtml.js"},
+        },
     }
     (source / "_config.yml").write_text(yaml.safe_dump(settings), "utf8")
     programs = Path(sys.executable).parent
@@ -96,7 +101,9 @@ def stock_book():
 
 
 def visit(playwright, executable, address, slowed=1):
-    """Open a page in a fresh browser, and return it when its mathematics is shown, with its responses."""
+    """Open a page in a fresh browser, and return it when its mathematics is shown, with its
+    responses.
+    """
     browser = playwright.chromium.launch(executable_path=executable, args=[*FLAGS, ALONE])
     page = browser.new_context(viewport={"width": 1300, "height": 900}).new_page()
     page.add_init_script(CLOCK)
@@ -112,7 +119,11 @@ def visit(playwright, executable, address, slowed=1):
 def weigh(*visited):
     browser, page, requests = visit(*visited)
     page.wait_for_load_state("networkidle")
-    bodies = [request.response().body() for request in requests["finished"] if not request.url.startswith("data:")]
+    bodies = [
+        request.response().body()
+        for request in requests["finished"]
+        if not request.url.startswith("data:")
+    ]
     result = {
         "formulas": page.evaluate(FORMULAS),
         "requests": len(bodies),
@@ -143,7 +154,9 @@ def main():
         threading.Thread(target=book.serve_forever, daemon=True).start()
         addresses[name] = f"http://127.0.0.1:{book.server_port}/{PAGE}.html"
     with sync_playwright() as playwright:
-        weights = {name: weigh(playwright, executable, address) for name, address in addresses.items()}
+        weights = {
+            name: weigh(playwright, executable, address) for name, address in addresses.items()
+        }
         times = {(name, slowed): [] for name in sites for slowed in SLOWED}
         for _ in range(ROUNDS):
             for slowed in SLOWED:
@@ -154,7 +167,10 @@ def main():
 
 def report(weights, shown):
     ours, stock = weights
-    print(f"{PAGE}: {weights[ours]['formulas']} formulas in {ours}, {weights[stock]['formulas']} in {stock}.\n")
+    print(
+        f"{PAGE}: {weights[ours]['formulas']} formulas in {ours}, {weights[stock]['formulas']} in "
+        f"{stock}.\n"
+    )
     print(f"| what | {ours} | {stock} | ratio |")
     print("|---|---|---|---|")
     for key, words in (
@@ -168,7 +184,10 @@ def report(weights, shown):
     for slowed in SLOWED:
         row = [shown[name, slowed] for name in weights]
         where = "full speed" if slowed == 1 else f"processor {slowed} times as slow"
-        print(f"| mathematics shown, {where} | {row[0]:.2f} s | {row[1]:.2f} s | {row[1] / row[0]:.3g} x |")
+        print(
+            f"| mathematics shown, {where} | {row[0]:.2f} s | {row[1]:.2f} s | "
+            f"{row[1] / row[0]:.3g} x |"
+        )
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Symbolic matrices and their comparison, against SymPy's reference frames and ``simplify``.
 
-SymPy remembers what it has computed. Its cache is emptied before every call, for everybody, and the time
-that takes is no part of the time.
+SymPy remembers what it has computed. Its cache is emptied before every call, for everybody, and the
+time that takes is no part of the time.
 """
 
 import itertools
@@ -52,7 +52,9 @@ def rows():
         "space fixed for body fixed is recognised (SymPy: simplify for each mix-up)",
         1,
         _seconds(
-            lambda: orientation.diagnose(mistaken, expected).causes, lambda: _diagnosis(mistaken, expected), rounds=3
+            lambda: orientation.diagnose(mistaken, expected).causes,
+            lambda: _diagnosis(mistaken, expected),
+            rounds=3,
         ),
     )
 
@@ -62,7 +64,10 @@ def sizes():
     for axes, what in (("z", "about z"), ("xyz", "about x, y, z in turn")):
         yield (
             f"operations in a symbolic chain of 12 turns {what}",
-            {"orientation": sm.count_ops(_our_chain(axes)), "SymPy": sm.count_ops(_their_chain(axes))},
+            {
+                "orientation": sm.count_ops(_our_chain(axes)),
+                "SymPy": sm.count_ops(_their_chain(axes)),
+            },
         )
 
 
@@ -103,6 +108,8 @@ def _diagnosis(given, expected):
     """The usual way: undo each mix-up and let SymPy simplify the difference."""
     mixups = [expected.T]
     mixups += [expected.subs(angle, -angle) for angle in ANGLES]
-    mixups += [expected.subs({a: b, b: a}, simultaneous=True) for a, b in itertools.combinations(ANGLES, 2)]
+    mixups += [
+        expected.subs({a: b, b: a}, simultaneous=True) for a, b in itertools.combinations(ANGLES, 2)
+    ]
     mixups.append(orientation.dcm_from_space_fixed(ANGLES, "zxy"))
     return any(sm.simplify(given - mixup) == sm.zeros(3) for mixup in mixups)

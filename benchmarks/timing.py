@@ -9,8 +9,8 @@ SHORTEST_SAMPLE = 0.005
 def seconds_per_call(contestants, rounds):
     """Median time of one call for each function of a dictionary, None for one that is missing.
 
-    Every round times every function once, starting with another one each time, so that whatever else
-    the machine does meets them all.
+    Every round times every function once, starting with another one each time, so that whatever
+    else the machine does meets them all.
     """
     present = {name: function for name, function in contestants.items() if function}
     calls = {name: _calls_for_one_sample(function) for name, function in present.items()}
@@ -24,7 +24,9 @@ def seconds_per_call(contestants, rounds):
                 function()
             samples[name].append((time.process_time() - start) / count)
         order.append(order.pop(0))
-    return {name: statistics.median(samples[name]) if name in samples else None for name in contestants}
+    return {
+        name: statistics.median(samples[name]) if name in samples else None for name in contestants
+    }
 
 
 def _calls_for_one_sample(function):

@@ -15,15 +15,19 @@ PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer tha
 def html_pages():
     """The addresses of all pages of the built site, relative to its root.
 
-    Notebooks in ``lite`` are none, nor are the figures for other people's pages, nor what a server shows where there is
-    no page.
+    Notebooks in ``lite`` are none, nor are the figures for other people's pages, nor what a server
+    shows where there is no page.
     """
     found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
     return sorted(str(path) for path in found if path.parts[0] not in ("lite", "embed", "404.html"))
 
 
 def every_day(cases, *chosen):
-    """Cases for a test of which those that are chosen run every day; the others, which are much like them, are long."""
+    """Cases for a test of which those that are chosen run every day; the others, which are much
+    like them, are long.
+    """
     if lost := set(chosen) - set(cases):
         raise ValueError(f"not among the cases: {lost}")
-    return [case if case in chosen else pytest.param(case, marks=pytest.mark.long) for case in cases]
+    return [
+        case if case in chosen else pytest.param(case, marks=pytest.mark.long) for case in cases
+    ]

@@ -9,7 +9,9 @@ format_difference = nbval.plugin.IPyNbCell.format_output_compare
 
 
 def compare_outputs(cell, test, ref, skip_compare=None):
-    """As nbval compares outputs, but for numbers that moved by as little as :mod:`notebook_pages.moves` allows."""
+    """As nbval compares outputs, but for numbers that moved by as little as
+    :mod:`notebook_pages.moves` allows.
+    """
     for now, stored in zip(test, ref):
         _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)
         _undo_small_moves(now, stored, cell.sanitize)

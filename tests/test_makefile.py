@@ -1,4 +1,6 @@
-"""The commands of the book, without what they run: what is set up, how often, and side by side or not."""
+"""The commands of the book, without what they run: what is set up, how often, and side by side or
+not.
+"""
 
 import os
 import re
@@ -20,7 +22,9 @@ echo "end $*" >> "$LOG"
 
 @pytest.fixture
 def make(tmp_path):
-    """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line of text."""
+    """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line
+    of text.
+    """
     for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
     for name in (
@@ -41,7 +45,9 @@ def make(tmp_path):
         log = tmp_path / "log"
         log.write_text("")
         environment = {**os.environ, "LOG": str(log), "MAKEFLAGS": ""}
-        done = subprocess.run(["make", *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        done = subprocess.run(
+            ["make", *arguments], cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stdout + done.stderr
         return log.read_text().splitlines()
 
@@ -49,7 +55,11 @@ def make(tmp_path):
 
 
 def installs(lines):
-    return [line for line in lines if line.startswith("begin") and " install " in line and "--editable" in line]
+    return [
+        line
+        for line in lines
+        if line.startswith("begin") and " install " in line and "--editable" in line
+    ]
 
 
 def test_nothing_is_installed_beside_something_else(make):
@@ -71,7 +81,11 @@ def test_what_the_book_installed_is_not_enough_for_the_tests(make):
 
 
 def test_one_notebook_is_released_and_tried_alone(make):
-    lines = [line for line in make("release", "ONLY=belt-trick chapters") if line.startswith("begin -m coursework")]
+    lines = [
+        line
+        for line in make("release", "ONLY=belt-trick chapters")
+        if line.startswith("begin -m coursework")
+    ]
     assert [line.removeprefix("begin -m coursework ") for line in lines] == [
         "release belt-trick chapters",
         "selftest belt-trick chapters",
@@ -84,5 +98,10 @@ def test_a_check_builds_nothing(make):
 
 def test_nothing_is_deleted_out_of_packages():
     """pip would no longer know what it has installed."""
-    rule = (REPOSITORY / "Makefile").read_text("utf8").partition("$(VENV)/ready-%:")[2].partition("\n\n")[0]
+    rule = (
+        (REPOSITORY / "Makefile")
+        .read_text("utf8")
+        .partition("$(VENV)/ready-%:")[2]
+        .partition("\n\n")[0]
+    )
     assert "$(PIP)" in rule and not re.search(r"\brm\b|-delete|unlink", rule)

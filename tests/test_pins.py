@@ -21,7 +21,9 @@ def test_what_is_asked_for_is_pinned():
     for text in pins.asked_for():
         wanted = Requirement(text)
         version = CONSTRAINTS[canonicalize_name(wanted.name)]
-        assert wanted.specifier.contains(version), f"constraints.txt has {version}, pyproject.toml asks for {text}"
+        assert wanted.specifier.contains(version), (
+            f"constraints.txt has {version}, pyproject.toml asks for {text}"
+        )
 
 
 @pytest.mark.parametrize("path", pins.WHEELS, ids=lambda path: path.parent.name)
@@ -29,12 +31,16 @@ def test_wheels_for_browsers_are_those_of_the_book(path):
     text = path.read_text("utf8")
     for name, version in pins.pins(text).items():
         assert CONSTRAINTS.get(name, version) == version, name
-        assert re.search(rf"^{name}=={re.escape(version)} --hash=sha256:[0-9a-f]{{64}}$", text, re.M), name
+        assert re.search(
+            rf"^{name}=={re.escape(version)} --hash=sha256:[0-9a-f]{{64}}$", text, re.M
+        ), name
 
 
 def test_the_lock_of_npm_names_no_address():
     text = pins.LOCK.read_text("utf8")
-    assert '"resolved"' not in text and "://" not in re.sub(r'"funding": (".*"|{[^}]*}|\[[^]]*\])', "", text)
+    assert '"resolved"' not in text and "://" not in re.sub(
+        r'"funding": (".*"|{[^}]*}|\[[^]]*\])', "", text
+    )
     stated, locked = json.loads(pins.PACKAGE.read_text("utf8")), json.loads(text)["packages"]
     for name, version in (stated["dependencies"] | stated["devDependencies"]).items():
         assert locked[f"node_modules/{name}"]["version"] == version, name
@@ -60,12 +66,22 @@ def test_wheels_are_renewed_to_the_versions_of_the_book(monkeypatch):
     old = "# Why.\nipython==9.18.1 --hash=sha256:0\nmicropip==0.11.1 --hash=sha256:0\n"
     text, _ = pins.wheels(old, {"ipython": "9.99"})
     assert "ipython==9.99" in asked and "micropip>=0.11.1" in asked
-    assert text == f"# Why.\nipython==9.99 --hash=sha256:{7:064x}\nmicropip==0.12 --hash=sha256:{8:064x}\n"
+    assert (
+        text
+        == f"# Why.\nipython==9.99 --hash=sha256:{7:064x}\nmicropip==0.12 --hash=sha256:{8:064x}\n"
+    )
 
 
 def test_what_a_wheel_newly_needs_in_browsers_is_told():
-    needs = ("traitlets>=5", 'pexpect; sys_platform != "emscripten"', 'pytest; extra == "test"', "jupyterlab_widgets")
-    assert list(pins.missing([report("ipython", "9.99", *needs)])) == ["ipython 9.99 needs traitlets"]
+    needs = (
+        "traitlets>=5",
+        'pexpect; sys_platform != "emscripten"',
+        'pytest; extra == "test"',
+        "jupyterlab_widgets",
+    )
+    assert list(pins.missing([report("ipython", "9.99", *needs)])) == [
+        "ipython 9.99 needs traitlets"
+    ]
     assert list(pins.missing([report("ipython", "9.99", *needs), report("traitlets", "5.1")])) == []
 
 
@@ -76,8 +92,12 @@ def test_nothing_is_renewed_by_a_newer_python(monkeypatch):
 
 
 def newer_pythons():
-    """The Pythons of this machine that are newer than this one, and that the README names; the newest last."""
-    named = re.findall(r"3\.(\d+)", re.search(r"Python 3[^(]*", (REPOSITORY / "README.md").read_text("utf8"))[0])
+    """The Pythons of this machine that are newer than this one, and that the README names; the
+    newest last.
+    """
+    named = re.findall(
+        r"3\.(\d+)", re.search(r"Python 3[^(]*", (REPOSITORY / "README.md").read_text("utf8"))[0]
+    )
     for minor in sorted(int(text) for text in named if int(text) > sys.version_info.minor):
         found = shutil.which(f"python3.{minor}")
         yield from [found] if found else []  # which may be a name without a Python behind it
@@ -87,18 +107,31 @@ def newer_pythons():
 @pytest.mark.long
 def test_a_newer_python_needs_no_compiler(tmp_path):
     """QuickJS had no wheel past 3.12: setting up ended in "No such file: gcc"."""
-    answering = [one for one in newer_pythons() if subprocess.run([one, "-c", ""], capture_output=True).returncode == 0]
+    answering = [
+        one
+        for one in newer_pythons()
+        if subprocess.run([one, "-c", ""], capture_output=True).returncode == 0
+    ]
     if not answering:
         pytest.skip("there is no newer Python here")
     subprocess.run([answering[-1], "-m", "venv", tmp_path / "newer"], check=True)
-    command = [tmp_path / "newer" / "bin" / "python", "-m", "pip", "install", "--dry-run", "--only-binary=:all:"]
+    command = [
+        tmp_path / "newer" / "bin" / "python",
+        "-m",
+        "pip",
+        "install",
+        "--dry-run",
+        "--only-binary=:all:",
+    ]
     command += ["--quiet", "--constraint", pins.CONSTRAINTS]
     done = subprocess.run([*command, *pins.asked_for()], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-2000:]
 
 
 def test_every_command_that_is_named_exists():
-    """`make renew-pins` was named where requests for newer versions are switched off, and was not there."""
+    """`make renew-pins` was named where requests for newer versions are switched off, and was not
+    there.
+    """
     targets = set(re.findall(r"^([a-z-]+):", (REPOSITORY / "Makefile").read_text("utf8"), re.M))
     names = [
         "README.md",

@@ -1,4 +1,6 @@
-"""The rooms of the house: imports run one way, and a course meets coursework through its plug-in only."""
+"""The rooms of the house: imports run one way, and a course meets coursework through its plug-in
+only.
+"""
 
 import ast
 import json
@@ -25,7 +27,8 @@ MAY_IMPORT = {
     "orientation_course": ("coursework", "orientation"),
     "notebook_pages": (),
 }
-#: In grading, what follows a notebook on its way uses only what comes before it, and what stands beside the rooms.
+#: In grading, what follows a notebook on its way uses only what comes before it, and what stands
+#: beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
 BESIDE = ("locks", "record", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
@@ -57,7 +60,8 @@ def foreign(room, allowed):
         f"{path.relative_to(sources)} imports {name}"
         for path in folder.rglob("*.py")
         for name in imported(path, sources)
-        if name.partition(".")[0] in OURS and not any(f"{name}.".startswith(f"{one}.") for one in (room, *allowed))
+        if name.partition(".")[0] in OURS
+        and not any(f"{name}.".startswith(f"{one}.") for one in (room, *allowed))
     ]
 
 
@@ -69,8 +73,16 @@ def test_imports_run_one_way(room):
 
 @pytest.mark.parametrize("room", WAY)
 def test_grading_follows_a_notebook_on_its_way(room):
-    before = [*WAY[: WAY.index(room)], *BESIDE, *(["grade"] if room == "export" else [])]  # Gradescope grades there
-    allowed = ["coursework.checking", "coursework.authoring", *(f"coursework.grading.{name}" for name in before)]
+    before = [
+        *WAY[: WAY.index(room)],
+        *BESIDE,
+        *(["grade"] if room == "export" else []),
+    ]  # Gradescope grades there
+    allowed = [
+        "coursework.checking",
+        "coursework.authoring",
+        *(f"coursework.grading.{name}" for name in before),
+    ]
     assert foreign(f"coursework.grading.{room}", allowed) == []
 
 
@@ -78,7 +90,11 @@ def test_checking_has_no_circles():
     """Also none that an import within a function hides."""
     folder, sources = folder_of("coursework.checking"), folder_of("coursework").parent
     uses = {
-        path.stem: {name.split(".")[2] for name in imported(path, sources) if name.startswith("coursework.checking.")}
+        path.stem: {
+            name.split(".")[2]
+            for name in imported(path, sources)
+            if name.startswith("coursework.checking.")
+        }
         for path in folder.glob("*.py")
     }
     while first := [name for name, others in uses.items() if not others & set(uses)]:
@@ -95,15 +111,20 @@ def test_every_package_is_registered():
 
 
 def test_checking_needs_no_course():
-    """Without any plug-in there are the kinds that no course owns, and a check that says where it looked."""
+    """Without any plug-in there are the kinds that no course owns, and a check that says where it
+    looked.
+    """
     program = (
         "from importlib import metadata\nmetadata.entry_points = lambda **wanted: []\n"
         "import sys, coursework\nfrom coursework.checking.plugins import kinds\n"
         "assert 'expression' in kinds() and 'quaternion' not in kinds()\n"
         "assert not [name for name in sys.modules if name.startswith('orientation')]\n"
-        "try:\n    coursework.check('statics/lever', 1)\nexcept KeyError as error:\n    print(error)"
+        "try:\n    coursework.check('statics/lever', 1)\nexcept KeyError as error:\n"
+        "    print(error)"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
     assert "no package with sealed questions is installed" in done.stdout
 
 
@@ -112,10 +133,15 @@ def test_a_folder_beside_the_notebook_comes_first(tmp_path, monkeypatch):
     questions.notebook_questions.cache_clear()
     asked = {"statics/lever": {"kind": "expression", "salt": "0", "lockers": ""}}
     (tmp_path / "sealed").mkdir()
-    (tmp_path / "sealed" / "statics.json").write_text(json.dumps({"format": questions.FORMAT, "questions": asked}))
+    (tmp_path / "sealed" / "statics.json").write_text(
+        json.dumps({"format": questions.FORMAT, "questions": asked})
+    )
     try:
         assert questions.find_question("statics/lever", "").question == Question("expression", "0")
-        assert questions.find_question("simple-orientations/boom", "").question.kind == "direction cosine matrix"
+        assert (
+            questions.find_question("simple-orientations/boom", "").question.kind
+            == "direction cosine matrix"
+        )
         with pytest.raises(questions.NoSuchQuestion, match="Did you mean 'statics/lever'"):
             questions.find_question("statics/level", "")
     finally:
@@ -129,7 +155,9 @@ class Broken(metadata.EntryPoint):
 def test_a_plugin_that_cannot_be_loaded_is_named(monkeypatch):
     broken = Broken("statics", "no_such_module_of_statics", plugins.GROUP)
     monkeypatch.setattr(metadata, "entry_points", lambda group: [broken])
-    with pytest.raises(RuntimeError, match="statics.*no_such_module_of_statics.*statics-course 1.0"):
+    with pytest.raises(
+        RuntimeError, match="statics.*no_such_module_of_statics.*statics-course 1.0"
+    ):
         plugins.plugins.__wrapped__()
 
 
@@ -144,10 +172,16 @@ def circles():
     """The sets of modules that need each other, the imports within functions counted."""
     needed = {}
     for folder in (*PACKAGES.values(), PAGES):
-        modules = {path: path.relative_to(folder.parent).with_suffix("").parts for path in folder.rglob("*.py")}
+        modules = {
+            path: path.relative_to(folder.parent).with_suffix("").parts
+            for path in folder.rglob("*.py")
+        }
         for path, parts in modules.items():
-            # The number of the package's version, which stands in the package itself, is no use of its modules.
-            names = {name for name in imported(path, folder.parent) if not name.endswith(".__version__")}
+            # The number of the package's version, which stands in the package itself, is no use of
+            # its modules.
+            names = {
+                name for name in imported(path, folder.parent) if not name.endswith(".__version__")
+            }
             needed[".".join(parts).removesuffix(".__init__")] = names
     for module, names in needed.items():
         # What is named is a module, or lies in one.
@@ -179,13 +213,17 @@ def private(name):
 
 
 def test_no_private_name_crosses_a_room():
-    """A module that begins with an underscore is for its folder, a name that does so for its module."""
+    """A module that begins with an underscore is for its folder, a name that does so for its
+    module.
+    """
     found = []
     for folder in (*PACKAGES.values(), PAGES):
         for path in folder.rglob("*.py"):
             for name in imported(path, folder.parent):
                 *module, last = name.split(".")
-                if name.partition(".")[0] in OURS and (private(last) or any(map(private, module[:-1]))):
+                if name.partition(".")[0] in OURS and (
+                    private(last) or any(map(private, module[:-1]))
+                ):
                     inside = module == list(path.relative_to(folder.parent).parent.parts)
                     found += [] if inside else [f"{path.relative_to(folder.parent)} imports {name}"]
     assert found == []

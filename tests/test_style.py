@@ -13,11 +13,17 @@ import orientation
 
 @pytest.mark.parametrize(
     "command",
-    [("ruff", "check", "."), ("ruff", "format", "--check", "."), ("mypy", "--cache-dir", "_build/mypy")],
+    [
+        ("ruff", "check", "."),
+        ("ruff", "format", "--check", "."),
+        ("mypy", "--cache-dir", "_build/mypy"),
+    ],
     ids=["linter", "formatter", "types"],
 )
 def test_tools_find_nothing(command):
-    done = subprocess.run([sys.executable, "-m", *command], cwd=REPOSITORY, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", *command], cwd=REPOSITORY, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -34,7 +40,9 @@ def public_functions():
                         yield f"{package.__name__}.{name}.{inner}", method
 
 
-@pytest.mark.parametrize("name, function", [pytest.param(*one, id=one[0]) for one in public_functions()])
+@pytest.mark.parametrize(
+    "name, function", [pytest.param(*one, id=one[0]) for one in public_functions()]
+)
 def test_public_functions_say_what_they_take_and_give(name, function):
     signature = inspect.signature(function)
     untold = [

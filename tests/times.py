@@ -1,9 +1,9 @@
 """What each part of the suite costs: processor time by file, so that growth is seen.
 
-Every run ends with its dearest parts. ``make times`` runs everything and writes the table of ``tests/TIMES.md``, to
-be committed. There the unit is what it takes to start Python and import SymPy on the same machine, so that two tables
-can be compared although they come from two machines. Processor time, unlike the clock's, changes little with what else
-runs.
+Every run ends with its dearest parts. ``make times`` runs everything and writes the table of
+``tests/TIMES.md``, to be committed. There the unit is what it takes to start Python and import
+SymPy on the same machine, so that two tables can be compared although they come from two machines.
+Processor time, unlike the clock's, changes little with what else runs.
 """
 
 import resource
@@ -31,14 +31,16 @@ def of_usage(usage):
     return usage.ru_utime + usage.ru_stime
 
 
-# What each process of Chromium was last seen to have spent. Nobody waits for these when a page is closed, so the system
-# adds them to nobody's account.
+# What each process of Chromium was last seen to have spent. Nobody waits for these when a page is
+# closed, so the system adds them to nobody's account.
 BROWSERS = {}
 
 
 def processor_seconds():
     """The processor time of this process, of all that it started, and of all that those started."""
-    spent = of_usage(resource.getrusage(resource.RUSAGE_SELF)) + of_usage(resource.getrusage(resource.RUSAGE_CHILDREN))
+    spent = of_usage(resource.getrusage(resource.RUSAGE_SELF)) + of_usage(
+        resource.getrusage(resource.RUSAGE_CHILDREN)
+    )
     for process in psutil.Process().children(recursive=True):
         try:
             times = process.cpu_times()
@@ -92,7 +94,9 @@ class Times:
         if self.part:
             self.begin(None)
         if hasattr(self.config, "workeroutput"):
-            self.config.workeroutput["times"] = [[*part, spent] for part, spent in self.spent.items()]
+            self.config.workeroutput["times"] = [
+                [*part, spent] for part, spent in self.spent.items()
+            ]
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_testnodedown(self, node):
@@ -103,7 +107,9 @@ class Times:
         files = Counter()
         for (name, _), spent in self.spent.items():
             files[name] += spent
-        terminalreporter.write_sep("=", f"processor seconds: {sum(files.values()):.0f}; the dearest parts")
+        terminalreporter.write_sep(
+            "=", f"processor seconds: {sum(files.values()):.0f}; the dearest parts"
+        )
         for name, spent in files.most_common(10):
             terminalreporter.write_line(f"{spent:6.1f}  {name}")
         if self.config.getoption("--write-times"):

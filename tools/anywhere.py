@@ -1,8 +1,9 @@
 """``python -m tools.anywhere``: numbers as other machines have them.
 
-Every cell is run, all that is sealed or released is made, and every doctest is tried as if this processor were
-another one: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on one thread and
-on many; and what needs SymPy only in WebAssembly, in the Python of browsers. A table says what moved and by how much.
+Every cell is run, all that is sealed or released is made, and every doctest is tried as if this
+processor were another one: with each kernel of OpenBLAS, without the instructions that NumPy would
+not have there, on one thread and on many; and what needs SymPy only in WebAssembly, in the Python
+of browsers. A table says what moved and by how much.
 """
 
 import argparse
@@ -25,7 +26,13 @@ from coursework import authoring
 from coursework.authoring.course import find_course
 from coursework.authoring.source import notebooks_in
 from notebook_pages.execution import STORED
-from notebook_pages.live.cells import ALONE, kinds_of_cells, outputs_of_messages, stored_outputs, write_python
+from notebook_pages.live.cells import (
+    ALONE,
+    kinds_of_cells,
+    outputs_of_messages,
+    stored_outputs,
+    write_python,
+)
 from notebook_pages.live.runtime import COMPILER, FETCHED, PYODIDE, compile_wheels
 from notebook_pages.moves import moves, moves_of_outputs
 from notebook_pages.notebooks import all_notebooks
@@ -35,7 +42,8 @@ from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
 from .released import digests_of
 
-#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that is as old as that.
+#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that
+#: is as old as that.
 KERNELS = {
     "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
@@ -48,7 +56,12 @@ NEEDED = "X86_V4"
 CALLED = {"Prescott": "Katmai"}
 #: Among threads OpenBLAS shares out what it adds up: the sums come in another order.
 THREADS = {"one thread": "1", "four threads": "4"}
-DOCTESTS = ("src/orientation", "src/orientation_figures", "src/orientation_recordings", "coursework/src/coursework")
+DOCTESTS = (
+    "src/orientation",
+    "src/orientation_figures",
+    "src/orientation_recordings",
+    "coursework/src/coursework",
+)
 BROWSERS = "WebAssembly"
 
 
@@ -56,7 +69,9 @@ BROWSERS = "WebAssembly"
 
 
 def numbers_here(only):
-    """What this process finds: the moves of cells, the failed doctests, and a digest of all that is released."""
+    """What this process finds: the moves of cells, the failed doctests, and a digest of all that is
+    released.
+    """
     return {
         "kernel": kernel_in_use(),
         "cells": moves_of_cells(only),
@@ -66,7 +81,9 @@ def numbers_here(only):
 
 
 def kernel_in_use():
-    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty where NumPy has another library."""
+    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty where NumPy has another
+    library.
+    """
     import numpy  # loads it
 
     for file in Path(numpy.__file__).parent.with_name("numpy.libs").glob("*openblas*"):
@@ -82,12 +99,16 @@ def notebooks(only):
 
 
 def moves_of_cells(only):
-    with ProcessPoolExecutor(os.cpu_count()) as pool:  # each has a process of its own that forks kernels
+    with ProcessPoolExecutor(
+        os.cpu_count()
+    ) as pool:  # each has a process of its own that forks kernels
         return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
 
 
 def moves_in(path):
-    """Run a notebook; give each move as its place, its words, and which share it is of what is allowed."""
+    """Run a notebook; give each move as its place, its words, and which share it is of what is
+    allowed.
+    """
     stored, now = (nbformat.read(path, as_version=4) for _ in range(2))
     NotebookClient(
         now,
@@ -102,7 +123,9 @@ def moves_in(path):
         told
         for number, (before, after) in enumerate(cells)
         if before.execution_count is not None
-        for told in in_words(place_of(path, number), moves_of_outputs(before.outputs, after.outputs))
+        for told in in_words(
+            place_of(path, number), moves_of_outputs(before.outputs, after.outputs)
+        )
     ]
 
 
@@ -140,9 +163,15 @@ def failed_doctests():
 
 
 def digests_of_releases(only):
-    """What is released of each notebook and sealed of each variant, before the slow hash that seals it."""
+    """What is released of each notebook and sealed of each variant, before the slow hash that seals
+    it.
+    """
     with ProcessPoolExecutor(os.cpu_count()) as pool:
-        return {name: digest for found in pool.map(digests_of, sources(only)) for name, digest in found.items()}
+        return {
+            name: digest
+            for found in pool.map(digests_of, sources(only))
+            for name, digest in found.items()
+        }
 
 
 def sources(only):
@@ -152,8 +181,9 @@ def sources(only):
 
 # --- in the Python of browsers ------------------------------------------------------------------
 
-#: Runs each notebook as the page runs it, with the program with which the build finds out what each cell needs; then
-#: makes what is sealed of those sources that need no NumPy. What reads notebooks is not there: JSON serves.
+#: Runs each notebook as the page runs it, with the program with which the build finds out what each
+#: cell needs; then makes what is sealed of those sources that need no NumPy. What reads notebooks
+#: is not there: JSON serves.
 IN_A_BROWSER = """
 import glob, io, json, shutil, sys, types, zipfile
 for wheel in glob.glob("/wheels/*.whl"):
@@ -193,7 +223,9 @@ json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
 
 
 def numbers_in_a_browser(only):
-    """The moves of those cells that need SymPy only, and the digests of the sources that need no more."""
+    """The moves of those cells that need SymPy only, and the digests of the sources that need no
+    more.
+    """
     kinds, stored = kinds_of_cells(), {}
     for path in notebooks(only):
         name = str(path.relative_to(REPOSITORY).with_suffix(""))
@@ -203,7 +235,10 @@ def numbers_in_a_browser(only):
     codes = {name: [cell.source for cell in cells] for name, cells in stored.items()}
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        for wheel in (*build_wheels(folder / "built"), *compile_wheels(sorted(FETCHED.glob("*.whl")))):
+        for wheel in (
+            *build_wheels(folder / "built"),
+            *compile_wheels(sorted(FETCHED.glob("*.whl"))),
+        ):
             shutil.copy(wheel, folder)
         write_python(folder / "python")
         shutil.copytree(Path(authoring.__file__).parent, folder / "authoring")
@@ -212,15 +247,21 @@ def numbers_in_a_browser(only):
         for path in sources(only):
             text = json.dumps(nbformat.read(path, as_version=4))  # with each cell as one text
             (folder / "sources" / path.name).write_text(text, "utf8")
-        (folder / "codes.json").write_text(json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8")
+        (folder / "codes.json").write_text(
+            json.dumps({"cells": codes, "packages": list(PACKAGES)}), "utf8"
+        )
         (folder / "alone.py").write_text(ALONE, "utf8")
         (folder / "program.py").write_text(IN_A_BROWSER, "utf8")
-        subprocess.run([NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True)
+        subprocess.run(
+            [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True
+        )
         told = json.loads((folder / "told.json").read_text("utf8"))
     moved = [
         found
         for name, cells in stored.items()
-        for number, (cell, kind, one) in enumerate(zip(cells, kinds[name], told["cells"][name], strict=True))
+        for number, (cell, kind, one) in enumerate(
+            zip(cells, kinds[name], told["cells"][name], strict=True)
+        )
         if not kind["needs"] and cell.execution_count is not None
         for found in moves_in_a_browser(f"{name}, cell {number}", cell, one)
     ]
@@ -229,16 +270,24 @@ def numbers_in_a_browser(only):
 
 def moves_in_a_browser(place, cell, told):
     before, after = stored_outputs(cell), outputs_of_messages(told["messages"])
-    if told["outcome"]["status"] != "ok" or [form for form, _ in before] != [form for form, _ in after]:
+    if told["outcome"]["status"] != "ok" or [form for form, _ in before] != [
+        form for form, _ in after
+    ]:
         return [(place, str(told["outcome"])[-300:], math.inf)]
-    return [found for (_, text), (_, now) in zip(before, after) for found in in_words(place, moves(text, now))]
+    return [
+        found
+        for (_, text), (_, now) in zip(before, after)
+        for found in in_words(place, moves(text, now))
+    ]
 
 
 # --- on all of them -----------------------------------------------------------------------------
 
 
 def machines():
-    """Each machine that this processor can be, with what is to be said to its libraries; and those it cannot be."""
+    """Each machine that this processor can be, with what is to be said to its libraries; and those
+    it cannot be.
+    """
     import numpy._core._multiarray_umath as umath
 
     has = {name for name, there in umath.__cpu_features__.items() if there}
@@ -271,7 +320,11 @@ def numbers_of(environment, only):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("only", nargs="*", help="notebooks, by the names of their files; all of them if there is none")
+    parser.add_argument(
+        "only",
+        nargs="*",
+        help="notebooks, by the names of their files; all of them if there is none",
+    )
     parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.here:
@@ -279,19 +332,30 @@ def main():
         return
     possible, impossible = machines()
     faults, first = [], None
-    print("| machine | cells that moved | the largest move | doctests that fail | released otherwise |")
+    print(
+        "| machine | cells that moved | the largest move | doctests that fail | "
+        "released otherwise |"
+    )
     print("| --- | ---: | --- | ---: | ---: |")
     for name, environment in [*possible.items(), (BROWSERS, None)]:
-        found = numbers_in_a_browser(options.only) if environment is None else numbers_of(environment, options.only)
+        found = (
+            numbers_in_a_browser(options.only)
+            if environment is None
+            else numbers_of(environment, options.only)
+        )
         wanted = (environment or {}).get("OPENBLAS_CORETYPE")
         if wanted and found["kernel"] not in ("", wanted, CALLED.get(wanted)):
             faults.append(f"{name}: OpenBLAS has chosen {found['kernel']}")
         first = first or found["released"]
         others = [what for what, known in found["released"].items() if first.get(what) != known]
         print(row(name, found["cells"], found["doctests"], others), flush=True)
-        faults += [f"{name}: {place}: {words}" for place, words, share in found["cells"] if share > 1]
+        faults += [
+            f"{name}: {place}: {words}" for place, words, share in found["cells"] if share > 1
+        ]
         faults += [f"{name}: {line}" for line in found["doctests"]]
-        faults += [f"{name}: {what} is released otherwise than on this machine as it is" for what in others]
+        faults += [
+            f"{name}: {what} is released otherwise than on this machine as it is" for what in others
+        ]
     for name, why in impossible.items():
         print(f"| {name} | not tried: {why} | | | |")
     sys.exit("\n".join(faults) or 0)

@@ -1,4 +1,6 @@
-"""What every chapter has, and where one has it not: ``python -m tools.chapters`` tells file, line and cell."""
+"""What every chapter has, and where one has it not: ``python -m tools.chapters`` tells file, line
+and cell.
+"""
 
 import re
 import sys
@@ -59,12 +61,18 @@ def faults():
         if (match := re.match(r" *- file: (\S+)", text))
     }
     index = INDEX.read_text("utf8")
-    last_chapter = max((number for page, number in listed.items() if page.startswith("chapters/")), default=1)
-    last_exercise = max((number for page, number in listed.items() if page.startswith("exercises/")), default=1)
+    last_chapter = max(
+        (number for page, number in listed.items() if page.startswith("chapters/")), default=1
+    )
+    last_exercise = max(
+        (number for page, number in listed.items() if page.startswith("exercises/")), default=1
+    )
     for page, number in listed.items():
         if not any(Path(f"{page}.{ending}").is_file() for ending in ("ipynb", "md")):
             made = (
-                f"; `make release` makes it from {source_of(Path(page).name)}" if page.startswith("exercises/") else ""
+                f"; `make release` makes it from {source_of(Path(page).name)}"
+                if page.startswith("exercises/")
+                else ""
             )
             yield f"{CONTENTS}:{number}: there is no page {page}{made}"
     chapters = sorted(Path("chapters").glob("*.ipynb"))
@@ -76,13 +84,22 @@ def faults():
             yield f"{path}:1 (cell 1): a chapter begins with its label, `(chapter-{name})=`"
         for part, where in (("objectives", text[:1]), ("summary", text[-1:])):
             if not found(text, rf"^(:class: {part})\s*$"):
-                yield f"{where[0] if where else path}: no {part}; it is an `{{admonition}}` with `:class: {part}`"
+                yield (
+                    f"{where[0] if where else path}: no {part}; it is an `{{admonition}}` with "
+                    f"`:class: {part}`"
+                )
         exercises = found(text, r"^:label: (exercise-\S+)")
         if not exercises:
-            yield f"{text[-1] if text else path}: the chapter asks nothing; here belongs an `{{exercise}}` with a label"
+            yield (
+                f"{text[-1] if text else path}: the chapter asks nothing; here belongs an "
+                f"`{{exercise}}` with a label"
+            )
         for label, line in exercises.items():
             if label not in solved:
-                yield f"{line}: {label} has no `{{solution-start}} {label}` in {' or '.join(map(str, SOLUTIONS))}"
+                yield (
+                    f"{line}: {label} has no `{{solution-start}} {label}` in "
+                    f"{' or '.join(map(str, SOLUTIONS))}"
+                )
         for question, line in found(text, r"check\(['\"](chapters/[^'\"]+)").items():
             if question not in sealed:
                 yield f"{line}: {question} is no question of {CHAPTERS_SOURCE}"
@@ -91,9 +108,14 @@ def faults():
         if f"exercises/{name}" not in listed:
             yield f"{CONTENTS}:{last_exercise}: exercises/{name} is not in the table of contents"
         if f"{{doc}}`{name}`" not in index:
-            yield f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} are not listed"
+            yield (
+                f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} "
+                "are not listed"
+            )
     for path in [*chapters, *SOLUTIONS, *sorted(SOURCES.glob("*.ipynb"))]:
-        yield from (f"{line}: {line.text.strip()}" for line in lines(path) if TO_BE_WRITTEN in line.text)
+        yield from (
+            f"{line}: {line.text.strip()}" for line in lines(path) if TO_BE_WRITTEN in line.text
+        )
         for position, cell in enumerate(nbformat.read(path, as_version=4).cells, 1):
             if TO_BE_WRITTEN in str(cell.metadata):
                 yield f"{path}:1 (cell {position}): {TO_BE_WRITTEN} in the cell's metadata"

@@ -1,6 +1,8 @@
-"""Write down how the labels of the book's drawings are set, so that a page draws them without Matplotlib.
+"""Write down how the labels of the book's drawings are set, so that a page draws them without
+Matplotlib.
 
-Run it with ``python -m tools.labels`` when a drawing has a new label: it runs the notebooks that draw.
+Run it with ``python -m tools.labels`` when a drawing has a new label: it runs the notebooks that
+draw.
 """
 
 import json
@@ -24,9 +26,13 @@ TELL = "print(__import__('json').dumps(sorted(_texts)))"
 
 def texts_of(path):
     """The texts that the drawings of a notebook hold, found by running it."""
-    cells = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    cells = [
+        cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"
+    ]
     told = run_alone([RECORD, *cells, TELL], "everything")
-    return json.loads("".join(message["text"] for message in told[-1]["messages"] if message["type"] == "stream"))
+    return json.loads(
+        "".join(message["text"] for message in told[-1]["messages"] if message["type"] == "stream")
+    )
 
 
 def main():

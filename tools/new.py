@@ -1,6 +1,8 @@
-"""``python -m tools.new``: a new chapter or a new question, with every part that the book asks of one.
+"""``python -m tools.new``: a new chapter or a new question, with every part that the book asks of
+one.
 
-What an author has to say stands there as TO BE WRITTEN, and :mod:`tools.chapters` tells where it still does.
+What an author has to say stands there as TO BE WRITTEN, and :mod:`tools.chapters` tells where it
+still does.
 """
 
 import argparse
@@ -19,7 +21,9 @@ NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
 
 class Example(NamedTuple):
-    """An answer of one kind: its variable, the statements that make it, what it is, and what the author says of it."""
+    """An answer of one kind: its variable, the statements that make it, what it is, and what the
+    author says of it.
+    """
 
     variable: str
     code: str
@@ -39,12 +43,16 @@ EXAMPLES = {
     ),
     "direction cosine matrix": Example(
         "A_C_N",
-        "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])",
+        "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), "
+        "sm.cos(theta)]])",
         "the direction cosine matrix ${}^A\\mathbf{C}^N$, in the symbol `theta` (radians)",
         "frames=('A', 'N'), symbols='theta', turns=[('x', theta)]",
     ),
     "matrix": Example(
-        "shear", "shear = sm.Matrix([[1, theta], [0, 1]])", "a matrix in `theta`", "shape=(2, 2), symbols='theta'"
+        "shear",
+        "shear = sm.Matrix([[1, theta], [0, 1]])",
+        "a matrix in `theta`",
+        "shape=(2, 2), symbols='theta'",
     ),
     "quaternion": Example(
         "q",
@@ -53,14 +61,23 @@ EXAMPLES = {
         "symbols='theta', turns=[('x', theta)]",
     ),
     "Euler angles": Example(
-        "angles", "angles = [0.1, 0.2, 0.3]", "the three angles in radians, to four decimals", "sequence='zxy'"
+        "angles",
+        "angles = [0.1, 0.2, 0.3]",
+        "the three angles in radians, to four decimals",
+        "sequence='zxy'",
     ),
     "axis and angle": Example(
-        "turn", "turn = ([0, 0, 1], sm.pi/3)", "a pair of the unit vector's components and the angle in radians", ""
+        "turn",
+        "turn = ([0, 0, 1], sm.pi/3)",
+        "a pair of the unit vector's components and the angle in radians",
+        "",
     ),
     "sequence": Example("order", "order = 'zxy'", "the sequence as a text such as `'xyz'`", ""),
     "choice": Example(
-        "side", "side = 'left'", "one of `'left'`, `'right'`, `'neither'`", "options=['left', 'right', 'neither']"
+        "side",
+        "side = 'left'",
+        "one of `'left'`, `'right'`, `'neither'`",
+        "options=['left', 'right', 'neither']",
     ),
     "words": Example(
         "sides",
@@ -68,7 +85,9 @@ EXAMPLES = {
         "a list of two texts, each `'left'` or `'right'`",
         "length=2, options=['left', 'right']",
     ),
-    "measurement": Example("rate", "rate = (3.2, 'rad/s')", "the number and its unit, such as `(1.5, 'm/s')`", ""),
+    "measurement": Example(
+        "rate", "rate = (3.2, 'rad/s')", "the number and its unit, such as `(1.5, 'm/s')`", ""
+    ),
     "order": Example(
         "steps",
         "steps = ['first', 'then', 'last']",
@@ -81,7 +100,9 @@ EXAMPLES = {
         "one or two sentences, as a text",
         "rubric=['names the shared axis']",
     ),
-    "truth values": Example("holds", "holds = [True, False]", "a list of two truth values", "length=2"),
+    "truth values": Example(
+        "holds", "holds = [True, False]", "a list of two truth values", "length=2"
+    ),
     "function": Example(
         "doubled",
         "def doubled(number):\n    return 2*number",
@@ -108,7 +129,8 @@ def question_cells(name, kind):
         code(f"{symbols}### BEGIN SOLUTION\n{example.code}\n### END SOLUTION"),
         code(
             f"check('{name}', {example.variable})\n### BEGIN HIDDEN TESTS\n"
-            f"question('{name}', {arguments}, worth=2,\n         solution='{TO_BE_WRITTEN}: how one gets there.')\n"
+            f"question('{name}', {arguments}, worth=2,\n"
+            f"         solution='{TO_BE_WRITTEN}: how one gets there.')\n"
             "### END HIDDEN TESTS"
         ),
     ]
@@ -121,12 +143,15 @@ def asked(kind):
 def chapter_cells(name, title):
     figure = {
         "tags": ["hide-input"],
-        "mystnb": {"figure": {"name": f"figure-{name}", "caption": f"{TO_BE_WRITTEN}: what to see here."}},
+        "mystnb": {
+            "figure": {"name": f"figure-{name}", "caption": f"{TO_BE_WRITTEN}: what to see here."}
+        },
     }
     return [
         markdown(
             f"(chapter-{name})=\n# {title}",
-            ":::{admonition} Learning objectives\n:class: objectives\nAfter this chapter you can\n\n"
+            ":::{admonition} Learning objectives\n:class: objectives\nAfter this "
+            "chapter you can\n\n"
             f"- {TO_BE_WRITTEN}: what a reader can do, in a verb that can be checked.\n:::",
             f"{TO_BE_WRITTEN}: a question from practice, which the chapter answers.",
             f"## {TO_BE_WRITTEN}: the first idea",
@@ -135,17 +160,20 @@ def chapter_cells(name, title):
         code(
             "import numpy as np\n\nfrom orientation import simple_dcm\n"
             "from orientation_figures.drawing import Drawing\n\n"
-            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does not see it.')\n"
+            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does "
+            "not see it.')\n"
             "drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', np.radians(30)))",
             **figure,
         ),
         markdown(
             "## Exercises",
-            f"```{{exercise}} {TO_BE_WRITTEN}\n:label: exercise-{name}\n{TO_BE_WRITTEN}: the question. "
+            f"```{{exercise}} {TO_BE_WRITTEN}\n:label: exercise-{name}\n"
+            f"{TO_BE_WRITTEN}: the question. "
             f"{asked('expression')}\n```",
         ),
         code(
-            f"from coursework import check\n\n{EXAMPLES['expression'].variable} = ...  # your answer\n"
+            f"from coursework import check\n\n{EXAMPLES['expression'].variable} = ...  # your "
+            "answer\n"
             f"check('chapters/{name}', {EXAMPLES['expression'].variable})"
         ),
         markdown(
@@ -159,8 +187,13 @@ def chapter_cells(name, title):
 
 def exercise_cells(notebook, question, title, kind):
     """A question of a notebook of exercises, with its text; its number is the next one there."""
-    number = 1 + sum(cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells)
-    text = f"{TO_BE_WRITTEN}: the question, with the symbols, the frames and their order, the unit of each angle."
+    number = 1 + sum(
+        cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells
+    )
+    text = (
+        f"{TO_BE_WRITTEN}: the question, with the symbols, the frames and their order, the unit of "
+        "each angle."
+    )
     return [markdown(f"## {number}. {title}", text, asked(kind)), *question_cells(question, kind)]
 
 
@@ -175,7 +208,10 @@ def add_line(path, after, line):
     lines = path.read_text("utf8").splitlines()
     places = [number for number, text in enumerate(lines) if text.strip() == after]
     if len(places) != 1:
-        sys.exit(f"{path}:1: the line `{after}`, after which `{line}` belongs, stands there {len(places)} times")
+        sys.exit(
+            f"{path}:1: the line `{after}`, after which `{line}` belongs, stands there "
+            f"{len(places)} times"
+        )
     indent = lines[places[0]][: len(lines[places[0]]) - len(lines[places[0]].lstrip())]
     lines.insert(places[0] + 1, indent + line)
     path.write_text("\n".join(lines) + "\n", "utf8")
@@ -184,7 +220,10 @@ def add_line(path, after, line):
 def new_chapter(name, title, after):
     """Make a chapter and its exercises, and enter both wherever the book lists them."""
     if not re.fullmatch(NAME, name) or not title.strip():
-        sys.exit(f"A chapter has a NAME in small letters and hyphens and a TITLE; these are {name!r} and {title!r}.")
+        sys.exit(
+            f"A chapter has a NAME in small letters and hyphens and a TITLE; these are {name!r} "
+            f"and {title!r}."
+        )
     chapter, source = Path("chapters", f"{name}.ipynb"), source_of(name)
     for path in (chapter, source):
         if path.exists():
@@ -198,14 +237,20 @@ def new_chapter(name, title, after):
     add_line(INDEX, f"- {{doc}}`{after}`", f"- {{doc}}`{name}`")
     exercises = nbformat.v4.new_notebook(metadata=METADATA)
     exercises.cells = [
-        markdown(f"# Exercises: {title}", f"After the chapter *{title}*. {TO_BE_WRITTEN}: what holds for all of them."),
+        markdown(
+            f"# Exercises: {title}",
+            f"After the chapter *{title}*. {TO_BE_WRITTEN}: what holds for all of them.",
+        ),
         code("import sympy as sm\n\nfrom coursework import check"),
     ]
     exercises.cells += exercise_cells(exercises, f"{name}/first", TO_BE_WRITTEN, "expression")
     nbformat.write(normalise(exercises), source)
     new = nbformat.v4.new_notebook(cells=chapter_cells(name, title), metadata=METADATA)
     nbformat.write(normalise(new), chapter)
-    add_cells(CHAPTERS_SOURCE, [markdown(f"## {title}"), *question_cells(f"chapters/{name}", "expression")])
+    add_cells(
+        CHAPTERS_SOURCE,
+        [markdown(f"## {title}"), *question_cells(f"chapters/{name}", "expression")],
+    )
     add_cells(
         SOLUTIONS[-1],
         [
@@ -230,7 +275,10 @@ def new_question(name, title, kind):
     """Add a question to a notebook of exercises."""
     notebook, _, question = name.partition("/")
     if not re.fullmatch(f"{NAME}/{NAME}", name) or notebook == "chapters":
-        sys.exit(f"The NAME of a question is CHAPTER/QUESTION, in small letters and hyphens; this is {name!r}.")
+        sys.exit(
+            "The NAME of a question is CHAPTER/QUESTION, in small letters and hyphens; this is "
+            f"{name!r}."
+        )
     if kind not in EXAMPLES:
         sys.exit(f"There is no KIND of question {kind!r}; there are {', '.join(EXAMPLES)}.")
     source = source_of(notebook)
@@ -239,12 +287,16 @@ def new_question(name, title, kind):
     old = nbformat.read(source, as_version=4)
     if any(f"('{name}'" in cell.source or f'("{name}"' in cell.source for cell in old.cells):
         sys.exit(f"{source} has a question {name} already; nothing was changed.")
-    add_cells(source, exercise_cells(old, name, title or question.replace("-", " ").capitalize(), kind))
+    add_cells(
+        source, exercise_cells(old, name, title or question.replace("-", " ").capitalize(), kind)
+    )
     return [f"added to {source}: the question {name}, its answer and its check"]
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="python -m tools.new", description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(
+        prog="python -m tools.new", description=__doc__.partition("\n")[0]
+    )
     commands = parser.add_subparsers(required=True)
     chapter = commands.add_parser("chapter")
     chapter.add_argument("name")

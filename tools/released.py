@@ -1,4 +1,6 @@
-"""What the release of a notebook follows from, as short digests: runs here and in the Python of browsers."""
+"""What the release of a notebook follows from, as short digests: runs here and in the Python of
+browsers.
+"""
 
 import contextlib
 import io
@@ -10,20 +12,35 @@ from coursework.authoring.source import read_source
 
 
 def digests_of(path):
-    """What is sealed of a notebook with solutions, before the slow hash: a digest of each question in each variant."""
+    """What is sealed of a notebook with solutions, before the slow hash: a digest of each question
+    in each variant.
+    """
     with contextlib.redirect_stdout(io.StringIO()):
         first = read_source(path)
         found = {Path(path).stem: digest([figure.picture() for figure in first.figures.values()])}
         for number in range(max((rule.count for rule in first.rules.values()), default=1)):
             source = read_source(path, number) if number else first
-            found |= {f"{name}, variant {number}": digest(contents(one)) for name, one in source.questions.items()}
+            found |= {
+                f"{name}, variant {number}": digest(contents(one))
+                for name, one in source.questions.items()
+            }
     return found
 
 
 def contents(question):
     """All that the seal of a question follows from."""
-    known = {text: [answer.as_json() for answer in entry.answers] for text, entry in question.entries.items()}
-    return [question.public.as_json(), known, question.near, question.solution, question.after, question.ladder]
+    known = {
+        text: [answer.as_json() for answer in entry.answers]
+        for text, entry in question.entries.items()
+    }
+    return [
+        question.public.as_json(),
+        known,
+        question.near,
+        question.solution,
+        question.after,
+        question.ladder,
+    ]
 
 
 def digest(content):

@@ -1,4 +1,6 @@
-"""``python -m tools.rotations``: write down the scenes of the essay's stops, from the scripts that its page runs."""
+"""``python -m tools.rotations``: write down the scenes of the essay's stops, from the scripts that
+its page runs.
+"""
 
 import json
 import subprocess
@@ -13,7 +15,14 @@ FILE = rotations.FOLDER / "scenes.json"
 
 def written(*arguments):
     """What ``js/stills.js`` writes, as text."""
-    command = [NODE, ESBUILD, "--bundle", "--platform=node", "--log-level=error", rotations.FOLDER / "js" / "stills.js"]
+    command = [
+        NODE,
+        ESBUILD,
+        "--bundle",
+        "--platform=node",
+        "--log-level=error",
+        rotations.FOLDER / "js" / "stills.js",
+    ]
     script = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     run = [NODE, "-", *arguments]
     return subprocess.run(run, input=script, capture_output=True, text=True, check=True).stdout

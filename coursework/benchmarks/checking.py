@@ -1,9 +1,10 @@
 """What a wrong answer costs whoever checks it, in slow hashes: ``python -m benchmarks.checking``.
 
-To 62 questions of the course an answer is given that nobody knows: neither right, nor a mistake of the catalogue, so
-everything that is looked up for an answer is looked up. Times by the clock depend on the machine and on what else it
-does; the slow hash is measured between the answers, so that their ratio depends on it far less. It is said for what
-is released, and for the same without the lookup that knows a classmate's answer.
+To 62 questions of the course an answer is given that nobody knows: neither right, nor a mistake of
+the catalogue, so everything that is looked up for an answer is looked up. Times by the clock depend
+on the machine and on what else it does; the slow hash is measured between the answers, so that
+their ratio depends on it far less. It is said for what is released, and for the same without the
+lookup that knows a classmate's answer.
 """
 
 import contextlib
@@ -31,19 +32,24 @@ def main():
         alone = replace(question, others=None)
         hashed.append(least(lambda: sealing.slow_key("a salt of sixteen", "an answer")))
         for how, asked in zip(names, (question, alone), strict=True):
-            took[how].append(least(lambda name=name, asked=asked, plain=plain: judge(name, asked, plain)))
+            took[how].append(
+                least(lambda name=name, asked=asked, plain=plain: judge(name, asked, plain))
+            )
     slow = statistics.median(hashed)
     print(f"{len(tried)} wrong answers; a slow hash takes {1e3 * slow:.1f} ms.")
     for how, times in took.items():
         middle, most = statistics.median(times), max(times)
         print(
             f"{how}: median {1e3 * middle:.1f} ms, {middle / slow:.2f} slow hashes; "
-            f"most {1e3 * most:.1f} ms, {most / slow:.2f} slow hashes ({tried[times.index(most)][0]})."
+            f"most {1e3 * most:.1f} ms, {most / slow:.2f} slow hashes "
+            f"({tried[times.index(most)][0]})."
         )
 
 
 def wrong_answers(count):
-    """The name, the sealed question and a wrong answer, of so many questions; those with variants first."""
+    """The name, the sealed question and a wrong answer, of so many questions; those with variants
+    first.
+    """
     course, found = find_course(), []
     for path in notebooks_in(course.sources):
         with contextlib.redirect_stdout(io.StringIO()):
@@ -52,8 +58,13 @@ def wrong_answers(count):
             if question.public.exam or kinds()[question.public.kind].by_a_person:
                 continue
             for seed in range(9):
-                plain = question.to_plain(another_answer(question.public, question.answer, random.Random(seed)))
-                if question.reply_to(plain).outcome == "wrong" and not question.reply_to(plain).note:
+                plain = question.to_plain(
+                    another_answer(question.public, question.answer, random.Random(seed))
+                )
+                if (
+                    question.reply_to(plain).outcome == "wrong"
+                    and not question.reply_to(plain).note
+                ):
                     found.append((name not in source.rules, name, plain))
                     break
     for _, name, plain in sorted(found, key=lambda one: one[:2])[:count]:

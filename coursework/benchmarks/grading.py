@@ -1,11 +1,13 @@
-"""Grading a class: ours, nbgrader and plain nbclient on the same notebooks: ``python -m benchmarks.grading``.
+"""Grading a class: ours, nbgrader and plain nbclient on the same notebooks: ``python -m
+benchmarks.grading``.
 
-The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and attacks. The
-whole of it goes through ``coursework grade`` with two workers, from an empty folder to the report. The others are
-given the first honest notebooks of it, one after the other, as they work; nbclient runs the cells and grades
-nothing. What one notebook more costs is without the start. What each has to know of the assignment is made before, and
-said beside: nbgrader's own version of it, and the right answers of all variants of our questions. Processor times count
-all processes, and hardly depend on what else the machine does; times by the clock do.
+The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and
+attacks. The whole of it goes through ``coursework grade`` with two workers, from an empty folder to
+the report. The others are given the first honest notebooks of it, one after the other, as they
+work; nbclient runs the cells and grades nothing. What one notebook more costs is without the start.
+What each has to know of the assignment is made before, and said beside: nbgrader's own version of
+it, and the right answers of all variants of our questions. Processor times count all processes, and
+hardly depend on what else the machine does; times by the clock do.
 """
 
 import argparse
@@ -36,7 +38,9 @@ c.Exchange.enabled = False
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--students", type=int, default=200)
-    parser.add_argument("--sample", type=int, default=8, help="how many notebooks the others are given")
+    parser.add_argument(
+        "--sample", type=int, default=8, help="how many notebooks the others are given"
+    )
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
@@ -51,15 +55,22 @@ def main():
         ]
         honest = _only(good, submissions, place / "honest")
         prepared = of_questions(place)
-        start = of_grading(_only(good[: options.workers], submissions, place / "few"), place, options.workers)
+        start = of_grading(
+            _only(good[: options.workers], submissions, place / "few"), place, options.workers
+        )
         ours = of_grading(honest, place, options.workers)
         paths = [next((honest / student).glob("*.ipynb")) for student in good]
         alone = of_cells(paths)
-        sample = [next((honest / student).glob("*.ipynb")) for student in good if not about[student]["did"]][
-            : options.sample
-        ]
+        sample = [
+            next((honest / student).glob("*.ipynb"))
+            for student in good
+            if not about[student]["did"]
+        ][: options.sample]
         rows = (
-            ("coursework grade: all, with the attacks", *of_grading(submissions, place, options.workers)),
+            (
+                "coursework grade: all, with the attacks",
+                *of_grading(submissions, place, options.workers),
+            ),
             ("coursework grade: the honest ones", *ours),
             ("their cells alone, each in a copy of one warm process", *alone),
             ("nbclient, which grades nothing", *of_nbclient(sample)),
@@ -75,9 +86,12 @@ def main():
                 ("a Dask cluster of two workers, here", of_cluster),
             )
         }
-        print(f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n")
         print(
-            "| what | notebooks | by the clock | each | processor time each | times ours, by the clock | times "
+            f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n"
+        )
+        print(
+            "| what | notebooks | by the clock | each | processor time each | times ours, by the "
+            "clock | times "
             "ours, processor |"
         )
         print("|---|---|---|---|---|---|---|")
@@ -92,17 +106,24 @@ def main():
         for what, number in ("by the clock", 1), ("of processor time", 2):
             mine = (ours[number] - start[number]) / (ours[0] - start[0])
             other = (theirs[number] - first[number]) / (theirs[0] - 1)
-            all_theirs, all_ours = first[number] + 39 * other, start[number] + (40 - start[0]) * mine
+            all_theirs, all_ours = (
+                first[number] + 39 * other,
+                start[number] + (40 - start[0]) * mine,
+            )
             before = first[number + 2], prepared[number - 1]
             print(
-                f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one notebook more "
-                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {all_theirs / all_ours:.0f} times as long for 40 "
-                f"from a cold start; with what is made before ({before[0]:.1f} and {before[1]:.1f} s), "
+                f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one "
+                "notebook more "
+                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {all_theirs / all_ours:.0f} "
+                "times as long for 40 "
+                f"from a cold start; with what is made before ({before[0]:.1f} and "
+                f"{before[1]:.1f} s), "
                 f"{(all_theirs + before[0]) / (all_ours + before[1]):.0f} times."
             )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
         print(
-            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor time. Beyond it and "
+            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor "
+            "time. Beyond it and "
             "beyond the cells "
             f"a notebook costs {1000 * each:.0f} ms of processor time."
         )
@@ -111,7 +132,8 @@ def main():
             print(f"| {what} | {1000 * clock:.0f} ms | {1000 * processor:.0f} ms |")
         alone_clock, together, clustered = (clock for clock, _ in margins.values())
         print(
-            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the cluster costs "
+            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the "
+            "cluster costs "
             f"{1000 * (clustered - together):.0f} ms more for each notebook, by the clock."
         )
 
@@ -130,7 +152,9 @@ def _only(students, submissions, place):
 
 @contextlib.contextmanager
 def measured():
-    """The seconds by the clock and of processor time, of this process and all that it waited for."""
+    """The seconds by the clock and of processor time, of this process and all that it waited
+    for.
+    """
 
     def used():
         return sum(
@@ -146,7 +170,9 @@ def measured():
 def of_questions(place):
     """Work out the questions, which :func:`of_grading` is given: the seconds that it takes."""
     with measured() as seconds:
-        Course(assignments={ASSIGNMENT: list(NOTEBOOKS)}).questions([ASSIGNMENT], place / "questions")
+        Course(assignments={ASSIGNMENT: list(NOTEBOOKS)}).questions(
+            [ASSIGNMENT], place / "questions"
+        )
     return seconds
 
 
@@ -166,7 +192,9 @@ def of_grading(submissions, place, workers, scheduler=None):
 
 
 def of_cluster(submissions, place):
-    """Grading on a scheduler and two workers in processes of their own; their start and end count, too."""
+    """Grading on a scheduler and two workers in processes of their own; their start and end count,
+    too.
+    """
     folder = Path(tempfile.mkdtemp(dir=place))
     file = folder / "scheduler.json"
     options = ["--scheduler-file", str(file), "--host", "127.0.0.1", "--no-dashboard"]
@@ -187,10 +215,12 @@ def of_cluster(submissions, place):
 
 
 def of_cells(paths):
-    """Run the code of notebooks in copies of one process that has loaded everything, with a check that does nothing.
+    """Run the code of notebooks in copies of one process that has loaded everything, with a check
+    that does nothing.
 
-    Each copy is new, as caches that are warm from a neighbour's notebook would make the cells look cheaper than they
-    are. What is counted is the time between the first cell and the last; making the copies is not.
+    Each copy is new, as caches that are warm from a neighbour's notebook would make the cells look
+    cheaper than they are. What is counted is the time between the first cell and the last; making
+    the copies is not.
     """
     code = (
         "import contextlib, io, json, os, sys, time, types, warnings\n"
@@ -202,7 +232,8 @@ def of_cells(paths):
         '    names = {"__name__": "__main__"}\n'
         "    for cell in cells:\n"
         '        if cell["cell_type"] == "code":\n'
-        "            with contextlib.suppress(Exception), contextlib.redirect_stdout(io.StringIO()):\n"
+        "            with contextlib.suppress(Exception), "
+        "contextlib.redirect_stdout(io.StringIO()):\n"
         '                exec(compile("".join(cell["source"]), "cell", "exec"), names)\n'
         "total = [0, 0]\n"
         "for path in sys.argv[1:]:\n"
@@ -211,7 +242,8 @@ def of_cells(paths):
         "    if os.fork() == 0:\n"
         "        start = time.perf_counter(), time.process_time()\n"
         "        run(cells)\n"
-        '        os.write(writing, f"{time.perf_counter() - start[0]} {time.process_time() - start[1]}".encode())\n'
+        '        os.write(writing, f"{time.perf_counter() - start[0]} {time.process_time() - '
+        'start[1]}".encode())\n'
         "        os._exit(0)\n"
         "    total = [a + float(b) for a, b in zip(total, os.read(reading, 100).split())]\n"
         "    os.close(reading), os.close(writing), os.wait()\n"
@@ -233,12 +265,16 @@ def of_nbclient(paths):
 
     with measured() as seconds:
         for path in paths:
-            NotebookClient(nbformat.read(path, as_version=4), kernel_name="python3", allow_errors=True).execute()
+            NotebookClient(
+                nbformat.read(path, as_version=4), kernel_name="python3", allow_errors=True
+            ).execute()
     return len(paths), *seconds
 
 
 def of_nbgrader(paths, place):
-    """nbgrader's own commands: how many notebooks, the seconds of grading, and those of what is made before."""
+    """nbgrader's own commands: how many notebooks, the seconds of grading, and those of what is
+    made before.
+    """
     course = place / "course"
     name = paths[0].name
     for path in paths:
@@ -257,7 +293,11 @@ def of_nbgrader(paths, place):
 
     def run(*command):
         done = subprocess.run(
-            [sys.executable, "-m", "nbgrader", *command], cwd=course, env=environment, capture_output=True, text=True
+            [sys.executable, "-m", "nbgrader", *command],
+            cwd=course,
+            env=environment,
+            capture_output=True,
+            text=True,
         )
         if done.returncode:
             sys.exit(done.stderr[-3000:])

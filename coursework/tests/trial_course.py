@@ -26,7 +26,11 @@ def made_in(folder, sources=None, exercises=None, sealed=None):
 def write_source(folder, *cells, name="trial"):
     notebook = nbformat.v4.new_notebook()
     for number, (kind, text, *tags) in enumerate(cells):
-        cell = nbformat.v4.new_code_cell(text) if kind == "code" else nbformat.v4.new_markdown_cell(text)
+        cell = (
+            nbformat.v4.new_code_cell(text)
+            if kind == "code"
+            else nbformat.v4.new_markdown_cell(text)
+        )
         cell["id"] = f"cell-{number}"
         cell.metadata["tags"] = list(tags)
         notebook.cells.append(cell)
@@ -37,17 +41,20 @@ def write_source(folder, *cells, name="trial"):
 
 SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
 SOLUTION = (
-    "### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], "
+    "### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), "
+    "working], "
     "[0, -working, sm.cos(theta)]])\n### END SOLUTION"
 )
 HIDDEN = (
     "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='rotation matrix', frames=('A', 'N'), "
-    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
+    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, "
+    "which does not "
     "move.')\n"
     "### END HIDDEN TESTS"
 )
 FUNCTION = (
-    '### BEGIN SOLUTION\ndef doubled(number):\n    """Return twice the number."""\n    "a quoted remark"\n'
+    '### BEGIN SOLUTION\ndef doubled(number):\n    """Return twice the number."""\n'
+    '    "a quoted remark"\n'
     "    return 2*number\n### END SOLUTION"
 )
 HIDDEN_FUNCTION = (

@@ -1,8 +1,9 @@
-"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how files fail PDF/UA-1 (ISO 14289-1).
+"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how files fail
+PDF/UA-1 (ISO 14289-1).
 
-It reads the file with pikepdf alone, and shares nothing with what makes it. Each fault begins with the number of the
-condition. Left out are conditions on what the book has none of: forms, sound, scripts, layers, files within the file,
-encryption; and those that a person must judge.
+It reads the file with pikepdf alone, and shares nothing with what makes it. Each fault begins with
+the number of the condition. Left out are conditions on what the book has none of: forms, sound,
+scripts, layers, files within the file, encryption; and those that a person must judge.
 """
 
 import re
@@ -12,8 +13,10 @@ import pikepdf
 
 HEADINGS = {f"H{level}": level for level in range(1, 7)}
 STANDARD = set(HEADINGS) | set(
-    "Document Part Art Sect Div BlockQuote Caption TOC TOCI Index NonStruct Private P H L LI Lbl LBody Table TR TH TD "
-    "THead TBody TFoot Span Quote Note Reference BibEntry Code Link Annot Ruby RB RT RP Warichu WT WP Figure Formula "
+    "Document Part Art Sect Div BlockQuote Caption TOC TOCI Index NonStruct Private P H L LI Lbl "
+    "LBody Table TR TH TD "
+    "THead TBody TFoot Span Quote Note Reference BibEntry Code Link Annot Ruby RB RT RP Warichu WT "
+    "WP Figure Formula "
     "Form".split()
 )
 #: What may stand in what, for lists and tables.
@@ -25,7 +28,24 @@ INSIDE = {
     "L": {"LI", "L", "Caption"}, "LI": {"Lbl", "LBody"}, "Table": {"TR", "THead", "TBody", "TFoot", "Caption"},
     "TR": {"TH", "TD"},
 }  # fmt: skip
-PAINTS = {"f", "F", "f*", "S", "s", "B", "B*", "b", "b*", "Tj", "TJ", "'", '"', "sh", "BI", "INLINE IMAGE"}
+PAINTS = {
+    "f",
+    "F",
+    "f*",
+    "S",
+    "s",
+    "B",
+    "B*",
+    "b",
+    "b*",
+    "Tj",
+    "TJ",
+    "'",
+    '"',
+    "sh",
+    "BI",
+    "INLINE IMAGE",
+}
 
 
 def listed(value):
@@ -52,7 +72,10 @@ def of_metadata(pdf):
 
 def elements(pdf):
     """All elements in the order of reading, each with its standard type and its parent's."""
-    roles = {str(key)[1:]: str(value)[1:] for key, value in pdf.Root.StructTreeRoot.get("/RoleMap", {}).items()}
+    roles = {
+        str(key)[1:]: str(value)[1:]
+        for key, value in pdf.Root.StructTreeRoot.get("/RoleMap", {}).items()
+    }
     stack = [(node, "") for node in reversed(listed(pdf.Root.StructTreeRoot.K))]
     while stack:
         node, above = stack.pop()
@@ -60,7 +83,11 @@ def elements(pdf):
         kind = roles.get(kind, kind)
         yield node, kind, above
         inside = listed(node.K) if "/K" in node else []
-        stack += [(one, kind) for one in reversed(inside) if isinstance(one, pikepdf.Dictionary) and "/S" in one]
+        stack += [
+            (one, kind)
+            for one in reversed(inside)
+            if isinstance(one, pikepdf.Dictionary) and "/S" in one
+        ]
 
 
 def of_structure(pdf):
@@ -103,14 +130,18 @@ def of_structure(pdf):
 
 
 def marks(pdf, stream, where, used):
-    """Faults of one stream, and of the forms that it draws; the numbers of its marked pieces are added to ``used``."""
+    """Faults of one stream, and of the forms that it draws; the numbers of its marked pieces are
+    added to ``used``.
+    """
     stack, resources = [], stream.get("/Resources", {})
     for operands, operator in pikepdf.parse_content_stream(stream):
         operator = str(operator)
         if operator in ("BDC", "BMC"):
             kind = str(operands[0])
             number = (
-                operands[1].get("/MCID") if operator == "BDC" and isinstance(operands[1], pikepdf.Dictionary) else None
+                operands[1].get("/MCID")
+                if operator == "BDC" and isinstance(operands[1], pikepdf.Dictionary)
+                else None
             )
             inside = "artifact" in stack or "content" in stack
             if kind == "/Artifact":
@@ -138,7 +169,9 @@ def marks(pdf, stream, where, used):
 
 
 def pieces(pdf):
-    """How often each marked piece is named by the structure: by the page or form that holds it, and its number."""
+    """How often each marked piece is named by the structure: by the page or form that holds it, and
+    its number.
+    """
     found = Counter()
     for node, _, _ in elements(pdf):
         for one in listed(node.K) if "/K" in node else []:
@@ -163,7 +196,11 @@ def table_of_parents(pdf):
 def of_content(pdf):
     parents, named, held = table_of_parents(pdf), pieces(pdf), Counter()
     for number, page in enumerate(pdf.pages, start=1):
-        forms = [one for one in page.get("/Resources", {}).get("/XObject", {}).values() if "/StructParents" in one]
+        forms = [
+            one
+            for one in page.get("/Resources", {}).get("/XObject", {}).values()
+            if "/StructParents" in one
+        ]
         for holder, stream in [(page.obj, page), *((form, form) for form in forms)]:
             used = []
             yield from marks(pdf, stream, f"page {number}", used)
@@ -174,7 +211,10 @@ def of_content(pdf):
                     yield f"01-006 page {number}: a piece does not know its element"
     if held != named:
         lost, unknown = held - named, named - held
-        yield f"01-006 {lost.total()} pieces stand in no element or in two, {unknown.total()} elements name none"
+        yield (
+            f"01-006 {lost.total()} pieces stand in no element or in two, {unknown.total()} "
+            "elements name none"
+        )
 
 
 def of_annotations(pdf):
@@ -203,13 +243,18 @@ def of_fonts(pdf):
     fonts = {}
     for page in pdf.pages:
         resources = [page.get("/Resources", {})]
-        resources += [form.get("/Resources", {}) for form in resources[0].get("/XObject", {}).values()]
+        resources += [
+            form.get("/Resources", {}) for form in resources[0].get("/XObject", {}).values()
+        ]
         for one in resources:
             fonts |= {font.objgen: font for font in one.get("/Font", {}).values()}
     for font in fonts.values():
         inner = font.DescendantFonts[0] if "/DescendantFonts" in font else font
         name, described = font.get("/BaseFont", "drawn"), inner.get("/FontDescriptor", {})
-        if not {"/FontFile", "/FontFile2", "/FontFile3"} & set(described.keys()) and font.Subtype != "/Type3":
+        if (
+            not {"/FontFile", "/FontFile2", "/FontFile3"} & set(described.keys())
+            and font.Subtype != "/Type3"
+        ):
             yield f"31-009 the typeface {name} is not in the file"
         if "/ToUnicode" not in font:
             yield f"10-001 what the signs of {name} stand for is not said"

@@ -1,4 +1,6 @@
-"""What an error in a cell shows: the cell's own lines, and of the packages that it calls nothing but what they say."""
+"""What an error in a cell shows: the cell's own lines, and of the packages that it calls nothing
+but what they say.
+"""
 
 import sys
 import traceback

@@ -1,4 +1,6 @@
-"""What stands in for NumPy on a page: the same answers as the real one, written the same, or none at all."""
+"""What stands in for NumPy on a page: the same answers as the real one, written the same, or none
+at all.
+"""
 
 import importlib.util
 import random
@@ -94,7 +96,11 @@ def values(numpy):
 
 
 def told(value):
-    return [told(part) for part in value] if isinstance(value, (tuple, list)) else [repr(value), str(value)]
+    return (
+        [told(part) for part in value]
+        if isinstance(value, (tuple, list))
+        else [repr(value), str(value)]
+    )
 
 
 @pytest.mark.parametrize("line", SAME)
@@ -139,7 +145,9 @@ def test_what_it_does_not_do_asks_for_the_real_one(line):
     assert raised.value.name == "numpy"
 
 
-@pytest.mark.parametrize("line", ["v[3]", "A[0, 5]", "A[0, 0, 0]", "v + A[:, :2]", "A @ v[:2]", "bool(v)", "v.nothing"])
+@pytest.mark.parametrize(
+    "line", ["v[3]", "A[0, 5]", "A[0, 0, 0]", "v + A[:, :2]", "A @ v[:2]", "bool(v)", "v.nothing"]
+)
 def test_the_readers_own_mistakes_are_told_in_numpys_words(line):
     with pytest.raises(Exception) as expected:  # noqa: PT011 (each line has its own)
         eval(line, values(np))
@@ -178,7 +186,9 @@ def test_views_share_their_entries_and_copies_do_not(line):
 
 def test_normal_numbers_are_numpys_own():
     ours, theirs = STAND_IN.random.default_rng(42), np.random.default_rng(42)
-    drawn = [ours.normal(scale=0.5) for _ in range(30_000)]  # some from the tail, some from every layer
+    drawn = [
+        ours.normal(scale=0.5) for _ in range(30_000)
+    ]  # some from the tail, some from every layer
     assert drawn == [float(value) for value in theirs.normal(scale=0.5, size=30_000)]
     assert max(map(abs, drawn)) / 0.5 > 3.66, "none from the tail"
 
@@ -212,7 +222,9 @@ def test_factors_multiply_to_the_matrix():
         matrix = np.random.default_rng(seed).normal(size=(4, 3, 3))
         ours = STAND_IN.array(matrix.tolist())
         left, sizes, right = STAND_IN.linalg.svd(ours)
-        assert np.allclose(np.array((left * sizes[..., None, :] @ right).tolist()), matrix, atol=1e-14)
+        assert np.allclose(
+            np.array((left * sizes[..., None, :] @ right).tolist()), matrix, atol=1e-14
+        )
         assert np.allclose(np.array((left @ left.swapaxes(-1, -2)).tolist()), np.eye(3), atol=1e-14)
         assert np.allclose(sizes.tolist(), np.linalg.svd(matrix)[1], atol=1e-14)
         even, vectors = STAND_IN.linalg.eigh(ours @ ours.swapaxes(-1, -2))
@@ -224,7 +236,9 @@ def test_factors_multiply_to_the_matrix():
 
 
 def test_who_looks_for_numpy_finds_what_stands_in(monkeypatch):
-    """As a moving figure does, which then asks for Matplotlib too: without a word it would be an error of Python's."""
+    """As a moving figure does, which then asks for Matplotlib too: without a word it would be an
+    error of Python's.
+    """
     for part in (STAND_IN, *plain_numpy.PARTS.values()):
         monkeypatch.setitem(sys.modules, part.__name__, part)
         assert importlib.util.find_spec(part.__name__).name == part.__name__

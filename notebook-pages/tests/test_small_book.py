@@ -1,4 +1,6 @@
-"""A book of three pages, built in one command: all that a page has, and nothing of any other book."""
+"""A book of three pages, built in one command: all that a page has, and nothing of any other
+book.
+"""
 
 import json
 import os
@@ -25,7 +27,11 @@ def built(tmp_path_factory, take_compiled_wheels):
     take_compiled_wheels(book)
     environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(FETCHED), "NO_COLOR": "1"}
     done = subprocess.run(
-        [sys.executable, "-m", "notebook_pages.build"], cwd=book, env=environment, capture_output=True, text=True
+        [sys.executable, "-m", "notebook_pages.build"],
+        cwd=book,
+        env=environment,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return book / "_build" / "html"
@@ -38,7 +44,9 @@ def page(site, name):
 @pytest.mark.parametrize("name", PAGES)
 def test_a_page_comes_out_and_asks_nobody_else(built, name):
     found = page(built, name)
-    assert found.find("h1") and not found.select("script[src*='//'], link[rel=stylesheet][href*='//']")
+    assert found.find("h1") and not found.select(
+        "script[src*='//'], link[rel=stylesheet][href*='//']"
+    )
     assert "orientation" not in found.get_text().lower()
 
 
@@ -49,7 +57,9 @@ def test_mathematics_is_set_when_the_book_is_built(built):
 
 
 def test_cells_were_run_and_can_be_run_in_the_page(built):
-    assert "60" in [output.get_text().strip() for output in page(built, "levers").select(".cell_output")]
+    assert "60" in [
+        output.get_text().strip() for output in page(built, "levers").select(".cell_output")
+    ]
     lock = json.loads((built / "runtime" / "pyodide-lock.json").read_text("utf8"))
     assert lock["first"] == "sympy" and set(lock["packages"]["sympy"]["depends"]) == {"mpmath"}
     assert (built / lock["packages"]["sympy"]["file_name"]).exists() or (

@@ -11,7 +11,8 @@ SAID = {
     r"{}^T\mathbf{C}^B": "T bold C B",
     r"({}^A\mathbf{C}^N)^T": "open bracket A bold C N close bracket transpose",
     r"\mathbf{C}^T": "bold C transpose",
-    r"{}^B\mathbf{C}^T = {}^B\mathbf{C}^N\,{}^N\mathbf{C}^T": "B bold C T equals B bold C N N bold C T",
+    r"{}^B\mathbf{C}^T = {}^B\mathbf{C}^N\,{}^N\mathbf{C}^T": "B bold C T equals B bold C "
+    "N N bold C T",
     r"\mathbf{P}^{-1}": "bold P inverse",
     r"{}^A\boldsymbol{\omega}^N": "A bold omega N",
     r"\hat{n}_x\cdot\hat{a}_y": "n hat x dot a hat y",
@@ -34,7 +35,8 @@ SAID = {
     r"\sum_k w_k": "the sum over k of w sub k",
     r"\int_{0}^{t} f\,dt": "the integral from 0 to t of f d t",
     r"\lim_{h\to 0} h": "the limit as h goes to 0 of h",
-    r"\begin{bmatrix} 1 & 2 \\ 3 & 4 \end{bmatrix}": "2 by 2 matrix, row 1: 1, 2; row 2: 3, 4; end of matrix",
+    r"\begin{bmatrix} 1 & 2 \\ 3 & 4 \end{bmatrix}": "2 by 2 matrix, row 1: 1, 2; row 2: 3, 4; "
+    "end of matrix",
     r"\begin{bmatrix} x \\ y \end{bmatrix} .": "column of 2: x; y; end of column",
     r"\underbrace{{}^A\mathbf{C}^N}_{z,\ \theta}": "A bold C N, marked z, theta",
     r"a \approx b \nabla c": "a is about b nabla c",
@@ -71,5 +73,15 @@ def test_what_differs_is_said_differently():
         r"\sqrt{a + b}",
         r"\sqrt{a} + b",
     ]
-    different += [r"a^{b + c}", "a^b + c", r"a\cdot b", r"a\times b", "a b", "a + b", "a - b", "q^*", "q"]
+    different += [
+        r"a^{b + c}",
+        "a^b + c",
+        r"a\cdot b",
+        r"a\times b",
+        "a b",
+        "a + b",
+        "a - b",
+        "q^*",
+        "q",
+    ]
     assert len({words(tex) for tex in different}) == len(different)

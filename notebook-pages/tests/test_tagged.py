@@ -1,4 +1,5 @@
-"""What a screen reader is told of a PDF: a small one, printed and put in order as the book is, and each way to fail.
+"""What a screen reader is told of a PDF: a small one, printed and put in order as the book is, and
+each way to fail.
 
 The whole book's PDF is held against the same list in test_whole_book.py.
 """
@@ -21,7 +22,13 @@ DRAWING = (
 )
 ROW = "<tr><th scope='row'>n</th><td>1</td></tr>"
 # The book's own typeface, so that nothing hangs on those of the machine.
-FACE = NODE_MODULES / "@fontsource" / "source-sans-3" / "files" / "source-sans-3-latin-400-normal.woff2"
+FACE = (
+    NODE_MODULES
+    / "@fontsource"
+    / "source-sans-3"
+    / "files"
+    / "source-sans-3-latin-400-normal.woff2"
+)
 PAGE = f"""<!doctype html><html lang="en"><head><title>Small</title><style>
 @font-face {{ font-family: face; src: url(data:font/woff2;base64,{base64.b64encode(FACE.read_bytes()).decode()}) }}
 * {{ font-family: face; }}
@@ -82,7 +89,8 @@ def test_all_that_is_there_to_read_is_read_once_and_in_order(printed):
     with pikepdf.open(io.BytesIO(printed)) as raw:
         said = tagged.mend(raw, printed)
     begins = (
-        "One Words, some of them strong, and n hat x. A square with a word in it A caption. Two first second elsewhere"
+        "One Words, some of them strong, and n hat x. A square with a word in it A caption. Two "
+        "first second elsewhere"
     )
     whole = f"{begins} Words in a box, and code. name value {'n 1 ' * 40} Back to the second part."
     assert "".join(said.split()) == "".join(whole.split())
@@ -90,7 +98,8 @@ def test_all_that_is_there_to_read_is_read_once_and_in_order(printed):
 
 def test_a_picture_says_where_it_stands(book):
     left, bottom, right, top = map(float, find(book, "Figure").A.BBox)
-    # The square is 60 pixels wide, 45 points; its corner is 9 pixels from that of the drawing, which is indented.
+    # The square is 60 pixels wide, 45 points; its corner is 9 pixels from that of the drawing,
+    # which is indented.
     assert (right - left, top - bottom) == pytest.approx((45, 45), abs=0.5)
     assert 37.5 < left < 200 and 37.5 < bottom < 262
 
@@ -128,7 +137,9 @@ def notes(book):
 
 
 def forget_piece(book):
-    node = next(node for node, kind, _ in elements(book) if kind == "P" and isinstance(node.K[0], int))
+    node = next(
+        node for node, kind, _ in elements(book) if kind == "P" and isinstance(node.K[0], int)
+    )
     node.K = pikepdf.Array(list(node.K)[1:])
 
 
@@ -138,7 +149,8 @@ def fonts(book):
 
 FAILURES = {
     "01-003": lambda book: change_content(book, b"BDC\n", b"BDC\n/Artifact BMC\nEMC\n"),
-    "01-004": lambda book: change_content(book, b"/Artifact BMC\n", b"/Artifact BMC\n/P <</MCID 0>> BDC\nEMC\n"),
+    "01-004": lambda book: change_content(book, b"/Artifact BMC\n", b"/Artifact BMC\n/P <</MCID "
+        b"0>> BDC\nEMC\n"),
     "01-005": lambda book: change_content(book, b"/Artifact BMC\n", b"/Span BMC\n"),
     "01-006": forget_piece,
     "02-001": lambda book: without(book.Root.StructTreeRoot.RoleMap, "/Em"),

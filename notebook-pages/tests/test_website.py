@@ -98,17 +98,22 @@ anything else
 
 
 def build(folder, chapters, **changed):
-    """Build a book of ``chapters``, cells by file name, with a small book's settings but for some that are ``changed``.
+    """Build a book of ``chapters``, cells by file name, with a small book's settings but for some
+    that are ``changed``.
 
     Returns the exit code and the words.
     """
-    settings = yaml.safe_load((Path(__file__).with_name("small-book") / "_config.yml").read_text("utf8"))
+    settings = yaml.safe_load(
+        (Path(__file__).with_name("small-book") / "_config.yml").read_text("utf8")
+    )
     settings["sphinx"]["config"] |= changed
     (folder / "_config.yml").write_text(json.dumps(settings))
     contents = {
         "format": "jb-book",
         "root": "index",
-        "parts": [{"caption": "Part", "numbered": True, "chapters": [{"file": name} for name in chapters]}],
+        "parts": [
+            {"caption": "Part", "numbered": True, "chapters": [{"file": name} for name in chapters]}
+        ],
     }
     (folder / "_toc.yml").write_text(json.dumps(contents))
     (folder / "index.md").write_text("# Front\n\nWords.\n")
@@ -167,7 +172,10 @@ def test_good_book(tmp_path):
 
 FAULTS = {
     "a cell fails": (chapter(code="1 / 0"), "ZeroDivisionError"),
-    "a cell warns": (chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE), "stderr"),
+    "a cell warns": (
+        chapter(code="import warnings\nwarnings.warn('old')\n" + GOOD_FIGURE),
+        "stderr",
+    ),
     "a figure is not there": (chapter(GOOD_TEXT + "\nSee {numref}`fig-nowhere`.\n"), "fig-nowhere"),
     "an equation is not there": (chapter(GOOD_TEXT + "\nSee {eq}`eq-nowhere`.\n"), "eq-nowhere"),
     "a section is not there": (chapter(GOOD_TEXT + "\nSee {ref}`nowhere`.\n"), "nowhere"),
@@ -177,17 +185,46 @@ FAULTS = {
         chapter(GOOD_TEXT.replace("Quoted", r"Bad $\frac{a$ here")),
         "inline-tex-is-wrong.ipynb:26 (cell 1): WARNING: bad TeX",
     ),
-    "TeX is unknown": (chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")), "Undefined control sequence"),
+    "TeX is unknown": (
+        chapter(GOOD_TEXT.replace("a = b", r"a = \nosuch b")),
+        "Undefined control sequence",
+    ),
     "a figure says nothing": (chapter(code=FIGURE.format("")), "no alternative text"),
-    "a figure says too little": (chapter(code=FIGURE.format('role="img" aria-label="figure"')), "found 'figure'"),
+    "a figure says too little": (
+        chapter(code=FIGURE.format('role="img" aria-label="figure"')),
+        "found 'figure'",
+    ),
     "a plot says nothing": (chapter(code=PLOT), "no alternative text"),
-    "no choice is right": (chapter(GOOD_TEXT.replace(":answer: B", ":answer: C")), "the right answer is C"),
-    "a question has no replies": (chapter(GOOD_TEXT.replace("\n: ", "\n")), "must end in its choices"),
-    "a question has no label": (chapter(GOOD_TEXT.replace(":label: predict-one\n", "")), "needs a `:label:`"),
-    "a number has no other": (chapter(GOOD_TEXT.replace("anything else", "0.7")), "to `anything else`"),
-    "an exercise is too hard": (chapter(GOOD_TEXT.replace("difficulty: 2", "difficulty: 4")), "from 1 to 3"),
+    "no choice is right": (
+        chapter(GOOD_TEXT.replace(":answer: B", ":answer: C")),
+        "the right answer is C",
+    ),
+    "a question has no replies": (
+        chapter(GOOD_TEXT.replace("\n: ", "\n")),
+        "must end in its choices",
+    ),
+    "a question has no label": (
+        chapter(GOOD_TEXT.replace(":label: predict-one\n", "")),
+        "needs a `:label:`",
+    ),
+    "a number has no other": (
+        chapter(GOOD_TEXT.replace("anything else", "0.7")),
+        "to `anything else`",
+    ),
+    "an exercise is too hard": (
+        chapter(GOOD_TEXT.replace("difficulty: 2", "difficulty: 4")),
+        "from 1 to 3",
+    ),
 }
-LABELS = ("chapter-one", "eq-first", "eq-second", "exercise-one", "fig-line", "predict-one", "question-one")
+LABELS = (
+    "chapter-one",
+    "eq-first",
+    "eq-second",
+    "exercise-one",
+    "fig-line",
+    "predict-one",
+    "question-one",
+)
 
 
 def file_name(fault):
@@ -204,27 +241,37 @@ def own_labels(cells, name):
 
 @pytest.fixture(scope="module")
 def faulty_book(tmp_path_factory, take_compiled_wheels):
-    """One book with a chapter for each fault: the exit code, and the warnings, each with its lines."""
+    """One book with a chapter for each fault: the exit code, and the warnings, each with its
+    lines.
+    """
     names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
     chapters = {name: own_labels(cells, name) for name, cells in names.items()}
     folder = tmp_path_factory.mktemp("faulty")
     take_compiled_wheels(folder)
     code, words = build(folder, chapters | {"good": own_labels(chapter(), "good")})
-    return code, re.split(r"^(?=\S+?\.(?:ipynb|md)\S*(?: \(cell \d+\))?: )", words, flags=re.MULTILINE)
+    return code, re.split(
+        r"^(?=\S+?\.(?:ipynb|md)\S*(?: \(cell \d+\))?: )", words, flags=re.MULTILINE
+    )
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_faulty_book(faulty_book, fault):
     code, warnings = faulty_book
     assert code != 0
-    own = [warning for warning in warnings if f"/{file_name(fault)}.ipynb" in warning.partition(": ")[0]]
+    own = [
+        warning
+        for warning in warnings
+        if f"/{file_name(fault)}.ipynb" in warning.partition(": ")[0]
+    ]
     assert own, warnings
     assert all("WARNING" in warning or "ERROR" in warning for warning in own), own
     assert any(FAULTS[fault][1] in warning.replace("\n", " ") for warning in own), own
 
 
 def test_nothing_is_said_of_a_good_chapter_among_faulty_ones(faulty_book):
-    assert [warning for warning in faulty_book[1] if "/good.ipynb" in warning.partition(": ")[0]] == []
+    assert [
+        warning for warning in faulty_book[1] if "/good.ipynb" in warning.partition(": ")[0]
+    ] == []
 
 
 def test_alternative_text_needs_words():
@@ -268,7 +315,9 @@ def test_python_for_browsers_finds_itself_in_any_folder(tmp_path):
     """Left to itself it reads the trace of an error, and takes brackets for the place of a line."""
     folder = tmp_path / "book (2)"
     shutil.copytree(NODE_MODULES / "pyodide", folder / "pyodide")
-    (folder / "program.py").write_text("import sys; open('/wheels/made', 'w').write(sys.platform)", "utf8")
+    (folder / "program.py").write_text(
+        "import sys; open('/wheels/made', 'w').write(sys.platform)", "utf8"
+    )
     command = [
         NODE,
         WEBSITE / "live" / "compile.mjs",
@@ -308,11 +357,22 @@ def test_what_has_not_changed_is_not_built_again(tmp_path, monkeypatch):
     assert not unchanged.is_unchanged()
     unchanged.note()
     assert unchanged.is_unchanged()
-    for name in ("tests/test_a.py", "_build/jupyter_cache/one", ".git/index", "src/orientation/__pycache__/a.pyc"):
+    for name in (
+        "tests/test_a.py",
+        "_build/jupyter_cache/one",
+        ".git/index",
+        "src/orientation/__pycache__/a.pyc",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("another", "utf8")
         assert unchanged.is_unchanged(), name
-    for name in ("chapters/one.md", "chapters/two.md", "src/orientation/a.py", ".venv/ready-book", "references.bib"):
+    for name in (
+        "chapters/one.md",
+        "chapters/two.md",
+        "src/orientation/a.py",
+        ".venv/ready-book",
+        "references.bib",
+    ):
         (tmp_path / name).write_text("another", "utf8")
         assert not unchanged.is_unchanged(), name
         unchanged.note()

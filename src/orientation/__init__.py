@@ -1,7 +1,8 @@
 """Orientation of reference frames, for symbols, numbers and batches.
 
-Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vectors as rows, angles are
-in radians, quaternions have their scalar part first, and sequences are body fixed and lower case.
+Direction cosine matrices :math:`{}^A\\mathbf{C}^N` have :math:`A`'s unit vectors as rows, angles
+are in radians, quaternions have their scalar part first, and sequences are body fixed and lower
+case.
 """
 
 from .angular_velocity import (
@@ -30,7 +31,12 @@ from .integration import dcms_after_turns, turns_from_angular_velocity
 from .metrics import angle_between, mean_orientation, random_orientations
 from .numbers_and_symbols import SymbolsNotPossible
 from .observations import dcm_from_directions, dcm_from_two_directions, directions_covariance
-from .quaternions import dcm_from_quaternion, interpolate_quaternions, multiply_quaternions, quaternion_from_dcm
+from .quaternions import (
+    dcm_from_quaternion,
+    interpolate_quaternions,
+    multiply_quaternions,
+    quaternion_from_dcm,
+)
 from .rodrigues_parameters import (
     dcm_from_modified_rodrigues,
     dcm_from_rodrigues,

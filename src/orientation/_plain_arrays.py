@@ -1,8 +1,9 @@
-"""What stands for an array of numbers where there is no NumPy, as in a browser that has not fetched it.
+"""What stands for an array of numbers where there is no NumPy, as in a browser that has not fetched
+it.
 
-It holds one vector or one matrix and does what one does with an orientation by hand: entries, rows, sums,
-multiples, products, rounding, and showing, all with NumPy's results. Whatever else it is asked for, it asks
-NumPy, so that the error where that is not here names it.
+It holds one vector or one matrix and does what one does with an orientation by hand: entries, rows,
+sums, multiples, products, rounding, and showing, all with NumPy's results. Whatever else it is
+asked for, it asks NumPy, so that the error where that is not here names it.
 """
 
 from __future__ import annotations
@@ -72,7 +73,9 @@ class PlainArray:
         if len(shape) == 1:
             return cls(list(entries))
         width = shape[1]
-        return cls([list(entries[start : start + width]) for start in range(0, len(entries), width)])
+        return cls(
+            [list(entries[start : start + width]) for start in range(0, len(entries), width)]
+        )
 
     def __getattr__(self, name: str) -> object:
         _leave_out(name)
@@ -93,7 +96,9 @@ class PlainArray:
     def T(self) -> PlainArray:
         if self.ndim == 1:
             return self
-        return PlainArray([[_at(row, place) for row in self.rows] for place in range(self.shape[1])])
+        return PlainArray(
+            [[_at(row, place) for row in self.rows] for place in range(self.shape[1])]
+        )
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -102,7 +107,11 @@ class PlainArray:
         return iter(map(_wrapped, self.rows))
 
     def __getitem__(self, place: Place | tuple[Place, ...]) -> object:
-        places = [part for part in (place if isinstance(place, tuple) else (place,)) if part is not Ellipsis]
+        places = [
+            part
+            for part in (place if isinstance(place, tuple) else (place,))
+            if part is not Ellipsis
+        ]
         known = [part for part in places if isinstance(part, (int, slice))]
         to_the_last = isinstance(place, tuple) and place[0] is Ellipsis and len(places) < self.ndim
         if to_the_last or not known or len(known) < len(places):
@@ -116,13 +125,17 @@ class PlainArray:
         return _wrapped(rows)
 
     def _with(self, other: object, work: Operation, swapped: bool) -> object:
-        """``work`` on the entries of both; a number, or a row for each row, stands for as many as there are."""
+        """``work`` on the entries of both; a number, or a row for each row, stands for as many as
+        there are.
+        """
 
         def on_numbers(one: float, two: float) -> float:
             return work(two, one) if swapped else work(one, two)
 
         if isinstance(other, (int, float)):
-            return PlainArray([_each(row, lambda entry: on_numbers(entry, other)) for row in self.rows])
+            return PlainArray(
+                [_each(row, lambda entry: on_numbers(entry, other)) for row in self.rows]
+            )
         rows = other.rows if isinstance(other, PlainArray) else other
         if not isinstance(rows, (list, tuple)):
             return NotImplemented
@@ -139,8 +152,12 @@ class PlainArray:
         if self.shape[-1] != len(rows):
             return self._array() @ rows
         columns = list(zip(*rows)) if len(_shape(rows)) == 2 else [rows]
-        left = [row for row in self.rows if isinstance(row, list)] if self.ndim == 2 else [self.rows]
-        product: list[Nested] = [[sum(map(operator.mul, row, column)) for column in columns] for row in left]
+        left = (
+            [row for row in self.rows if isinstance(row, list)] if self.ndim == 2 else [self.rows]
+        )
+        product: list[Nested] = [
+            [sum(map(operator.mul, row, column)) for column in columns] for row in left
+        ]
         if len(_shape(rows)) == 1:
             product = [_at(row, 0) for row in product]
         return _wrapped(product if self.ndim == 2 else product[0])
@@ -175,12 +192,18 @@ class PlainArray:
         if sizes and (max(sizes) >= 1e8 or min(sizes) < 1e-4 or max(sizes) / min(sizes) > 1000):
             return str(self._array()) if between == " " else repr(self._array())[6:-1]
         parts = [f"{entry:.8f}".rstrip("0").partition(".") for entry in entries]
-        before, after = max(len(whole) for whole, _, _ in parts), max(len(rest) for _, _, rest in parts)
+        before, after = (
+            max(len(whole) for whole, _, _ in parts),
+            max(len(rest) for _, _, rest in parts),
+        )
         texts = [f"{whole:>{before}}.{rest:<{after}}" for whole, _, rest in parts]
         if self.ndim == 1:
             return f"[{between.join(texts)}]"
         width = self.shape[1]
-        lines = [f"[{between.join(texts[start : start + width])}]" for start in range(0, len(texts), width)]
+        lines = [
+            f"[{between.join(texts[start : start + width])}]"
+            for start in range(0, len(texts), width)
+        ]
         return f"[{(between.strip() + chr(10) + ' ' * indent).join(lines)}]"
 
 

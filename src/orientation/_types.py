@@ -1,7 +1,8 @@
 """What functions take and give, for readers' editors and type checkers.
 
-SymPy has no types of its own. What it makes is told here, as in the functions themselves, by what its objects have and
-no others: free symbols. Annotations are not evaluated, so neither SymPy nor NumPy is loaded for the sake of a name.
+SymPy has no types of its own. What it makes is told here, as in the functions themselves, by what
+its objects have and no others: free symbols. Annotations are not evaluated, so neither SymPy nor
+NumPy is loaded for the sake of a name.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    #: What comes out for numbers, and what for symbols; where the question has one number for an answer, the second
-    #: two: one of them, or those of a batch.
+    #: What comes out for numbers, and what for symbols; where the question has one number for an
+    #: answer, the second two: one of them, or those of a batch.
     Array: TypeAlias = NDArray[numpy.float64]
     Matrix: TypeAlias = sympy.MutableDenseMatrix
     Scalars: TypeAlias = float | Array
@@ -69,10 +70,12 @@ Entry: TypeAlias = "float | Expression"
 Column: TypeAlias = "Entry | Array"
 #: Symbols, one or several, with numbers among them.
 Symbols: TypeAlias = "Symbolic | Sequence[Symbolic] | Sequence[Sequence[Symbolic]]"
-Values: TypeAlias = "Array | Numbers | Symbols | Sequence[Symbolic | float] | Sequence[Sequence[Symbolic | float]]"
+Values: TypeAlias = (
+    "Array | Numbers | Symbols | Sequence[Symbolic | float] | Sequence[Sequence[Symbolic | float]]"
+)
 
-#: What a formula computes with. A type checker reads each formula three times: for a number, for a batch, for symbols;
-#: twice, if it is for numbers only, since it chooses its branch by their sizes.
+#: What a formula computes with. A type checker reads each formula three times: for a number, for a
+#: batch, for symbols; twice, if it is for numbers only, since it chooses its branch by their sizes.
 Component = TypeVar("Component", float, "Array", Expression)
 Number = TypeVar("Number", float, "Array")
 
@@ -83,7 +86,9 @@ class Functions(Protocol[Component]):
     def sin(self, angle: Component, /) -> Component: ...
     def cos(self, angle: Component, /) -> Component: ...
     def norm(self, *components: Component | float) -> Component: ...
-    def where(self, condition: Truth, yes: Component | float, no: Component | float, /) -> Component: ...
+    def where(
+        self, condition: Truth, yes: Component | float, no: Component | float, /
+    ) -> Component: ...
 
 
 class NumberFunctions(Functions[Number], Protocol[Number]):
@@ -91,7 +96,9 @@ class NumberFunctions(Functions[Number], Protocol[Number]):
 
     def atan2(self, sine: Number, cosine: Number, /) -> Number: ...
     def largest(self, *sizes: Number) -> Number: ...
-    def pick(self, scores: Sequence[Number], rows: Sequence[Sequence[Number]], /) -> Sequence[Number]: ...
+    def pick(
+        self, scores: Sequence[Number], rows: Sequence[Sequence[Number]], /
+    ) -> Sequence[Number]: ...
 
 
 #: As many components as the shapes say that stand beside a formula: no type can count them.
@@ -101,13 +108,17 @@ Components: TypeAlias = Any  # type: ignore[explicit-any]
 class Formula(Protocol):
     """``formula(functions, *components)`` returns the components of the result."""
 
-    def __call__(self, f: Functions[Component], /, *components: Components) -> Sequence[Component | float]: ...
+    def __call__(
+        self, f: Functions[Component], /, *components: Components
+    ) -> Sequence[Component | float]: ...
 
 
 class NumberFormula(Protocol):
     """The same, of numbers."""
 
-    def __call__(self, f: NumberFunctions[Number], /, *components: Components) -> Sequence[Number | float]: ...
+    def __call__(
+        self, f: NumberFunctions[Number], /, *components: Components
+    ) -> Sequence[Number | float]: ...
 
 
 class Excess(Protocol):

@@ -1,7 +1,8 @@
 """Orientation in motion: how the angular velocity changes each description.
 
-The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is given by its components
-along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians per second.
+The angular velocity :math:`\\boldsymbol{\\omega}` of :math:`A` in :math:`N` is given by its
+components along :math:`A`, as a gyroscope that is carried by :math:`A` measures them, in radians
+per second.
 """
 
 from __future__ import annotations
@@ -14,7 +15,17 @@ from .euler_angles import layout_of
 from .numbers_and_symbols import Guard, evaluate
 
 if TYPE_CHECKING:
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Symbols,
+        Values,
+    )
 
 
 @overload
@@ -28,11 +39,12 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Array | Matrix:
 
     .. math::
 
-       \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi \end{bmatrix}^T
+       \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi
+       \end{bmatrix}^T
 
-    Its columns are the unit vectors that the three turns are about, along the frame :math:`D` that the
-    last turn leads to. At gimbal lock the first and the last column are parallel, the determinant is
-    zero, and angular velocities in one direction cannot be had from any rates.
+    Its columns are the unit vectors that the three turns are about, along the frame :math:`D` that
+    the last turn leads to. At gimbal lock the first and the last column are parallel, the
+    determinant is zero, and angular velocities in one direction cannot be had from any rates.
 
     Parameters
     ----------
@@ -68,7 +80,9 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Array | Matrix:
     i, j, k, sign = layout_of(sequence)
     last = AXES.index(sequence[2])
 
-    def formula(f: Functions[Component], psi: Component, theta: Component, phi: Component) -> list[Component | float]:
+    def formula(
+        f: Functions[Component], psi: Component, theta: Component, phi: Component
+    ) -> list[Component | float]:
         s2, c2, s3, c3 = sign * f.sin(theta), f.cos(theta), sign * f.sin(phi), f.cos(phi)
         entries: list[Component | float] = [0] * 9
         entries[3 * last + 2] = 1
@@ -92,20 +106,21 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     r"""Angular velocity of a direction cosine matrix that changes.
 
-    This is how the angular velocity is defined: :math:`\dot{\mathbf{C}}\mathbf{C}^T` is skew, because
-    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and
+    This is how the angular velocity is defined: :math:`\dot{\mathbf{C}}\mathbf{C}^T` is skew,
+    because :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and
 
     .. math::
 
-       [\boldsymbol{\omega}]_\times = -\,\frac{d\,{}^A\mathbf{C}^N}{dt}\left({}^A\mathbf{C}^N\right)^T .
+       [\boldsymbol{\omega}]_\times =
+       -\,\frac{d\,{}^A\mathbf{C}^N}{dt}\left({}^A\mathbf{C}^N\right)^T .
 
     Parameters
     ----------
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
         :math:`{}^A\mathbf{C}^N`.
     rate : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        Its time derivative, per second. If numbers of both are measured, the product is not quite skew, and
-        its skew part is taken.
+        Its time derivative, per second. If numbers of both are measured, the product is not quite
+        skew, and its skew part is taken.
 
     Returns
     -------
@@ -132,7 +147,10 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     """
 
     def formula(f: Functions[Component], *entries: Component) -> Sequence[Component]:
-        rows, rates = [entries[k : k + 3] for k in (0, 3, 6)], [entries[k : k + 3] for k in (9, 12, 15)]
+        rows, rates = (
+            [entries[k : k + 3] for k in (0, 3, 6)],
+            [entries[k : k + 3] for k in (9, 12, 15)],
+        )
 
         def product(i: int, j: int) -> Component:
             (a, b, c), (x, y, z) = rates[i], rows[j]
@@ -206,7 +224,9 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Array | Matrix:
             y * xz - x * yz,
         )
 
-    return evaluate(formula, (3, 3), ("dcm", dcm, (3, 3)), ("angular_velocity", angular_velocity, (3,)))
+    return evaluate(
+        formula, (3, 3), ("dcm", dcm, (3, 3)), ("angular_velocity", angular_velocity, (3,))
+    )
 
 
 @overload
@@ -262,7 +282,12 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Array | Mat
             (a * z + b * y - c * x) / 2,
         )
 
-    return evaluate(formula, (4,), ("quaternion", quaternion, (4,)), ("angular_velocity", angular_velocity, (3,)))
+    return evaluate(
+        formula,
+        (4,),
+        ("quaternion", quaternion, (4,)),
+        ("angular_velocity", angular_velocity, (3,)),
+    )
 
 
 @overload
@@ -318,7 +343,8 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, a whole turn: there the rate of a rotation vector is not "
+            f"vector{where} is {components}, a whole turn: there the rate of a rotation "
+            "vector is not "
             f"defined. Keep it below half a turn, by taking a whole turn off, or use a quaternion"
         )
 
@@ -335,7 +361,8 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
         half = length / 2
-        # The digits that the difference loses at small angles are multiplied by squares of small numbers.
+        # The digits that the difference loses at small angles are multiplied by squares of small
+        # numbers.
         factor = f.where(turning, (1 - half * f.cos(half) / f.sin(half)) / length / length, 0.0)
         a, b, c = y * r - z * q, z * p - x * r, x * q - y * p
         return (

@@ -10,15 +10,26 @@ from .numbers_and_symbols import Guard, evaluate, evaluate_numbers
 from .quaternions import quaternion_components_from_dcm
 
 if TYPE_CHECKING:
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Scalars, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Scalars,
+        Symbols,
+        Values,
+    )
 
 #: Shortest axis whose direction can be computed; the longest is its inverse.
 SHORTEST = 1e-150
 
 
 def _length_missing(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
-    # 1, which is more than the tolerance, where no direction can be computed: beyond these limits the square of the
-    # length is no longer a number with all its digits.
+    # 1, which is more than the tolerance, where no direction can be computed: beyond these limits
+    # the square of the length is no longer a number with all its digits.
     square = x * x + y * y + z * z
     return f.where((square <= SHORTEST**2) | (square >= SHORTEST**-2), 1, 0)
 
@@ -83,7 +94,9 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     Source: the formula of Rodrigues (1840), transposed to act on components.
     In the book: :eq:`equation-axis-angle`.
     """
-    return evaluate(axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD)
+    return evaluate(
+        axis_angle_formula, (3, 3), ("axis", axis, (3,)), ("angle", angle, ()), guard=AXIS_GUARD
+    )
 
 
 def axis_angle_formula(

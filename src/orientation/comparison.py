@@ -1,8 +1,8 @@
 """Deciding whether two orientations are the same, and naming the mix-up when they are not.
 
 Everything is decided by numbers, at random values of the symbols: an algebraic simplification can
-take seconds, or not come back at all. Like the conversions, this works on components, so symbols need
-no NumPy.
+take seconds, or not come back at all. Like the conversions, this works on components, so symbols
+need no NumPy.
 """
 
 from __future__ import annotations
@@ -16,7 +16,15 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard
 from .direction_cosines import demand_dcm
 from .euler_angles import SEQUENCES, body_fixed_formula
 from .mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
-from .numbers_and_symbols import NUMBERS, TOLERANCE, WrongShape, is_symbolic, number_array, one_item, symbol_components
+from .numbers_and_symbols import (
+    NUMBERS,
+    TOLERANCE,
+    WrongShape,
+    is_symbolic,
+    number_array,
+    one_item,
+    symbol_components,
+)
 from .quaternions import demand_unit_length, product_components
 from .random_points import Names, Point, at_random_points, points_for, put_in, unknowns
 
@@ -34,7 +42,9 @@ Match: TypeAlias = Callable[[Sequence[complex], Sequence[complex]], bool]
 
 
 def _read(value: Values, name: str) -> Sequence[Column]:
-    """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a batch."""
+    """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a
+    batch.
+    """
     if not is_symbolic(value):
         for item in ((3, 3), (4,)):
             if entries := one_item(value, item, name):
@@ -48,7 +58,10 @@ def _read(value: Values, name: str) -> Sequence[Column]:
             continue
         flat = array.reshape(*array.shape[: array.ndim - len(item)], math.prod(item))
         return [flat[..., k] for k in range(math.prod(item))]
-    raise ValueError(f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape (4,)")
+    raise ValueError(
+        f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, "
+        "of shape (4,)"
+    )
 
 
 def _read_both(
@@ -58,7 +71,8 @@ def _read_both(
     if len(one) != len(other):
         kinds = {9: "a direction cosine matrix", 4: "a quaternion"}
         raise ValueError(
-            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}: convert one of them"
+            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}: "
+            "convert one of them"
         )
     return one, other
 
@@ -67,7 +81,9 @@ def _is_one(entries: Sequence[Column]) -> TypeGuard[Sequence[Entry]]:
     return not getattr(entries[0], "ndim", 0)
 
 
-def _match(first: Sequence[complex], second: Sequence[complex], tolerance: float = TOLERANCE) -> bool:
+def _match(
+    first: Sequence[complex], second: Sequence[complex], tolerance: float = TOLERANCE
+) -> bool:
     """Whether numbers are equal; quaternions: up to their signs."""
     if len(first) == 4:
         sign = 1 if sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0 else -1
@@ -75,7 +91,9 @@ def _match(first: Sequence[complex], second: Sequence[complex], tolerance: float
     return all(abs(a - b) <= tolerance for a, b in zip(first, second))
 
 
-def _columns_match(first: Sequence[complex | Array], second: Sequence[complex | Array], tolerance: float) -> bool:
+def _columns_match(
+    first: Sequence[complex | Array], second: Sequence[complex | Array], tolerance: float
+) -> bool:
     """The same of the columns of a batch."""
     import numpy
 
@@ -89,13 +107,11 @@ def _columns_match(first: Sequence[complex | Array], second: Sequence[complex | 
 def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> bool:
     """Tell whether two direction cosine matrices, or two quaternions, are the same orientation.
 
-    Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function of
-    time, are one angle. The two quaternions :math:`q` and :math:`-q` are the same orientation.
+    Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function
+    of time, are one angle. The two quaternions :math:`q` and :math:`-q` are the same orientation.
 
-    Parameters
-    ----------
-    first, second : SymPy matrices or arrays of shape ``(..., 3, 3)``, or both ``(4,)`` or ``(..., 4)``
-    tolerance : float
+    Parameters ---------- first, second : SymPy matrices or arrays of shape ``(..., 3, 3)``, or both
+    ``(4,)`` or ``(..., 4)`` tolerance : float
         Largest difference between two entries that counts as rounding.
 
     Returns
@@ -118,15 +134,21 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     """
     one, other = _read_both(first, second, "first", "second")
     if _is_one(one) and _is_one(other):
-        return all(_match(first, second, tolerance) for first, second in at_random_points(one, other))
+        return all(
+            _match(first, second, tolerance) for first, second in at_random_points(one, other)
+        )
     shapes = [getattr(entries[0], "shape", ()) for entries in (one, other)]
     if () not in shapes and shapes[0] != shapes[1]:
         raise ValueError(f"batches of shapes {shapes[0]} and {shapes[1]} cannot be compared")
-    return all(_columns_match(first, second, tolerance) for first, second in at_random_points(one, other))
+    return all(
+        _columns_match(first, second, tolerance) for first, second in at_random_points(one, other)
+    )
 
 
 class Diagnosis(NamedTuple):
-    """What :func:`diagnose` found: whether the answer is right, and every mix-up that explains it."""
+    """What :func:`diagnose` found: whether the answer is right, and every mix-up that explains
+    it.
+    """
 
     same: bool
     causes: tuple[str, ...]
@@ -154,19 +176,19 @@ def diagnose(
 ) -> Diagnosis:
     """Say whether an orientation is the expected one and, if it is not, which mix-up explains it.
 
-    A mix-up is named only if it reproduces the given answer at every random value of the symbols. If
-    several do, they are mathematically the same for this answer, and all of them are named.
+    A mix-up is named only if it reproduces the given answer at every random value of the symbols.
+    If several do, they are mathematically the same for this answer, and all of them are named.
 
-    Parameters
-    ----------
-    given, expected : direction cosine matrices of shape ``(3, 3)``, or quaternions of shape ``(4,)``
+    Parameters ---------- given, expected : direction cosine matrices of shape ``(3, 3)``, or
+    quaternions of shape ``(4,)``
         Symbols or numbers.
     angles, sequence : optional
         The Euler angles and the body fixed sequence that ``expected`` is made of. For a symbolic
         matrix of up to three angles they are recognised without being given.
     tolerance : float
-        Largest difference between two entries that counts as rounding. Numbers from a file need more than
-        the rounding of a computation: half a unit of their last printed digit, and what follows from it.
+        Largest difference between two entries that counts as rounding. Numbers from a file need
+        more than the rounding of a computation: half a unit of their last printed digit, and what
+        follows from it.
 
     Returns
     -------
@@ -176,8 +198,8 @@ def diagnose(
     Raises
     ------
     ValueError
-        As for :func:`same_orientation`; for a batch; and if ``angles`` and ``sequence`` are not both
-        given, or do not make ``expected``.
+        As for :func:`same_orientation`; for a batch; and if ``angles`` and ``sequence`` are not
+        both given, or do not make ``expected``.
 
     Examples
     --------
@@ -204,7 +226,9 @@ def diagnose(
         )
     names = unknowns([*answer, *truth, *(turns or ())])
     points = points_for(names)
-    answers, truths = ([put_in(entries, names, point) for point in points] for entries in (answer, truth))
+    answers, truths = (
+        [put_in(entries, names, point) for point in points] for entries in (answer, truth)
+    )
     match = functools.partial(_match, tolerance=tolerance)
     turned, sequence = _turns(truth, truths, names, points, turns, sequence, match)
     if all(map(match, answers, truths)):
@@ -215,9 +239,10 @@ def diagnose(
         _sequence_mixups(turned, sequence, given=turns is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
-    # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey a condition, as
-    # a quaternion's four do, miss it at random values: then nothing can be told.
-    # Entries that are off by the tolerance make lengths and products that are off by up to some four times as much.
+    # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey
+    # a condition, as a quaternion's four do, miss it at random values: then nothing can be told.
+    # Entries that are off by the tolerance make lengths and products that are off by up to some
+    # four times as much.
     fault = None if causes else _fault(answers, 4 * tolerance)
     if fault and not _fault(truths, 4 * tolerance):
         causes = [fault]
@@ -225,7 +250,9 @@ def diagnose(
 
 
 def _fault(values: Iterable[Sequence[complex]], tolerance: float) -> str | None:
-    """What is wrong with numbers that should be an orientation at every point; None if nothing is."""
+    """What is wrong with numbers that should be an orientation at every point; None if nothing
+    is.
+    """
     for entries in values:
         try:
             if len(entries) == 9:
@@ -240,11 +267,16 @@ def _fault(values: Iterable[Sequence[complex]], tolerance: float) -> str | None:
 def _transpositions(truths: Answers) -> Iterator[Mixup]:
     yield (
         f"it is {TRANSPOSE}",
-        [[entries[3 * column + row] for row in range(3) for column in range(3)] for entries in truths],
+        [
+            [entries[3 * column + row] for row in range(3) for column in range(3)]
+            for entries in truths
+        ],
     )
 
 
-def _substitutions(expected: Sequence[Entry], names: Names, points: Sequence[Point]) -> Iterator[Mixup]:
+def _substitutions(
+    expected: Sequence[Entry], names: Names, points: Sequence[Point]
+) -> Iterator[Mixup]:
     """Mix-ups of the angles' signs, places and units in a symbolic answer."""
     own = list(unknowns(expected))
 
@@ -281,7 +313,11 @@ def _turns(
 ) -> Turned:
     """Values of the three angles at each point, and the sequence: as given, or else recognised."""
     if angles is None or sequence is None:
-        return _recognise(truths, list(unknowns(expected)), points, match) if len(expected) == 9 else (None, None)
+        return (
+            _recognise(truths, list(unknowns(expected)), points, match)
+            if len(expected) == 9
+            else (None, None)
+        )
     values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
     if not all(map(match, truths, _body_fixed(values, sequence))):
         raise ValueError(f"expected is not the body fixed orientation {sequence} of these angles")
@@ -300,7 +336,10 @@ def _sequence_mixups(
     if values is None or sequence is None:
         return
     back = [angles[::-1] for angles in values]
-    yield ("the matrices are multiplied in the other order, which is space fixed", _body_fixed(back, sequence[::-1]))
+    yield (
+        "the matrices are multiplied in the other order, which is space fixed",
+        _body_fixed(back, sequence[::-1]),
+    )
     if not given and 0 in values[0]:
         return  # two turns are recognised as part of several sequences
     yield REVERSED, _body_fixed(back, sequence)
@@ -311,7 +350,9 @@ def _sequence_mixups(
         for which, signs in (("first", (-1, 1, 1)), ("second", (1, -1, 1)), ("third", (1, 1, -1))):
             yield (
                 wrong_sign(which),
-                _body_fixed([[a * b for a, b in zip(angles, signs)] for angles in values], sequence),
+                _body_fixed(
+                    [[a * b for a, b in zip(angles, signs)] for angles in values], sequence
+                ),
             )
         yield (
             "the angles were given in degrees where radians are expected",
@@ -323,7 +364,9 @@ def _sequence_mixups(
         )
 
 
-def _recognise(truths: Answers, names: Sequence[str], points: Sequence[Point], match: Match) -> Turned:
+def _recognise(
+    truths: Answers, names: Sequence[str], points: Sequence[Point], match: Match
+) -> Turned:
     """Find the sequence and the signed angles that make the expected matrix out of its symbols."""
     if not 1 < len(names) <= 3:
         return None, None
@@ -338,10 +381,15 @@ def _recognise(truths: Answers, names: Sequence[str], points: Sequence[Point], m
 
 
 def _quaternion_mixups(truths: Answers) -> Iterator[Mixup]:
-    def rearranged(rule: Callable[[complex, complex, complex, complex], Sequence[complex]]) -> Answers:
+    def rearranged(
+        rule: Callable[[complex, complex, complex, complex], Sequence[complex]],
+    ) -> Answers:
         return [rule(*entries) for entries in truths]
 
-    yield (f"{SCALAR_LAST}; in this book it stands first", rearranged(lambda a, b, c, d: [b, c, d, a]))
+    yield (
+        f"{SCALAR_LAST}; in this book it stands first",
+        rearranged(lambda a, b, c, d: [b, c, d, a]),
+    )
     yield (f"it is {CONJUGATE}", rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
     yield (
         f"it is the conjugate, and {SCALAR_LAST}; in this book it stands first",

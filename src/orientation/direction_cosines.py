@@ -20,7 +20,17 @@ from .random_points import at_random_points
 if TYPE_CHECKING:
     import numpy
 
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Symbols,
+        Values,
+    )
 
 AXES = ("x", "y", "z")
 
@@ -99,8 +109,8 @@ def check_dcm(dcm: Values) -> None:
     r"""Say what is wrong with a matrix that should be a direction cosine matrix.
 
     A direction cosine matrix has rows of unit length that are perpendicular to each other,
-    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. Nothing is returned
-    for a valid matrix and nothing is ever repaired; :func:`nearest_dcm` does that.
+    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. Nothing is
+    returned for a valid matrix and nothing is ever repaired; :func:`nearest_dcm` does that.
 
     Parameters
     ----------
@@ -139,11 +149,15 @@ def _as_they_are(f: Functions[Component], *entries: Component) -> Sequence[Compo
     return entries
 
 
-def demand_dcm(entries: Sequence[complex], where: str = "", name: str = "dcm", tolerance: float = TOLERANCE) -> None:
+def demand_dcm(
+    entries: Sequence[complex], where: str = "", name: str = "dcm", tolerance: float = TOLERANCE
+) -> None:
     """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
     if imaginary > tolerance:
-        raise ValueError(f"{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}")
+        raise ValueError(
+            f"{name}{where} is not real: an entry has an imaginary part of {imaginary:.3g}"
+        )
     real = [entry.real for entry in entries]
     if not dcm_excess(NUMBERS, *real) <= tolerance:
         explain_dcm(real, where, name)
@@ -161,7 +175,9 @@ def dcm_excess(
     zy: Number,
     zz: Number,
 ) -> Number:
-    """Largest departure of the rows from being orthonormal, and of the third from the cross product."""
+    """Largest departure of the rows from being orthonormal, and of the third from the cross
+    product.
+    """
     return f.largest(
         abs(xx * xx + xy * xy + xz * xz - 1),
         abs(yx * yx + yy * yy + yz * yz - 1),
@@ -173,7 +189,9 @@ def dcm_excess(
 
 
 def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None:
-    """Raise the error that says what is wrong with nine numbers, which are no direction cosine matrix."""
+    """Raise the error that says what is wrong with nine numbers, which are no direction cosine
+    matrix.
+    """
     rows = {"x": entries[0:3], "y": entries[3:6], "z": entries[6:9]}
     names = list(rows)
     # Added in this order by every Python and in the page: sum() rounds otherwise since 3.12.
@@ -248,7 +266,8 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     Raises
     ------
     ValueError
-        If the nearest matrix is not unique, as for a mirror image, or rows that all lie along one line.
+        If the nearest matrix is not unique, as for a mirror image, or rows that all lie along one
+        line.
     SymbolsNotPossible
         If the matrix holds symbols.
 
@@ -275,9 +294,11 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
         where = f" (item {[int(k) for k in worst]})" if worst else ""
         raise ValueError(
-            f"several direction cosine matrices are equally near to matrix{where}: its singular values are "
+            f"several direction cosine matrices are equally near to matrix{where}: its singular "
+            "values are "
             f"{', '.join(map(_six_decimals, scales[worst]))} and its determinant is "
-            f"{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows all lie "
+            f"{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows "
+            "all lie "
             f"along one line"
         )
     left[..., :, 2] *= handedness[..., None]

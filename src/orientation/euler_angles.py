@@ -6,7 +6,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, overload
 
 from .direction_cosines import AXES, DCM_GUARD
-from .numbers_and_symbols import evaluate, evaluate_numbers, is_symbolic, number_array, one_item, symbol_components
+from .numbers_and_symbols import (
+    evaluate,
+    evaluate_numbers,
+    is_symbolic,
+    number_array,
+    one_item,
+    symbol_components,
+)
 
 if TYPE_CHECKING:
     from ._types import (
@@ -24,8 +31,8 @@ if TYPE_CHECKING:
         Values,
     )
 
-#: The places of the three axes of a sequence, the third of them for the one that a proper sequence leaves out, and
-#: whether they follow each other as x, y, z do: 1, or else -1.
+#: The places of the three axes of a sequence, the third of them for the one that a proper sequence
+#: leaves out, and whether they follow each other as x, y, z do: 1, or else -1.
 Layout: TypeAlias = tuple[int, int, int, int]
 
 #: Sequences whose first and last axes are the same.
@@ -39,7 +46,9 @@ SEQUENCES = PROPER_EULER + TAIT_BRYAN
 
 
 def _layout(sequence: str) -> Layout:
-    """Return the first, the second and the remaining axis as indices, and the sign of their order."""
+    """Return the first, the second and the remaining axis as indices, and the sign of their
+    order.
+    """
     first, second = AXES.index(sequence[0]), AXES.index(sequence[1])
     return first, second, 3 - first - second, 1 if (second - first) % 3 == 1 else -1
 
@@ -58,7 +67,10 @@ def layout_of(sequence: str) -> Layout:
             f"the axes of the frame that stays, there are functions named space_fixed"
         )
     elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES):
-        cause = "two turns in a row about one axis are one turn, so such a sequence does not reach every orientation"
+        cause = (
+            "two turns in a row about one axis are one turn, so such a sequence does not reach "
+            "every orientation"
+        )
     else:
         cause = f"the twelve are {', '.join(SEQUENCES)}"
     raise ValueError(f"{sequence!r} is not a sequence of Euler angles: {cause}")
@@ -120,7 +132,9 @@ def body_fixed_formula(sequence: str) -> Formula:
     i, j, k, sign = layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
-    def formula(f: Functions[Component], psi: Component, theta: Component, phi: Component) -> list[Component | float]:
+    def formula(
+        f: Functions[Component], psi: Component, theta: Component, phi: Component
+    ) -> list[Component | float]:
         s1, s2, s3 = sign * f.sin(psi), sign * f.sin(theta), sign * f.sin(phi)
         c1, c2, c3 = f.cos(psi), f.cos(theta), f.cos(phi)
         entries: list[Component | float] = [0] * 9
@@ -148,10 +162,11 @@ def body_fixed_formula(sequence: str) -> Formula:
 def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
 
-    The first angle comes from the one row (or column) that the third turn leaves alone; turning back
-    by it leaves two simple turns, whose angles are read off. Each step is an ``atan2``, so no
+    The first angle comes from the one row (or column) that the third turn leaves alone; turning
+    back by it leaves two simple turns, whose angles are read off. Each step is an ``atan2``, so no
     threshold is needed: at gimbal lock the split between the first and the last angle is arbitrary
-    (the first is 0 when the matrix is exactly locked), and the orientation is still right to rounding.
+    (the first is 0 when the matrix is exactly locked), and the orientation is still right to
+    rounding.
 
     Parameters
     ----------
@@ -199,7 +214,8 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
         # What remains once the first turn is undone: column j of the matrix of the last two turns.
         jj = c(j, j) * cosine + c(j, k) * sine
         if proper:
-            # The sine has the sign of the order, and the size alone keeps the middle angle in [0, pi].
+            # The sine has the sign of the order, and the size alone keeps the middle angle in [0,
+            # pi].
             theta = sign * f.atan2(abs(c(i, j) * sine - c(i, k) * cosine), c(i, i))
             phi = f.atan2(-c(k, j) * cosine - c(k, k) * sine, jj)
         else:
@@ -257,8 +273,8 @@ def gimbal_lock_margin(angles: Values, sequence: str) -> Scalars:
     r"""How far three Euler angles are from gimbal lock, in radians.
 
     Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three
-    different axes, at :math:`\theta = 0` or :math:`\pi` for a sequence that returns to its first axis.
-    The margin is the angle between the two axes, from 0 (locked) to :math:`\pi/2`.
+    different axes, at :math:`\theta = 0` or :math:`\pi` for a sequence that returns to its first
+    axis. The margin is the angle between the two axes, from 0 (locked) to :math:`\pi/2`.
 
     Parameters
     ----------
@@ -285,7 +301,9 @@ def lock_margin_formula(sequence: str) -> NumberFormula:
     layout_of(sequence)
     proper = sequence[0] == sequence[2]
 
-    def formula(f: NumberFunctions[Number], psi: Number, theta: Number, phi: Number) -> Sequence[Number]:
+    def formula(
+        f: NumberFunctions[Number], psi: Number, theta: Number, phi: Number
+    ) -> Sequence[Number]:
         along, across = f.cos(theta), f.sin(theta)
         if not proper:
             along, across = across, along

@@ -1,4 +1,6 @@
-"""A filter that follows an orientation: gyroscope in, directions in, orientation and its uncertainty out."""
+"""A filter that follows an orientation: gyroscope in, directions in, orientation and its
+uncertainty out.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,8 @@ if TYPE_CHECKING:
 
 
 class Innovation(NamedTuple):
-    r"""By how much a measured direction differs from what a filter expected, and by how much it might.
+    r"""By how much a measured direction differs from what a filter expected, and by how much it
+    might.
 
     Attributes
     ----------
@@ -31,9 +34,11 @@ class Innovation(NamedTuple):
 
     @property
     def normalised_square(self) -> numpy.float64 | Array:
-        r"""The square :math:`(\tilde{y} - \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape ``(...)``.
+        r"""The square :math:`(\tilde{y} - \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape
+        ``(...)``.
 
-        A direction differs from another in two ways, so of a true claim this is 2 on average. No truth is needed.
+        A direction differs from another in two ways, so of a true claim this is 2 on average. No
+        truth is needed.
         """
         import numpy
 
@@ -45,14 +50,16 @@ class Innovation(NamedTuple):
 class MultiplicativeKalmanFilter:
     r"""Multiplicative extended Kalman filter of an orientation and of the gyroscope's bias.
 
-    The orientation itself is a direction cosine matrix and is turned, never added to. What has a covariance is the
-    small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along the body,
+    The orientation itself is a direction cosine matrix and is turned, never added to. What has a
+    covariance is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the
+    true one, along the body,
 
     .. math::
 
        {}^B\mathbf{C}^N = \exp\left(-[\boldsymbol\delta]_\times\right)\,{}^{\hat B}\mathbf{C}^N ,
 
-    followed by the error of the bias :math:`\mathbf{b}`. Everything works for one orientation and for a batch.
+    followed by the error of the bias :math:`\mathbf{b}`. Everything works for one orientation and
+    for a batch.
 
     Parameters
     ----------
@@ -91,7 +98,9 @@ class MultiplicativeKalmanFilter:
     In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
     """
 
-    def __init__(self, dcm: Values, covariance: Values, gyroscope_noise: Numbers, bias_noise: Numbers) -> None:
+    def __init__(
+        self, dcm: Values, covariance: Values, gyroscope_noise: Numbers, bias_noise: Numbers
+    ) -> None:
         import numpy
 
         self.dcm = number_array(dcm, (3, 3), "dcm")

@@ -80,15 +80,17 @@ class _Edge(NamedTuple):
     turns: tuple[_Turn, ...]
 
     def back(self) -> _Edge:
-        return _Edge(self.reference, self.frame, tuple(turn.back() for turn in reversed(self.turns)))
+        return _Edge(
+            self.reference, self.frame, tuple(turn.back() for turn in reversed(self.turns))
+        )
 
 
 class Frames:
     r"""Named frames and the orientations between them.
 
     A ``Frames`` never changes: every ``orient_...`` method returns a new one with one orientation
-    more, so running a notebook cell again gives the same answer again. Two frames are connected by one
-    path at most; a second one, which could contradict the first, is an error.
+    more, so running a notebook cell again gives the same answer again. Two frames are connected by
+    one path at most; a second one, which could contradict the first, is an error.
 
     Examples
     --------
@@ -137,14 +139,18 @@ class Frames:
         words = rf"\text{{axis }}({', '.join(map(_latex, own_axis))}),\ {_latex(own_angle)}"
         return self._with(frame, reference, _MatrixTurn(dcm_from_axis_angle(axis, angle), words))
 
-    def orient_body_fixed(self, frame: str, reference: str, angles: Values, sequence: str) -> Frames:
+    def orient_body_fixed(
+        self, frame: str, reference: str, angles: Values, sequence: str
+    ) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
 
         Parameters are those of :func:`orientation.dcm_from_body_fixed`.
         """
         dcm_from_body_fixed(angles, sequence)  # refuses what is not valid, before it is stored
         own = _own(angles, (3,), "angles", is_symbolic(angles))
-        return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in zip(sequence, own)))
+        return self._with(
+            frame, reference, *(_AxisTurn(axis, angle) for axis, angle in zip(sequence, own))
+        )
 
     def orient_dcm(self, frame: str, reference: str, dcm: Values) -> Frames:
         r"""Return frames with ``dcm`` as the matrix of ``frame`` with respect to ``reference``.
@@ -162,8 +168,12 @@ class Frames:
         return self._with(frame, reference, _MatrixTurn(own, r"\text{matrix}"))
 
     def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar first."""
-        return self._with(frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}"))
+        """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar
+        first.
+        """
+        return self._with(
+            frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}")
+        )
 
     def _with(self, frame: str, reference: str, *turns: _Turn) -> Frames:
         for name in (frame, reference):
@@ -180,17 +190,22 @@ class Frames:
         if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
         raise ValueError(
-            f"{frame} and {reference} are already connected, by {self.path(frame, reference)}: a second "
+            f"{frame} and {reference} are already connected, by "
+            f"{self.path(frame, reference)}: a second "
             f"path could contradict the first. To change an orientation, build the frames anew"
         )
 
     def _walk(self, target: str, source: str) -> tuple[_Edge, ...] | None:
-        """Edges from the source to the target, each turned the way it is walked; None if there are none."""
+        """Edges from the source to the target, each turned the way it is walked; None if there are
+        none.
+        """
         reached: dict[str, tuple[_Edge, ...]] = {source: ()}
         waiting = [source]
         for name in waiting:
             for edge in self._edges:
-                step = edge if edge.reference == name else edge.back() if edge.frame == name else None
+                step = (
+                    edge if edge.reference == name else edge.back() if edge.frame == name else None
+                )
                 if step and step.frame not in reached:
                     reached[step.frame] = (*reached[name], step)
                     waiting.append(step.frame)
@@ -200,7 +215,10 @@ class Frames:
         known = {name for edge in self._edges for name in (edge.frame, edge.reference)}
         for name in (target, source):
             if name not in known:
-                raise ValueError(f"there is no frame {name!r} here; there are {', '.join(sorted(known)) or 'none'}")
+                raise ValueError(
+                    f"there is no frame {name!r} here; there are "
+                    f"{', '.join(sorted(known)) or 'none'}"
+                )
         edges = self._walk(target, source)
         if edges is None:
             raise ValueError(f"no path of orientations connects {target} and {source}")
@@ -208,13 +226,16 @@ class Frames:
 
     def path(self, target: str, source: str) -> str:
         """Return the frames from ``target`` to ``source`` as text, in the order of the matrices."""
-        return " - ".join([*(edge.frame for edge in reversed(self._edges_between(target, source))), source])
+        return " - ".join(
+            [*(edge.frame for edge in reversed(self._edges_between(target, source))), source]
+        )
 
     def dcm(self, target: str, source: str) -> Array | Matrix:
-        r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between them.
+        r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between
+        them.
 
-        ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy. Successive
-        turns about one axis are joined to one turn before anything is multiplied.
+        ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy.
+        Successive turns about one axis are joined to one turn before anything is multiplied.
 
         Raises
         ------
@@ -236,7 +257,9 @@ class Frames:
         return zero
 
     def equation(self, target: str, source: str) -> Equation:
-        r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its turns."""
+        r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its
+        turns.
+        """
         edges = self._edges_between(target, source)
         factors = [
             rf"\underbrace{{{_symbol(edge.frame, edge.reference)}}}_{{{_description(edge)}}}"
@@ -245,10 +268,14 @@ class Frames:
         return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
     def reference_frames(self) -> dict[str, ReferenceFrame]:
-        """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these frames."""
+        """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these
+        frames.
+        """
         import sympy.physics.mechanics as me
 
-        names = list(dict.fromkeys(name for edge in self._edges for name in (edge.reference, edge.frame)))
+        names = list(
+            dict.fromkeys(name for edge in self._edges for name in (edge.reference, edge.frame))
+        )
         frames = {name: me.ReferenceFrame(name) for name in names}
         done: set[str] = set()
         for root in names:
@@ -285,7 +312,8 @@ def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> No
     shapes = [turn.batch() for turn in edge.turns if turn.batch()]
     if shapes:
         raise ValueError(
-            f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a ReferenceFrame holds one orientation"
+            f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a ReferenceFrame "
+            "holds one orientation"
         )
     turn, *others = edge.turns
     if not others and isinstance(turn, _AxisTurn):
@@ -297,7 +325,9 @@ def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> No
 
 
 def _own(value: Values, item: tuple[int, ...], name: str, symbolic: bool) -> Sequence[Angle]:
-    """The frames' own copy of the components that they were given: SymPy expressions, or columns of a float array."""
+    """The frames' own copy of the components that they were given: SymPy expressions, or columns of
+    a float array.
+    """
     if symbolic:
         return symbol_components(value, item, name)
     array = number_array(value, item, name) + 0.0
@@ -323,12 +353,17 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
             numpy.broadcast_shapes(*shapes)
         except ValueError:
             raise ValueError(
-                f"the batches along this path do not fit each other: their shapes are {' and '.join(map(str, shapes))}"
+                "the batches along this path do not fit each other: their shapes are "
+                f"{' and '.join(map(str, shapes))}"
             ) from None
     joined: list[_Turn] = []
     for turn in turns:
         before = joined[-1] if joined else None
-        if isinstance(turn, _AxisTurn) and isinstance(before, _AxisTurn) and turn.axis == before.axis:
+        if (
+            isinstance(turn, _AxisTurn)
+            and isinstance(before, _AxisTurn)
+            and turn.axis == before.axis
+        ):
             joined[-1] = _AxisTurn(turn.axis, before.angle + turn.angle)
         else:
             joined.append(turn)

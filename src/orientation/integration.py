@@ -1,7 +1,7 @@
 """From an angular velocity to the orientations it leads through, by exponential steps.
 
-Every step is a turn, so what comes out is a direction cosine matrix however long the steps are; only whether
-it is the right one depends on them.
+Every step is a turn, so what comes out is a direction cosine matrix however long the steps are;
+only whether it is the right one depends on them.
 """
 
 from __future__ import annotations
@@ -19,14 +19,16 @@ if TYPE_CHECKING:
 ORDERS = (1, 2, 4)
 
 
-def turns_from_angular_velocity(angular_velocity: Callable[[Array], Numbers], times: Numbers, order: int = 4) -> Array:
+def turns_from_angular_velocity(
+    angular_velocity: Callable[[Array], Numbers], times: Numbers, order: int = 4
+) -> Array:
     r"""Return the rotation vector of the turn in each interval of time.
 
-    For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its beginning,
-    :math:`h\,\boldsymbol{\omega}(t)`, and order 2 that in its middle,
+    For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its
+    beginning, :math:`h\,\boldsymbol{\omega}(t)`, and order 2 that in its middle,
     :math:`h\,\boldsymbol{\omega}(t + \frac{h}{2})`. Order 4 takes it at the two Gauss points
-    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and what the order of the turns costs
-    in between (Magnus):
+    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and what the order of the turns costs in
+    between (Magnus):
 
     .. math::
 
@@ -36,8 +38,9 @@ def turns_from_angular_velocity(angular_velocity: Callable[[Array], Numbers], ti
     Parameters
     ----------
     angular_velocity : callable
-        ``angular_velocity(times)`` takes an array of shape ``(n,)`` and returns the components along the turning
-        frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once for each point of a step.
+        ``angular_velocity(times)`` takes an array of shape ``(n,)`` and returns the components
+        along the turning frame :math:`A`, shape ``(n, 3)``, radians per second. It is called once
+        for each point of a step.
     times : array of shape ``(n + 1,)``
         Seconds.
     order : {1, 2, 4}
@@ -71,12 +74,15 @@ def turns_from_angular_velocity(angular_velocity: Callable[[Array], Numbers], ti
     times = numpy.asarray(times, dtype=float)
     if times.ndim != 1 or len(times) < 2:
         raise ValueError(
-            f"times has shape {times.shape}, where the ends of one interval or more were expected, (n + 1,)"
+            f"times has shape {times.shape}, where the ends of one interval or more were expected, "
+            "(n + 1,)"
         )
     starts, steps = times[:-1], numpy.diff(times)[:, None]
 
     def at(share: float) -> Array:
-        found = number_array(angular_velocity(starts + share * steps[:, 0]), (3,), "angular_velocity(times)")
+        found = number_array(
+            angular_velocity(starts + share * steps[:, 0]), (3,), "angular_velocity(times)"
+        )
         if found.shape not in ((3,), (len(starts), 3)):
             raise ValueError(
                 f"angular_velocity(times) has shape {found.shape} for {len(starts)} times, where "

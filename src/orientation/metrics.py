@@ -16,17 +16,20 @@ if TYPE_CHECKING:
     from ._types import Array, Number, NumberFunctions, Scalars, Values
 
 METRICS = ("entries", "angle")
-#: The mean by angle is looked for from so many of the orientations, if they are spread too far to be sure of one.
+#: The mean by angle is looked for from so many of the orientations, if they are spread too far to
+#: be sure of one.
 STARTS = 100
-#: Steps towards a mean after which it is taken as it is; a few are enough unless orientations lie half a turn apart.
+#: Steps towards a mean after which it is taken as it is; a few are enough unless orientations lie
+#: half a turn apart.
 MOST_STEPS = 200
 
 
 def angle_between(first: Values, second: Values) -> Scalars:
     r"""Return the angle of the one turn that leads from one orientation to another.
 
-    For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of :math:`{}^B\mathbf{C}^A`, the length of
-    the shortest way between them. It keeps its digits near 0 and near :math:`\pi`.
+    For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of
+    :math:`{}^B\mathbf{C}^A`, the length of the shortest way between them. It keeps its digits near
+    0 and near :math:`\pi`.
 
     Parameters
     ----------
@@ -80,10 +83,11 @@ def angle_between(first: Values, second: Values) -> Scalars:
 def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = "entries") -> Array:
     r"""Return the orientation whose squared distances from the given ones have the smallest sum.
 
-    By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is the direction
-    cosine matrix nearest to their average. The mean of the quaternions, the eigenvector of the largest
-    eigenvalue of :math:`\sum_k w_k\,q_k q_k^T`, is the same orientation. By ``angle`` it is the angle of the turn
-    between them, and the mean is found by averaging rotation vectors as seen from a guess, again and again.
+    By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is
+    the direction cosine matrix nearest to their average. The mean of the quaternions, the
+    eigenvector of the largest eigenvalue of :math:`\sum_k w_k\,q_k q_k^T`, is the same orientation.
+    By ``angle`` it is the angle of the turn between them, and the mean is found by averaging
+    rotation vectors as seen from a guess, again and again.
 
     Parameters
     ----------
@@ -100,9 +104,9 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     Raises
     ------
     ValueError
-        If the mean by that metric is not unique, because the orientations are spread too far. By angle it is
-        unique if all are closer to it than a quarter turn; otherwise it is looked for from up to 100 of
-        them and 16 places between, and means that are equally good are told.
+        If the mean by that metric is not unique, because the orientations are spread too far. By
+        angle it is unique if all are closer to it than a quarter turn; otherwise it is looked for
+        from up to 100 of them and 16 places between, and means that are equally good are told.
 
     Examples
     --------
@@ -120,7 +124,9 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
         raise ValueError(f"metric is {metric!r}, where 'entries' or 'angle' was expected")
     dcms = number_array(dcms, (3, 3), "dcms")
     if dcms.ndim != 3 or not len(dcms):
-        raise ValueError(f"dcms has shape {dcms.shape}, where (n, 3, 3) with at least one of them was expected")
+        raise ValueError(
+            f"dcms has shape {dcms.shape}, where (n, 3, 3) with at least one of them was expected"
+        )
     check_dcm(dcms)
     shares = _shares(weights, len(dcms))
     average = numpy.tensordot(shares, dcms, axes=1)
@@ -129,7 +135,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
             return nearest_dcm(average).dcm
         except ValueError:
             raise ValueError(
-                "these orientations have no unique mean by their entries: several direction cosine matrices are "
+                "these orientations have no unique mean by their entries: several direction cosine "
+                "matrices are "
                 "equally near to their average. They are spread too evenly"
             ) from None
     return _mean_by_angle(dcms, shares, average)
@@ -142,9 +149,15 @@ def _shares(weights: Values | None, count: int) -> Array:
         return numpy.full(count, 1 / count)
     weights = number_array(weights, (), "weights")
     if weights.shape != (count,):
-        raise ValueError(f"weights has shape {weights.shape}, where ({count},) was expected, one for each orientation")
+        raise ValueError(
+            f"weights has shape {weights.shape}, where ({count},) was expected, one for each "
+            "orientation"
+        )
     if weights.min() < 0 or weights.sum() == 0:
-        raise ValueError(f"weights are from {weights.min():g} to {weights.max():g}: none may be negative, nor all zero")
+        raise ValueError(
+            f"weights are from {weights.min():g} to {weights.max():g}: none may be negative, nor "
+            "all zero"
+        )
     shares: Array = weights / weights.sum()
     return shares
 
@@ -169,7 +182,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
         found = [(weights @ angles**2, guess)]
     except ValueError:
         found = []  # no one place to begin
-    # From places between them too: from one that is half a turn from another, rounding would choose the way.
+    # From places between them too: from one that is half a turn from another, rounding would choose
+    # the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
     found += [(weights @ angles**2, guess) for guess, angles in map(settled, starts)]
     least = min(cost for cost, _ in found)
@@ -177,7 +191,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     apart = max(angle_between(best[0], guess) for guess in best)
     if apart > 1e-6:
         raise ValueError(
-            f"these orientations have no unique mean by angle: among those that are equally good, two are "
+            "these orientations have no unique mean by angle: among those that are equally good, "
+            "two are "
             f"{numpy.degrees(apart):.4g} degrees apart. They are spread too evenly"
         )
     return best[0]
@@ -186,8 +201,9 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
 def random_orientations(count: int, random: numpy.random.Generator | int | None = None) -> Array:
     r"""Return orientations chosen at random, none likelier than another.
 
-    Four normally distributed numbers, divided by their length, are a point on the sphere of unit quaternions that
-    is equally likely everywhere, and so is the orientation. Evenly distributed Euler angles are not.
+    Four normally distributed numbers, divided by their length, are a point on the sphere of unit
+    quaternions that is equally likely everywhere, and so is the orientation. Evenly distributed
+    Euler angles are not.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""What mix-ups of conventions are called, for :func:`~orientation.diagnose` and for what compares programs."""
+"""What mix-ups of conventions are called, for :func:`~orientation.diagnose` and for what compares
+programs.
+"""
 
 TRANSPOSE = "the transpose, the orientation the other way round"
 CONJUGATE = "the conjugate, the orientation the other way round"

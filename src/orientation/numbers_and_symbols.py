@@ -5,9 +5,10 @@ returns scalar components. This file finds out what it was given (SymPy expressi
 or arrays that hold a batch), hands the components to the formula with the matching ``sin``, ``cos``
 and friends, and shapes the results.
 
-SymPy objects are recognised without importing SymPy. One orientation in numbers is computed with Python's
-own floats, which is faster than with arrays, and needs NumPy for the result only: where there is none, as in
-a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`. Batches need NumPy.
+SymPy objects are recognised without importing SymPy. One orientation in numbers is computed with
+Python's own floats, which is faster than with arrays, and needs NumPy for the result only: where
+there is none, as in a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`.
+Batches need NumPy.
 """
 
 from __future__ import annotations
@@ -117,12 +118,17 @@ def evaluate_numbers(
 ) -> Scalars: ...
 @overload
 def evaluate_numbers(
-    formula: NumberFormula, shape: tuple[int] | tuple[int, int], *arguments: Argument, guard: Guard | None = None
+    formula: NumberFormula,
+    shape: tuple[int] | tuple[int, int],
+    *arguments: Argument,
+    guard: Guard | None = None,
 ) -> Array: ...
 def evaluate_numbers(
     formula: NumberFormula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
 ) -> Scalars:
-    """Apply a formula that needs numbers, to choose its branch by their sizes; as :func:`evaluate`."""
+    """Apply a formula that needs numbers, to choose its branch by their sizes; as
+    :func:`evaluate`.
+    """
     components = _all_at_a_glance(arguments)
     if components is not None:
         return _evaluate_item(formula, shape, components, guard)
@@ -140,12 +146,18 @@ def _all_at_a_glance(arguments: Sequence[Argument]) -> list[float] | None:
 
 
 def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
-    """The floats of one item in a row, where a look is enough to be sure that they are right; else None."""
+    """The floats of one item in a row, where a look is enough to be sure that they are right; else
+    None.
+    """
     entries: Sequence[float] | None = None
     if type(value) is float or type(value) is int:
         entries = None if item else [value]
     elif type(value) is tuple or type(value) is list:
-        if len(item) == 2 and len(value) == item[0] and all(type(row) is list and len(row) == item[1] for row in value):
+        if (
+            len(item) == 2
+            and len(value) == item[0]
+            and all(type(row) is list and len(row) == item[1] for row in value)
+        ):
             value = [entry for row in value for entry in row]
         elif len(item) != 1 or len(value) != item[0]:
             return None
@@ -169,7 +181,9 @@ _PLAIN = {float, int}
 
 
 def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | None:
-    """The floats of one item of the given shape as a list; None for what needs NumPy: a batch, or another shape."""
+    """The floats of one item of the given shape as a list; None for what needs NumPy: a batch, or
+    another shape.
+    """
     entries = _at_a_glance(value, item)
     if entries is not None:
         return list(map(float, entries))
@@ -184,16 +198,23 @@ def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | N
 
 
 def _flat(value: Nested) -> list[float]:
-    return [entry for part in value for entry in _flat(part)] if isinstance(value, tuple) else [value]
+    return (
+        [entry for part in value for entry in _flat(part)] if isinstance(value, tuple) else [value]
+    )
 
 
 def _evaluate_what_is_read(
-    formula: NumberFormula, shape: tuple[int, ...], arguments: Sequence[Argument], guard: Guard | None
+    formula: NumberFormula,
+    shape: tuple[int, ...],
+    arguments: Sequence[Argument],
+    guard: Guard | None,
 ) -> Scalars:
     single = [one_item(value, item, name) for name, value, item in arguments]
     given = [entries for entries in single if entries is not None]
     if len(given) == len(single):
-        return _evaluate_item(formula, shape, [entry for entries in given for entry in entries], guard)
+        return _evaluate_item(
+            formula, shape, [entry for entries in given for entry in entries], guard
+        )
     arrays = [number_array(value, item, name) for name, value, item in arguments]
     return _evaluate_batch(formula, shape, arrays, arguments, guard)
 
@@ -203,7 +224,9 @@ def _evaluate_symbols(
 ) -> Matrix:
     import sympy
 
-    components = [entry for name, value, item in arguments for entry in symbol_components(value, item, name)]
+    components = [
+        entry for name, value, item in arguments for entry in symbol_components(value, item, name)
+    ]
     if guard:
         _guard_exact_numbers(components, guard)
     result = [sympy.sympify(entry) for entry in formula(_symbol_functions(), *components)]
@@ -231,7 +254,9 @@ def _evaluate_item(
     result = formula(NUMBERS, *components)
     if not shape:
         return result[0]
-    result = [entry + 0.0 for entry in result]  # adding zero turns -0 into 0, which would look like a wrong sign
+    result = [
+        entry + 0.0 for entry in result
+    ]  # adding zero turns -0 into 0, which would look like a wrong sign
     try:
         from numpy import array
     except ModuleNotFoundError:
@@ -248,30 +273,49 @@ def _evaluate_batch(
 ) -> Array:
     import numpy
 
-    shapes = [array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)]
+    shapes = [
+        array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)
+    ]
     if len(set(shapes)) == 1:
         batch = shapes[0]
     else:
         try:
             batch = numpy.broadcast_shapes(*shapes)
         except ValueError:
-            described = " and ".join(f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments))
+            described = " and ".join(
+                f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments)
+            )
             raise ValueError(f"the batches do not fit each other: {described}") from None
-        arrays = [numpy.broadcast_to(array, batch + item) for array, (_, _, item) in zip(arrays, arguments)]
-    flat = [array.reshape(math.prod(batch), math.prod(item)) for array, (_, _, item) in zip(arrays, arguments)]
+        arrays = [
+            numpy.broadcast_to(array, batch + item)
+            for array, (_, _, item) in zip(arrays, arguments)
+        ]
+    flat = [
+        array.reshape(math.prod(batch), math.prod(item))
+        for array, (_, _, item) in zip(arrays, arguments)
+    ]
     result = numpy.empty((math.prod(batch), math.prod(shape)))
     functions = _array_functions()
     for start in range(0, len(result), BLOCK):
-        components = [column for array in flat for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)]
+        components = [
+            column
+            for array in flat
+            for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
+        ]
         if guard:
             with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
                 size = guard.excess(functions, *components[: guard.size])
             if not (size <= TOLERANCE).all():
                 worst = int(numpy.argmax(size))
                 index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
-                guard.explain([float(column[worst]) for column in components[: guard.size]], f" (item {index})")
+                guard.explain(
+                    [float(column[worst]) for column in components[: guard.size]],
+                    f" (item {index})",
+                )
         block = result[start : start + BLOCK]
-        rows = numpy.empty(block.shape[::-1])  # written one after another, and turned around at once
+        rows = numpy.empty(
+            block.shape[::-1]
+        )  # written one after another, and turned around at once
         for row, values in zip(rows, formula(functions, *components)):
             row[:] = values
         rows += 0.0
@@ -322,9 +366,11 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
 
 
 def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
-    """Return a float, or nested tuples of floats of exactly this shape, or raise an error that explains.
+    """Return a float, or nested tuples of floats of exactly this shape, or raise an error that
+    explains.
 
-    What :func:`number_array` takes, without batches, and without NumPy; True and False are no numbers here.
+    What :func:`number_array` takes, without batches, and without NumPy; True and False are no
+    numbers here.
     """
     result = _tuples(value, name, value)
     found = _shape(result)
@@ -377,12 +423,16 @@ def _unmasked(value: Given) -> Given | Array:
 
 
 def _not_numbers(name: str, value: object) -> TypeError:
-    return TypeError(f"{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}")
+    return TypeError(
+        f"{name} must hold real numbers or SymPy expressions in a regular shape, not {value!r}"
+    )
 
 
 def _not_finite(name: str, index: tuple[int, ...], value: float) -> ValueError:
     where = f"[{', '.join(map(str, index))}]" if index else ""
-    return ValueError(f"{name}{where} is {value}: a number is missing or a division by zero happened before")
+    return ValueError(
+        f"{name}{where} is {value}: a number is missing or a division by zero happened before"
+    )
 
 
 def _floats(value: object, name: str) -> object:
@@ -393,7 +443,8 @@ def _floats(value: object, name: str) -> object:
         return float(value)  # type: ignore[arg-type]  # whether it is one is what is asked
     except TypeError:
         raise SymbolsNotPossible(
-            f"{name} holds {value}, and this conversion needs numbers: which branch it takes depends "
+            f"{name} holds {value}, and this conversion needs numbers: which branch it takes "
+            "depends "
             f"on their sizes and signs. Put numbers in first, with .subs(...)"
         ) from None
 
@@ -417,7 +468,8 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
 
     if hasattr(value, "to_matrix"):
         raise TypeError(
-            f"{name} is the vector {value}: give its components along one frame, which its method to_matrix finds"
+            f"{name} is the vector {value}: give its components along one frame, which its method "
+            "to_matrix finds"
         )
     nested = _listed(value)
     shape: tuple[int, ...] = ()
@@ -427,23 +479,33 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
         shape = (len(nested),) if lengths == {0} else (len(nested), *sorted(lengths))
         entries = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
     if shape != item:
-        raise WrongShape(_shape_message(name, shape, item) + " (SymPy expressions come one item at a time)")
+        raise WrongShape(
+            _shape_message(name, shape, item) + " (SymPy expressions come one item at a time)"
+        )
     try:
         components: list[Expression] = [sympy.sympify(entry, strict=True) for entry in entries]
     except sympy.SympifyError as error:
-        raise TypeError(f"{name} holds {error.expr!r}, which is neither a number nor a SymPy expression") from None
+        raise TypeError(
+            f"{name} holds {error.expr!r}, which is neither a number nor a SymPy expression"
+        ) from None
     for position, entry in enumerate(components):
         if not isinstance(entry, sympy.Expr):
-            raise TypeError(f"{name} holds {entry}, which is neither a number nor a SymPy expression")
+            raise TypeError(
+                f"{name} holds {entry}, which is neither a number nor a SymPy expression"
+            )
         if entry.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
-            raise ValueError(f"{name} holds {entry} (entry {position}): a division by zero happened before")
+            raise ValueError(
+                f"{name} holds {entry} (entry {position}): a division by zero happened before"
+            )
     return components
 
 
 def _shape_message(name: str, shape: tuple[int, ...], item: tuple[int, ...]) -> str:
     if item == ():
         return f"{name} has shape {shape}, where one number was expected"
-    return f"{name} has shape {shape}, where {item} or (..., {', '.join(map(str, item))}) was expected"
+    return (
+        f"{name} has shape {shape}, where {item} or (..., {', '.join(map(str, item))}) was expected"
+    )
 
 
 # --- the functions that a formula may use, for each kind ----------------------------------------
@@ -484,7 +546,9 @@ def _array_functions() -> NumberFunctions[Array]:
 
         @staticmethod
         def norm(*components: Array | float) -> Array:
-            return numpy.sqrt(functools.reduce(operator.add, (entry * entry for entry in components)))
+            return numpy.sqrt(
+                functools.reduce(operator.add, (entry * entry for entry in components))
+            )
 
         @staticmethod
         def largest(*sizes: Array) -> Array:
@@ -507,7 +571,9 @@ def _symbol_functions() -> Functions[Expression]:
         cos = staticmethod(sympy.cos)
 
         @staticmethod
-        def where(condition: Truth, yes: Expression | float, no: Expression | float, /) -> Expression:
+        def where(
+            condition: Truth, yes: Expression | float, no: Expression | float, /
+        ) -> Expression:
             # Symbols take the general branch; an exact number may decide for the special one.
             chosen: Expression = sympy.sympify(no if condition == False else yes)  # noqa: E712
             return chosen

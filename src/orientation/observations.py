@@ -1,7 +1,8 @@
 """Orientation from observed directions: two vectors, or many with weights.
 
-A direction that is known in a frame :math:`N` (up, north, a star) is measured along a body :math:`B`. Two
-directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are fitted.
+A direction that is known in a frame :math:`N` (up, north, a star) is measured along a body
+:math:`B`. Two directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are
+fitted.
 """
 
 from __future__ import annotations
@@ -20,10 +21,11 @@ PARALLEL = 1e-6
 def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
 
-    The first direction is trusted entirely, the second only for what it says about the turn around the
-    first. From each pair a right-handed triad is made, :math:`\hat{t}_1 = \hat{u}_1`,
-    :math:`\hat{t}_2 \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times \hat{t}_2`; with
-    the triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N` (reference),
+    The first direction is trusted entirely, the second only for what it says about the turn around
+    the first. From each pair a right-handed triad is made, :math:`\hat{t}_1 = \hat{u}_1`,
+    :math:`\hat{t}_2 \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times
+    \hat{t}_2`; with the triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N`
+    (reference),
 
     .. math::
 
@@ -74,8 +76,10 @@ def _triad(pair: Array, name: str) -> Array:
     sine = numpy.linalg.norm(across, axis=-1, keepdims=True)
     if not numpy.all(sine > PARALLEL):
         raise ValueError(
-            f"the two {name} directions are parallel or opposite (the sine of their angle is {sine.min():.1e}): "
-            "the turn around them cannot be found. Take a second direction well away from the first."
+            f"the two {name} directions are parallel or opposite (the sine of their angle is "
+            f"{sine.min():.1e}): "
+            "the turn around them cannot be found. Take a second direction well away "
+            "from the first."
         )
     across = across / sine
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
@@ -86,12 +90,16 @@ def _unit(directions: Array, name: str) -> Array:
 
     length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
     if not numpy.all(length > 0):
-        raise ValueError(f"{name} holds a direction of length zero: was a measurement missing, and written as 0?")
+        raise ValueError(
+            f"{name} holds a direction of length zero: was a measurement missing, and written as 0?"
+        )
     units: Array = directions / length
     return units
 
 
-def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Values | None = None) -> Array:
+def dcm_from_directions(
+    observed: Numbers, reference: Numbers, deviations: Values | None = None
+) -> Array:
     r"""Direction cosine matrix that fits many observed directions best: Wahba's problem.
 
     Finds the :math:`{}^B\mathbf{C}^N` with the least
@@ -101,8 +109,9 @@ def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Value
        \tfrac12 \sum_k \frac{1}{\sigma_k^2}\,\bigl|\hat{b}_k - {}^B\mathbf{C}^N\,\hat{n}_k\bigr|^2 ,
 
     by the singular value decomposition of :math:`\sum_k \hat{b}_k \hat{n}_k^T / \sigma_k^2 =
-    \mathbf{U}\mathbf{S}\mathbf{V}^T`: it is :math:`\mathbf{U}\,\mathrm{diag}(1, 1, \det\mathbf{U}\mathbf{V}^T)\,
-    \mathbf{V}^T`, the direction cosine matrix nearest to that sum, as in :func:`nearest_dcm`.
+    \mathbf{U}\mathbf{S}\mathbf{V}^T`: it is :math:`\mathbf{U}\,\mathrm{diag}(1, 1,
+    \det\mathbf{U}\mathbf{V}^T)\, \mathbf{V}^T`, the direction cosine matrix nearest to that sum, as
+    in :func:`nearest_dcm`.
 
     Parameters
     ----------
@@ -111,7 +120,8 @@ def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Value
     reference : array of shape ``(count, 3)`` or ``(..., count, 3)``
         The same directions :math:`\hat{n}_k` along :math:`N`.
     deviations : array of shape ``(count,)``, optional
-        Standard deviation :math:`\sigma_k` of each direction in radians, across it. Without them all count alike.
+        Standard deviation :math:`\sigma_k` of each direction in radians, across it. Without them
+        all count alike.
 
     Returns
     -------
@@ -142,12 +152,15 @@ def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Value
     observed, reference, weights = _weighted(observed, reference, deviations)
     left, sizes, right = numpy.linalg.svd((weights * observed).swapaxes(-1, -2) @ reference)
     sign = numpy.linalg.det(left @ right)
-    # How far the least of the three turns would have to be wrong before another orientation fits as well.
+    # How far the least of the three turns would have to be wrong before another orientation fits as
+    # well.
     margin = (sizes[..., 1] + sign * sizes[..., 2]) / sizes[..., 0]
     if not numpy.all(margin > PARALLEL):
         raise ValueError(
-            f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie along one line, or "
-            "observed and reference are mirror images of each other. Is one of the two frames left-handed?"
+            f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie "
+            "along one line, or "
+            "observed and reference are mirror images of each other. Is one of the two frames "
+            "left-handed?"
         )
     handed = left.copy()
     handed[..., :, 2] *= numpy.round(sign)[..., None]
@@ -158,13 +171,15 @@ def dcm_from_directions(observed: Numbers, reference: Numbers, deviations: Value
 def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     r"""Covariance of the error of an orientation that was fitted to directions.
 
-    The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the true one, along
-    :math:`B`, with :math:`{}^B\mathbf{C}^N = \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each
-    direction tells of the turns across it and nothing of the turn around it:
+    The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the
+    true one, along :math:`B`, with :math:`{}^B\mathbf{C}^N =
+    \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each direction tells of the turns
+    across it and nothing of the turn around it:
 
     .. math::
 
-       \mathbf{P}^{-1} = \sum_k \frac{1}{\sigma_k^2}\left(\mathbf{I} - \hat{b}_k \hat{b}_k^T\right) .
+       \mathbf{P}^{-1} = \sum_k \frac{1}{\sigma_k^2}\left(\mathbf{I} - \hat{b}_k \hat{b}_k^T\right)
+       .
 
     Parameters
     ----------
@@ -199,15 +214,22 @@ def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     units, _, weights = _weighted(observed, observed, deviations)
     information = weights.sum() * numpy.eye(3) - (weights * units).swapaxes(-1, -2) @ units
     if not numpy.all(numpy.linalg.eigvalsh(information)[..., 0] > PARALLEL**2 * numpy.sum(weights)):
-        raise ValueError("the directions lie along one line: nothing is known of the turn around it")
+        raise ValueError(
+            "the directions lie along one line: nothing is known of the turn around it"
+        )
     covariance: Array = numpy.linalg.inv(information)
     return covariance
 
 
-def _weighted(observed: Numbers, reference: Numbers, deviations: Values | None) -> tuple[Array, Array, Array]:
+def _weighted(
+    observed: Numbers, reference: Numbers, deviations: Values | None
+) -> tuple[Array, Array, Array]:
     import numpy
 
-    observed, reference = numpy.asarray(observed, dtype=float), numpy.asarray(reference, dtype=float)
+    observed, reference = (
+        numpy.asarray(observed, dtype=float),
+        numpy.asarray(reference, dtype=float),
+    )
     if observed.ndim < 2 or observed.shape[-1] != 3 or observed.shape[-2:] != reference.shape[-2:]:
         raise ValueError(
             f"observed and reference are lists of as many directions with three components each; "
@@ -217,6 +239,9 @@ def _weighted(observed: Numbers, reference: Numbers, deviations: Values | None) 
         deviations = numpy.ones(observed.shape[-2])
     deviations = number_array(deviations, (observed.shape[-2],), "deviations")
     if not numpy.all(deviations > 0):
-        raise ValueError(f"a standard deviation is a positive number of radians; one of these is {deviations.min():g}")
+        raise ValueError(
+            "a standard deviation is a positive number of radians; one of these is "
+            f"{deviations.min():g}"
+        )
     spread: Array = deviations[:, None] ** -2.0
     return _unit(observed, "observed"), _unit(reference, "reference"), spread

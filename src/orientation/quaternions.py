@@ -9,10 +9,22 @@ from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, evaluate_numbers
 
 if TYPE_CHECKING:
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Symbols,
+        Values,
+    )
 
 
-def _length_excess(f: NumberFunctions[Number], scalar: Number, x: Number, y: Number, z: Number) -> Number:
+def _length_excess(
+    f: NumberFunctions[Number], scalar: Number, x: Number, y: Number, z: Number
+) -> Number:
     # The rows of the matrix are |q|^2 long: what passes here makes a matrix that passes as well.
     square = scalar * scalar + x * x + y * y + z * z
     return abs(square * square - 1)
@@ -28,7 +40,9 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
             "Then divide by the length: q / numpy.linalg.norm(q, axis=-1, keepdims=True)"
         )
     elif abs(length - 1) < 0.05:
-        cause = "were its components rounded, or integrated without restoring the length? Divide by it"
+        cause = (
+            "were its components rounded, or integrated without restoring the length? Divide by it"
+        )
     else:
         cause = (
             "is the angle halved in the cosine and in the sine, and the axis a unit vector? "
@@ -37,7 +51,9 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
     raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
 
-def demand_unit_length(entries: Sequence[complex], name: str = "quaternion", tolerance: float = TOLERANCE) -> None:
+def demand_unit_length(
+    entries: Sequence[complex], name: str = "quaternion", tolerance: float = TOLERANCE
+) -> None:
     """Raise the error of a quaternion that is not of unit length, for four numbers."""
     real = [entry.real for entry in entries]
     if not _length_excess(NUMBERS, *real) <= tolerance:
@@ -91,7 +107,12 @@ def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     In the book: :eq:`equation-quaternion-vector`.
     """
 
-    return evaluate(dcm_components_from_quaternion, (3, 3), ("quaternion", quaternion, (4,)), guard=QUATERNION_GUARD)
+    return evaluate(
+        dcm_components_from_quaternion,
+        (3, 3),
+        ("quaternion", quaternion, (4,)),
+        guard=QUATERNION_GUARD,
+    )
 
 
 def dcm_components_from_quaternion(
@@ -133,7 +154,13 @@ def quaternion_components_from_dcm(
     scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz]
     si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy
     scalar, x, y, z = f.pick(
-        scores, [(scores[0], si, sj, sk), (si, scores[1], ij, ik), (sj, ij, scores[2], jk), (sk, ik, jk, scores[3])]
+        scores,
+        [
+            (scores[0], si, sj, sk),
+            (si, scores[1], ij, ik),
+            (sj, ij, scores[2], jk),
+            (sk, ik, jk, scores[3]),
+        ],
     )
     share = f.where(scalar < 0, -1.0, 1.0) / f.norm(scalar, x, y, z)
     return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
@@ -174,7 +201,9 @@ def quaternion_from_dcm(dcm: Values) -> Array:
     Source: Shepperd (1978), Markley (2008).
     In the book: :eq:`equation-back-quaternion`.
     """
-    return evaluate_numbers(quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
+    return evaluate_numbers(
+        quaternion_components_from_dcm, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD
+    )
 
 
 @overload
@@ -186,9 +215,9 @@ def multiply_quaternions(first: Values, second: Values) -> Matrix: ...
 def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
     r"""Hamilton product of two quaternions.
 
-    With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and ``second``
-    turns :math:`A` to :math:`B`, their product turns :math:`N` to :math:`B`: quaternions are written
-    in the order of the turns, where matrices are written the other way,
+    With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and
+    ``second`` turns :math:`A` to :math:`B`, their product turns :math:`N` to :math:`B`: quaternions
+    are written in the order of the turns, where matrices are written the other way,
     :math:`{}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N`.
 
     Parameters

@@ -1,4 +1,6 @@
-"""Expressions tried at random values of their symbols: numbers decide what algebra decides slowly, or not at all."""
+"""Expressions tried at random values of their symbols: numbers decide what algebra decides slowly,
+or not at all.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +21,9 @@ Names: TypeAlias = "dict[str, set[Expression]]"
 #: A value for each name.
 Point: TypeAlias = dict[str, float]
 
-#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and two
-#: values beyond half a turn: the root of a square is then not taken for the cosine of the angle, nor
-#: for that of half the angle.
+#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and
+#: two values beyond half a turn: the root of a square is then not taken for the cosine of the
+#: angle, nor for that of half the angle.
 QUARTERS = (-3, -1, 0, 2)
 
 
@@ -59,7 +61,9 @@ def points_for(names: Iterable[str]) -> list[Point]:
 @overload
 def put_in(components: Sequence[Entry], names: Names, point: Point) -> list[complex]: ...
 @overload
-def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence[complex | Array]: ...
+def put_in(
+    components: Sequence[Column], names: Names, point: Point
+) -> Sequence[complex | Array]: ...
 def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence[complex | Array]:
     """Numbers for the components, with the values of one point for their symbols."""
     values: dict[Expression, Expression] = {}
@@ -67,15 +71,24 @@ def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence
         import sympy
 
         values = {atom: sympy.Float(point[name]) for name, atoms in names.items() for atom in atoms}
-    return [complex(entry.xreplace(values).evalf()) if _is_expression(entry) else entry for entry in components]
+    return [
+        complex(entry.xreplace(values).evalf()) if _is_expression(entry) else entry
+        for entry in components
+    ]
 
 
 @overload
 def at_random_points(*components: Sequence[Entry]) -> Iterator[tuple[list[complex], ...]]: ...
 @overload
-def at_random_points(*components: Sequence[Column]) -> Iterator[tuple[Sequence[complex | Array], ...]]: ...
-def at_random_points(*components: Sequence[Column]) -> Iterator[tuple[Sequence[complex | Array], ...]]:
-    """For each random choice of the symbols' values, a tuple of the lists of components as numbers."""
+def at_random_points(
+    *components: Sequence[Column],
+) -> Iterator[tuple[Sequence[complex | Array], ...]]: ...
+def at_random_points(
+    *components: Sequence[Column],
+) -> Iterator[tuple[Sequence[complex | Array], ...]]:
+    """For each random choice of the symbols' values, a tuple of the lists of components as
+    numbers.
+    """
     names = unknowns([entry for entries in components for entry in entries])
     for point in points_for(names):
         yield tuple(put_in(entries, names, point) for entries in components)

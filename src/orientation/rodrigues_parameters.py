@@ -1,7 +1,8 @@
 """Rodrigues (Gibbs) parameters and modified Rodrigues parameters: three numbers, by a tangent.
 
-Both are a stereographic picture of the unit quaternions: a line from the middle of the sphere, or from the
-quaternion -1, through the quaternion meets a flat space of three dimensions in the parameters.
+Both are a stereographic picture of the unit quaternions: a line from the middle of the sphere, or
+from the quaternion -1, through the quaternion meets a flat space of three dimensions in the
+parameters.
 """
 
 from __future__ import annotations
@@ -14,7 +15,17 @@ from .numbers_and_symbols import NUMBERS, TOLERANCE, Guard, evaluate, evaluate_n
 from .quaternions import dcm_components_from_quaternion, quaternion_components_from_dcm
 
 if TYPE_CHECKING:
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Symbols,
+        Values,
+    )
 
 
 @overload
@@ -26,13 +37,14 @@ def dcm_from_rodrigues(vector: Values) -> Matrix: ...
 def dcm_from_rodrigues(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of Rodrigues parameters, also called the Gibbs vector.
 
-    :math:`\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}`, and the matrix is Cayley's transform of its cross product:
+    :math:`\mathbf{g} = \tan\frac{\theta}{2}\,\hat{e}`, and the matrix is Cayley's transform of its
+    cross product:
 
     .. math::
 
-       {}^A\mathbf{C}^N
-       = \left(\mathbf{I} - [\mathbf{g}]_\times\right)\left(\mathbf{I} + [\mathbf{g}]_\times\right)^{-1}
-       = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T - 2\,[\mathbf{g}]_\times}{1 + g^2}
+       {}^A\mathbf{C}^N = \left(\mathbf{I} - [\mathbf{g}]_\times\right)\left(\mathbf{I} +
+       [\mathbf{g}]_\times\right)^{-1} = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T -
+       2\,[\mathbf{g}]_\times}{1 + g^2}
 
     Parameters
     ----------
@@ -54,7 +66,9 @@ def dcm_from_rodrigues(vector: Values) -> Array | Matrix:
     Source: Rodrigues (1840), Shuster (1993).
     """
 
-    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
+    def formula(
+        f: Functions[Component], x: Component, y: Component, z: Component
+    ) -> Sequence[Component]:
         length = f.norm(1, x, y, z)
         return dcm_components_from_quaternion(f, 1 / length, x / length, y / length, z / length)
 
@@ -77,7 +91,8 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
     Raises
     ------
     ValueError
-        If the matrix is not a direction cosine matrix, or half a turn, whose parameters are infinite.
+        If the matrix is not a direction cosine matrix, or half a turn, whose parameters are
+        infinite.
     SymbolsNotPossible
         If the matrix holds symbols.
 
@@ -97,7 +112,8 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
         if dcm_excess(NUMBERS, *entries) > TOLERANCE:
             explain_dcm(entries, where)
         raise ValueError(
-            f"dcm{where} is half a turn: its Rodrigues parameters, the tangent of half the angle, are infinite. "
+            f"dcm{where} is half a turn: its Rodrigues parameters, the tangent of half the angle, "
+            "are infinite. "
             f"Modified Rodrigues parameters, a quaternion or a rotation vector can hold it"
         )
 
@@ -145,10 +161,14 @@ def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     Source: Schaub and Junkins (1996).
     """
 
-    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
+    def formula(
+        f: Functions[Component], x: Component, y: Component, z: Component
+    ) -> Sequence[Component]:
         square = x**2 + y**2 + z**2
         whole = 1 + square
-        return dcm_components_from_quaternion(f, (1 - square) / whole, 2 * x / whole, 2 * y / whole, 2 * z / whole)
+        return dcm_components_from_quaternion(
+            f, (1 - square) / whole, 2 * x / whole, 2 * y / whole, 2 * z / whole
+        )
 
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 
@@ -164,8 +184,8 @@ def modified_rodrigues_from_dcm(dcm: Values) -> Array:
     Returns
     -------
     array of shape ``(3,)`` or ``(..., 3)``
-        :math:`\tan\frac{\theta}{4}\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`: of the vector and its
-        shadow, the one that is no longer than 1.
+        :math:`\tan\frac{\theta}{4}\,\hat{e}` with :math:`\theta` from 0 to :math:`\pi`: of the
+        vector and its shadow, the one that is no longer than 1.
 
     Raises
     ------
@@ -201,8 +221,8 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
 
        \boldsymbol{\sigma}' = -\,\frac{\boldsymbol{\sigma}}{\sigma^2}
 
-    It belongs to the quaternion :math:`-q`, the turn the other way round. Changing over to it whenever
-    :math:`\sigma` grows longer than 1 keeps clear of the singularity at a whole turn.
+    It belongs to the quaternion :math:`-q`, the turn the other way round. Changing over to it
+    whenever :math:`\sigma` grows longer than 1 keeps clear of the singularity at a whole turn.
 
     Parameters
     ----------
@@ -229,9 +249,13 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
         return f.where(x * x + y * y + z * z > 1e-300, 0, 1)
 
     def explain(components: Sequence[float], where: str) -> None:
-        raise ValueError(f"vector{where} is {components}, no turn at all: its shadow would be infinitely long")
+        raise ValueError(
+            f"vector{where} is {components}, no turn at all: its shadow would be infinitely long"
+        )
 
-    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
+    def formula(
+        f: Functions[Component], x: Component, y: Component, z: Component
+    ) -> Sequence[Component]:
         square = x * x + y * y + z * z
         return -x / square, -y / square, -z / square
 

@@ -10,7 +10,17 @@ from .numbers_and_symbols import evaluate, evaluate_numbers
 from .quaternions import quaternion_components_from_dcm
 
 if TYPE_CHECKING:
-    from ._types import Array, Component, Functions, Matrix, Number, NumberFunctions, Numbers, Symbols, Values
+    from ._types import (
+        Array,
+        Component,
+        Functions,
+        Matrix,
+        Number,
+        NumberFunctions,
+        Numbers,
+        Symbols,
+        Values,
+    )
 
 
 @overload
@@ -22,8 +32,8 @@ def dcm_from_rotation_vector(vector: Values) -> Matrix: ...
 def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a rotation vector: the exponential.
 
-    The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as the
-    angle. With :math:`\theta = |\mathbf{r}|`,
+    The rotation vector :math:`\mathbf{r} = \theta\,\hat{e}` points along the axis and is as long as
+    the angle. With :math:`\theta = |\mathbf{r}|`,
 
     .. math::
 
@@ -57,14 +67,16 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     In the book: :eq:`equation-exponential-closed`.
     """
 
-    def formula(f: Functions[Component], x: Component, y: Component, z: Component) -> Sequence[Component]:
+    def formula(
+        f: Functions[Component], x: Component, y: Component, z: Component
+    ) -> Sequence[Component]:
         angle = f.norm(x, y, z)
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
         cosine = f.cos(angle)
         first = f.where(turning, f.sin(angle) / length, 1.0)
-        # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers. It is
-        # divided twice because the square of a very small length is 0.
+        # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers.
+        # It is divided twice because the square of a very small length is 0.
         second = (1 - cosine) / length / length
         sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
         xy, xz, yz = rx * y, rx * z, ry * z

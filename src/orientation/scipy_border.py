@@ -1,8 +1,8 @@
 r"""The one place where this book's matrices meet SciPy's rotations.
 
-SciPy's ``Rotation`` of a frame :math:`A` in :math:`N` turns components measured along :math:`A` into
-components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The transpose happens here and
-nowhere else.
+SciPy's ``Rotation`` of a frame :math:`A` in :math:`N` turns components measured along :math:`A`
+into components along :math:`N`, so its matrix is :math:`{}^N\mathbf{C}^A`. The transpose happens
+here and nowhere else.
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def scipy_rotation_from_dcm(dcm: Values) -> Rotation:
     def transposed(f: Functions[Component], *entries: Component) -> Sequence[Component]:
         return [entries[3 * column + row] for row in range(3) for column in range(3)]
 
-    return Rotation.from_matrix(evaluate_numbers(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD))
+    return Rotation.from_matrix(
+        evaluate_numbers(transposed, (3, 3), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
+    )
 
 
 def dcm_from_scipy_rotation(rotation: Rotation) -> Array:

@@ -1,4 +1,6 @@
-"""What an attack tries for answers that are orientations: turns about the axes, in every order, axis and sign."""
+"""What an attack tries for answers that are orientations: turns about the axes, in every order,
+axis and sign.
+"""
 
 import itertools
 import math
@@ -16,7 +18,9 @@ def families(public, at):
     """The generators of candidates for a question, in the order in which they are tried."""
     kind = public.kind
     if kind == "sequence":
-        yield of_words("all sequences", ["xyz"] * 3, "".join, lambda word: word[0] != word[1] != word[2])
+        yield of_words(
+            "all sequences", ["xyz"] * 3, "".join, lambda word: word[0] != word[1] != word[2]
+        )
     elif kind == "function":
         yield from _of_library(public)
         yield from _of_chains(public)
@@ -40,24 +44,33 @@ def _of_orientations(public, at, build, size):
         return Family(
             name,
             sizes,
-            lambda choices: one_sign(public, build(quaternions(choices)).reshape(len(choices), -1), size),
+            lambda choices: one_sign(
+                public, build(quaternions(choices)).reshape(len(choices), -1), size
+            ),
         )
 
-    symbols = np.array([at.values[name] for name in at.angular]).reshape(len(at.angular), len(at.ones))
+    symbols = np.array([at.values[name] for name in at.angular]).reshape(
+        len(at.angular), len(at.ones)
+    )
     if at.angular:
         yield family("turns about the axes through the symbols", *_turns_of(at, symbols))
         yield family("the same, one of them from a quarter turn on", *_shifted(at, symbols))
         yield family("the same with half turns of the frames", *_reframed(at, symbols[:2]))
         yield family("the same and a special angle", *_turns_of(at, symbols, at.constants(15)))
-        yield family("the same and two special angles", *_turns_of(at, symbols[:2], at.constants(30), at.constants(90)))
+        yield family(
+            "the same and two special angles",
+            *_turns_of(at, symbols[:2], at.constants(30), at.constants(90)),
+        )
         return
     fine, coarse = at.constants(5), at.constants(15)
     yield family("one turn about a special axis", *_special_axes(fine))
     yield family(
-        "two turns through given or special angles", *_turns_of(at, np.zeros((0, len(at.ones))), coarse, coarse)
+        "two turns through given or special angles",
+        *_turns_of(at, np.zeros((0, len(at.ones))), coarse, coarse),
     )
     yield family(
-        "three turns through special angles", *_turns_of(at, np.zeros((0, len(at.ones))), *[at.constants(45)] * 3)
+        "three turns through special angles",
+        *_turns_of(at, np.zeros((0, len(at.ones))), *[at.constants(45)] * 3),
     )
 
 
@@ -68,7 +81,9 @@ def _about(axis, angles):
     np.put_along_axis(
         found[..., 1:],
         np.broadcast_to(
-            axis.reshape(-1, *[1] * angles.ndim)[: len(angles)].reshape(len(angles), *[1] * angles.ndim),
+            axis.reshape(-1, *[1] * angles.ndim)[: len(angles)].reshape(
+                len(angles), *[1] * angles.ndim
+            ),
             (*angles.shape, 1),
         ),
         np.sin(angles / 2)[..., None],
@@ -92,7 +107,9 @@ def _times(first, second):
 
 
 def _turns_of(at, symbols, *constants):
-    """Turns through every symbol once, and through one of each list of constants, in every order, axis and sign."""
+    """Turns through every symbol once, and through one of each list of constants, in every order,
+    axis and sign.
+    """
     count = len(symbols) + len(constants)
     orders = np.array(list(itertools.permutations(range(count)))[:120])
     sizes = (len(orders), *[3] * count, *[2] * len(symbols), *map(len, constants))
@@ -103,7 +120,9 @@ def _turns_of(at, symbols, *constants):
         which = choices[:, 1 + count + len(symbols) :]
         angles = [symbols[k] * signs[:, k, None] for k in range(len(symbols))]
         angles += [constant[which[:, k]] for k, constant in enumerate(constants)]
-        angles = np.stack([np.broadcast_to(part, (len(choices), len(at.ones))) for part in angles], axis=1)
+        angles = np.stack(
+            [np.broadcast_to(part, (len(choices), len(at.ones))) for part in angles], axis=1
+        )
         result = None
         for place in range(count):
             angle = np.take_along_axis(angles, order[:, place, None, None], axis=1)[:, 0]
@@ -135,7 +154,9 @@ def _shifted(at, symbols):
 
 
 def _reframed(at, symbols):
-    """Turns with the frames named otherwise: one of the 24 quarter turns of a cube before and after."""
+    """Turns with the frames named otherwise: one of the 24 quarter turns of a cube before and
+    after.
+    """
     inner, turned = _turns_of(at, symbols)
     cube = _cube()
 
@@ -148,7 +169,9 @@ def _reframed(at, symbols):
 
 
 def _cube():
-    quarter = [np.array([math.cos(math.pi / 4), *(math.sin(math.pi / 4) * np.eye(3)[k])]) for k in range(3)]
+    quarter = [
+        np.array([math.cos(math.pi / 4), *(math.sin(math.pi / 4) * np.eye(3)[k])]) for k in range(3)
+    ]
     found = [np.array([1.0, 0, 0, 0])]
     for one in found:
         for turn in quarter:
@@ -159,7 +182,11 @@ def _cube():
 
 
 def _special_axes(angles):
-    axes = [axis for axis in itertools.product(range(-3, 4), repeat=3) if any(axis) and math.gcd(*axis) == 1]
+    axes = [
+        axis
+        for axis in itertools.product(range(-3, 4), repeat=3)
+        if any(axis) and math.gcd(*axis) == 1
+    ]
     axes.sort(key=lambda axis: (sum(map(abs, axis)), axis))
     axes = np.array([np.array(axis) / np.linalg.norm(axis) for axis in axes])
 
@@ -185,7 +212,9 @@ def _dcm_of(quaternions):
 
 def _of_turned(public, at):
     """Components that turns of the frame give of a vector along an axis."""
-    symbols = np.array([at.values[name] for name in at.angular]).reshape(len(at.angular), len(at.ones))
+    symbols = np.array([at.values[name] for name in at.angular]).reshape(
+        len(at.angular), len(at.ones)
+    )
     others = [name for name in at.symbols if name not in at.angular]
     scales = [at.ones, *(at.values[name] for name in others)]
     scales += [at.values[a] * at.values[b] for a, b in itertools.combinations(others, 2)]
@@ -218,7 +247,11 @@ def _of_library(public):
                 rows = []
                 try:
                     for arguments in calls:
-                        rows.append(np.asarray(function(*(arguments[place] for place in order)), dtype=float).ravel())
+                        rows.append(
+                            np.asarray(
+                                function(*(arguments[place] for place in order)), dtype=float
+                            ).ravel()
+                        )
                 except Exception:
                     continue
                 if all(len(row) == size for row in rows):
@@ -231,16 +264,20 @@ def _of_library(public):
         table = np.array(candidates).reshape(len(candidates), -1)
         if size == 4:
             table = one_sign(public, table, 4)
-        yield Family("functions of the library", (len(table),), lambda choices: table[choices[:, 0]])
+        yield Family(
+            "functions of the library", (len(table),), lambda choices: table[choices[:, 0]]
+        )
 
 
-#: Which of a list of turns are made. Not all of them: a loop over the turns is what such a question asks for, and who
-#: writes it has solved it. Tried is what one gets without.
+#: Which of a list of turns are made. Not all of them: a loop over the turns is what such a question
+#: asks for, and who writes it has solved it. Tried is what one gets without.
 SOME = (slice(1), slice(-1, None), slice(1, 2), slice(2), slice(-2, None), slice(0, None, 2))
 
 
 def _of_chains(public):
-    """Where the argument is a list of turns, each an axis and an angle: what some of them give, one after another."""
+    """Where the argument is a list of turns, each an axis and an angle: what some of them give, one
+    after another.
+    """
     size = size_of(public)
     calls = [_turns_in(call) for call in calls_for(public)]
     if None in calls or size not in (4, 9):
@@ -254,9 +291,17 @@ def _of_chains(public):
                 whole = np.array([1.0, 0, 0, 0])
                 some_turns = turns[SOME[some]]
                 if added:  # all angles together, about the axis of the first of them
-                    some_turns = [(some_turns[0][0], sum(angle for _, angle in some_turns))] if some_turns else []
+                    some_turns = (
+                        [(some_turns[0][0], sum(angle for _, angle in some_turns))]
+                        if some_turns
+                        else []
+                    )
                 for axis, angle in some_turns:
-                    angle = (math.radians(angle) if degrees else angle) * (-1 if backwards else 1) / (2 if half else 1)
+                    angle = (
+                        (math.radians(angle) if degrees else angle)
+                        * (-1 if backwards else 1)
+                        / (2 if half else 1)
+                    )
                     turn = np.array([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])
                     whole = _times(turn, whole) if other_order else _times(whole, turn)
                 row.append(_dcm_of(whole).reshape(9) if size == 9 else whole)
@@ -267,14 +312,20 @@ def _of_chains(public):
 
 
 def _turns_in(call):
-    """The axes, as unit vectors, and the angles of a call whose one argument is a list of them; or ``None``."""
+    """The axes, as unit vectors, and the angles of a call whose one argument is a list of them; or
+    ``None``.
+    """
     if len(call) != 1 or not isinstance(call[0], list):
         return None
     turns = []
     for one in call[0]:
         if not isinstance(one, list) or len(one) != 2 or not isinstance(one[1], (int, float)):
             return None
-        axis = np.eye(3)["xyz".index(one[0])] if one[0] in ("x", "y", "z") else np.array(one[0], dtype=float)
+        axis = (
+            np.eye(3)["xyz".index(one[0])]
+            if one[0] in ("x", "y", "z")
+            else np.array(one[0], dtype=float)
+        )
         if axis.shape != (3,):
             return None
         turns.append((axis / np.linalg.norm(axis), one[1]))

@@ -1,4 +1,6 @@
-"""The order that mistakes have in sealed files of format 3, as the second edition made them. It is never changed."""
+"""The order that mistakes have in sealed files of format 3, as the second edition made them. It is
+never changed.
+"""
 
 TURNS = (0, 1, 2, 3, 4, 5)
 SEQUENCES = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy", "xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
@@ -34,5 +36,6 @@ CATALOGUE = (
     ("double", {}),
 )
 FORMAT_3 = dict.fromkeys(
-    ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle", "sequence"), CATALOGUE
+    ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle", "sequence"),
+    CATALOGUE,
 )

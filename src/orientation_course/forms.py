@@ -30,7 +30,9 @@ def another_dcm(question, answer):
 
     if hasattr(answer, "dcm"):
         answer = answer.dcm(next(iter(answer._dcm_dict)))
-    return dcm_of(_a_turn()) * sympy.Matrix(answer.tolist() if hasattr(answer, "tolist") else answer)
+    return dcm_of(_a_turn()) * sympy.Matrix(
+        answer.tolist() if hasattr(answer, "tolist") else answer
+    )
 
 
 def another_quaternion(question, answer):

@@ -1,7 +1,8 @@
-"""The kinds of questions that are about orientation: how an answer is read, and what makes two answers one.
+"""The kinds of questions that are about orientation: how an answer is read, and what makes two
+answers one.
 
-A quaternion and its negative, or the many Euler angles of one orientation, are first turned into something that
-there is one of.
+A quaternion and its negative, or the many Euler angles of one orientation, are first turned into
+something that there is one of.
 """
 
 import unicodedata
@@ -35,7 +36,8 @@ def _dcm(question, value):
         if target not in value[1] or source not in value[1][target]:
             raise Fault(
                 "frame",
-                f"These are the frames {listed(value[1])}; the question asks for the orientation of `{target}` with "
+                f"These are the frames {listed(value[1])}; the question asks for the orientation "
+                f"of `{target}` with "
                 f"respect to `{source}`, and there is no path between two of these names.",
             )
         value = value[1][target][source]
@@ -46,7 +48,8 @@ def _dcm(question, value):
             connected = [other for other in others if other != name]
             raise Fault(
                 "frame",
-                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}; the question asks "
+                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}; "
+                "the question asks "
                 f"for the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
@@ -54,7 +57,11 @@ def _dcm(question, value):
         # Its rows as the unit vectors themselves: their components are along the source frame.
         source = question.frames[1]
         if not all(source in row[1] for row in value[1]):
-            raise Fault("frame", f"These vectors are not connected with the frame `{source}` that the question names.")
+            raise Fault(
+                "frame",
+                f"These vectors are not connected with the frame `{source}` that the "
+                "question names.",
+            )
         value = ["list", [row[1][source] for row in value[1]]]
     return row_entries(value, 3, 3, "A matrix of 3 × 3")
 
@@ -85,11 +92,16 @@ def _sequence(question, plain):
     text = "".join(letter for letter in unicodedata.normalize("NFKC", given) if letter.isalnum())
     text = text.translate(str.maketrans("123", "xyz"))
     if len(text) != 3 or set(text) - set("xyz"):
-        raise Fault("shape", f"A sequence is three of the letters x, y and z, such as `'xyz'`; this is `{text[:20]}`.")
+        raise Fault(
+            "shape",
+            "A sequence is three of the letters x, y and z, such as `'xyz'`; this is "
+            f"`{text[:20]}`.",
+        )
     if text[0] == text[1] or text[1] == text[2]:
         raise Fault(
             "impossible sequence",
-            f"`{text}` has two turns in a row about one axis, which are one turn: it is none of the 12 sets.",
+            f"`{text}` has two turns in a row about one axis, which are one turn: it is none of "
+            "the 12 sets.",
         )
     return text
 
@@ -116,10 +128,14 @@ def _dcm_fault(question, numbers):
         names = ("first", "second", "third")
         if i == j:
             length = MP.sqrt(_dot(rows[i], rows[i]))
-            said = f"the {names[i]} row should be a unit vector and has length {length_in_words(length)}{where}"
+            said = (
+                f"the {names[i]} row should be a unit vector and has length "
+                f"{length_in_words(length)}{where}"
+            )
         else:
             said = (
-                f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot product is "
+                f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot "
+                "product is "
                 f"{short(_dot(rows[i], rows[j]))}{where}"
             )
         return Fault("not orthogonal", f"This is no direction cosine matrix: {said}.")
@@ -138,7 +154,8 @@ def _quaternion_fault(question, numbers):
         where = " at the values tried" if question.symbols else ""
         return Fault(
             "not unit length",
-            f"The quaternion of an orientation has length 1; this one has length {length_in_words(length)}{where}.",
+            "The quaternion of an orientation has length 1; this one has length "
+            f"{length_in_words(length)}{where}.",
         )
     return None
 
@@ -158,7 +175,8 @@ def _axis_fault(question, numbers):
     length = FUNCTIONS.norm(*numbers[:3])
     if abs(length - 1) > slack(question) / 3 and question.arguments.get("unit axis", True):
         return Fault(
-            "not unit length", f"The axis should be a unit vector; this one has length {length_in_words(length)}."
+            "not unit length",
+            f"The axis should be a unit vector; this one has length {length_in_words(length)}.",
         )
     return _angles_fault(question, numbers[3:])
 
@@ -179,12 +197,17 @@ def _determinant(rows):
 
 #: Where to begin with each kind of question.
 BEGIN = {
-    "direction cosine matrix": "Write down what one row is: the components of one unit vector of the first "
+    "direction cosine matrix": "Write down what one row is: the components of one unit vector "
+    "of the first "
     "frame along those of the second. Draw the two triads for a small angle and read off one row.",
-    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into sine and cosine.",
-    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the three turns with the one "
+    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into "
+    "sine and cosine.",
+    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the "
+    "three turns with "
+    "the one "
     "that is given, and begin with its simplest entry.",
-    "axis and angle": "Which vector does the turn leave as it is? It is the axis; the trace gives the angle.",
+    "axis and angle": "Which vector does the turn leave as it is? It is the axis; the trace "
+    "gives the angle.",
     "sequence": "Which axis do the first two frames share? And which one the next two?",
 }
 KINDS = {
@@ -212,7 +235,9 @@ KINDS = {
         mistakes=mistakes.of_quaternion,
         messages=mistakes.MESSAGES,
         details=mistakes.DETAILS,
-        slips={"conjugate": ("it is the conjugate, and its conjugate has another mistake.", _conjugate)},
+        slips={
+            "conjugate": ("it is the conjugate, and its conjugate has another mistake.", _conjugate)
+        },
         build=mistakes.quaternion_of,
         another=forms.another_quaternion,
     ),

@@ -1,4 +1,6 @@
-"""The typical mistakes with orientations: what each does to a right answer, and what the student is told."""
+"""The typical mistakes with orientations: what each does to a right answer, and what the student is
+told.
+"""
 
 import itertools
 import math
@@ -10,14 +12,20 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 def _name(question):
     target, source = (question.frames or ("A", "N"))[:2]
-    return rf"${{}}^{{{target}}}\mathbf{{C}}^{{{source}}}$", rf"${{}}^{{{source}}}\mathbf{{C}}^{{{target}}}$"
+    return (
+        rf"${{}}^{{{target}}}\mathbf{{C}}^{{{source}}}$",
+        rf"${{}}^{{{source}}}\mathbf{{C}}^{{{target}}}$",
+    )
 
 
 def _transposed(question):
     if question.kind == "matrix" or not question.frames:
         return "This is the transpose of what the question asks for."
     wanted, given = _name(question)
-    return f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. Transpose it."
+    return (
+        f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. "
+        "Transpose it."
+    )
 
 
 def _product(question):
@@ -28,12 +36,14 @@ def _product(question):
 def _other_order(question):
     if question.kind_of_values == "quaternion":
         return (
-            "The quaternions are multiplied in the wrong order. The first turn goes on the left, unlike with "
+            "The quaternions are multiplied in the wrong order. The first turn goes on the left, "
+            "unlike with "
             "matrices; in this order the same turns are about axes fixed in the first frame "
             "(space fixed)."
         )
     return (
-        "The factors are multiplied in the wrong order. The matrix of the first turn goes on the right; in this "
+        "The factors are multiplied in the wrong order. The matrix of the first turn goes on the "
+        "right; in this "
         "order the same turns are about axes fixed in the first frame (space fixed)."
     )
 
@@ -48,28 +58,38 @@ MESSAGES = {
     "sign of two turns": lambda question, first, second: (
         f"The angles of {_turn(first)} and of {_turn(second)} have the wrong sign."
     ),
-    "sign of every turn": lambda question: "Every angle has the wrong sign: each turn goes the wrong way round.",
+    "sign of every turn": lambda question: (
+        "Every angle has the wrong sign: each turn goes the wrong way round."
+    ),
     "other order": _other_order,
     "other order, transposed": lambda question: (
         "The factors are multiplied in the wrong order, and the product is transposed."
     ),
     "other order, sign of one turn": lambda question, turn: (
-        f"{_product(question)} in the wrong order, and the angle of {_turn(turn)} has the wrong sign."
+        f"{_product(question)} in the wrong order, and the angle of {_turn(turn)} has "
+        "the wrong sign."
     ),
     "angles interchanged": lambda question, first, second: (
         f"The angles of {_turn(first)} and of {_turn(second)} have been swapped."
     ),
     "another sequence": lambda question, sequence: (
-        f"These are body fixed turns in the sequence `{sequence}`. The question asks for another one."
+        f"These are body fixed turns in the sequence `{sequence}`. The question asks for "
+        "another one."
     ),
     "another axis": lambda question, turn, axis: (
-        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about a different one."
+        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about a "
+        "different one."
     ),
     "turn missing": lambda question, turn: f"{_turn(turn).capitalize()} is missing.",
-    "one factor only": lambda question, turn: f"This is {_turn(turn)} alone. The others are missing.",
-    "sine for cosine": lambda question, turn: f"Sine and cosine have been swapped in {_turn(turn)}.",
+    "one factor only": lambda question, turn: (
+        f"This is {_turn(turn)} alone. The others are missing."
+    ),
+    "sine for cosine": lambda question, turn: (
+        f"Sine and cosine have been swapped in {_turn(turn)}."
+    ),
     "degrees taken for radians": lambda question: (
-        "Degrees were given to functions that take radians. Convert them first: `sm.rad(30)` or `np.deg2rad(30)`."
+        "Degrees were given to functions that take radians. Convert them first: `sm.rad(30)` or "
+        "`np.deg2rad(30)`."
     ),
     "conjugate": lambda question: (
         "This is the conjugate, which turns the other way: its vector part has the wrong sign."
@@ -85,7 +105,8 @@ MESSAGES = {
     ),
     "quarter angle": lambda question: "The angle has been halved twice.",
     "angles of another sequence": lambda question, sequence: (
-        f"These are the angles for the sequence `{sequence}`; the question asks for `{question.arguments['sequence']}`."
+        f"These are the angles for the sequence `{sequence}`; the question asks for "
+        f"`{question.arguments['sequence']}`."
     ),
     "angles of the transpose": lambda question: "These are the angles of the transposed matrix.",
     "space fixed angles": lambda question: (
@@ -94,9 +115,12 @@ MESSAGES = {
     "angles in reverse": lambda question: "The three angles are right but in reverse order.",
     "sign of one angle": lambda question, turn: f"The {ORDINALS[turn]} angle has the wrong sign.",
     "sign of every angle": lambda question: "All angles have the wrong sign.",
-    "axis reversed": lambda question: "The turn goes the wrong way round: the axis, or the angle, has the wrong sign.",
+    "axis reversed": lambda question: (
+        "The turn goes the wrong way round: the axis, or the angle, has the wrong sign."
+    ),
     "sequence reversed": lambda question: (
-        "Are these turns about axes fixed in space, or counted from the last to the first? Go through them once more: "
+        "Are these turns about axes fixed in space, or counted from the last to the first? Go "
+        "through them once more: "
         "each is about an axis of the frame that the turn before it has reached."
     ),
     "cosine for sine": lambda question: "Sine and cosine have been swapped.",
@@ -111,18 +135,33 @@ DETAILS = {
     "turn": (None, *range(len(ORDINALS))),
     "first": tuple(range(len(ORDINALS))),
     "second": tuple(range(len(ORDINALS))),
-    "sequence": ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy", "xyz", "yzx", "zxy", "xzy", "zyx", "yxz"),
+    "sequence": (
+        "zxz",
+        "xyx",
+        "yzy",
+        "zyz",
+        "xzx",
+        "yxy",
+        "xyz",
+        "yzx",
+        "zxy",
+        "xzy",
+        "zyx",
+        "yxz",
+    ),
     "axis": "xyz",
 }
 
-#: What the class did, by the note of a mistake or of a fault of the form: for the instructor's report.
+#: What the class did, by the note of a mistake or of a fault of the form: for the instructor's
+#: report.
 DEEDS = {
     "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
     "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
     "sign of every turn": "turned the wrong way round throughout",
     "other order": "multiplied in the other order (space fixed turns)",
     "other order, transposed": "multiplied in the other order and gave the transpose",
-    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn the wrong sign",
+    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn "
+    "the wrong sign",
     "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
     "another sequence": "used the sequence {sequence}",
     "another axis": "made the {turn} turn about {axis}",
@@ -174,7 +213,9 @@ def quaternion_of(turns):
 
     result = sympy.Matrix([1, 0, 0, 0])
     for axis, angle in turns:
-        result = multiply_quaternions(result, quaternion_from_axis_angle(_components(axis), sympy.sympify(angle)))
+        result = multiply_quaternions(
+            result, quaternion_from_axis_angle(_components(axis), sympy.sympify(angle))
+        )
     return result
 
 
@@ -194,7 +235,10 @@ def _of_turns(build, turns):
     from orientation import SEQUENCES
 
     def changed(*numbers):
-        return [(axis, -angle if order in numbers else angle) for order, (axis, angle) in enumerate(turns)]
+        return [
+            (axis, -angle if order in numbers else angle)
+            for order, (axis, angle) in enumerate(turns)
+        ]
 
     count = len(turns)
 
@@ -211,7 +255,11 @@ def _of_turns(build, turns):
             yield Mistake("turn missing", {"turn": turn}, build(turns[:turn] + turns[turn + 1 :]))
     for first, second in itertools.combinations(range(count), 2):
         if count > 2:
-            yield Mistake("sign of two turns", {"first": first, "second": second}, build(changed(first, second)))
+            yield Mistake(
+                "sign of two turns",
+                {"first": first, "second": second},
+                build(changed(first, second)),
+            )
             for turn in range(count):
                 if turn not in (first, second):
                     yield Mistake("one factor only", {"turn": turn}, build([turns[turn]]))
@@ -245,7 +293,9 @@ def _of_turns(build, turns):
         yield Mistake("other order, sign of one turn", {"turn": turn}, build(changed(turn)[::-1]))
     if turns and not any(sympy.sympify(angle).free_symbols for _, angle in turns):
         yield Mistake(
-            "degrees taken for radians", {}, build([(axis, sympy.deg(angle).evalf(20)) for axis, angle in turns])
+            "degrees taken for radians",
+            {},
+            build([(axis, sympy.deg(angle).evalf(20)) for axis, angle in turns]),
         )
 
 
@@ -281,7 +331,12 @@ def of_quaternion(question, answer, turns, turned):
 
 
 def of_angles(question, answer, turns, turned):
-    from orientation import SEQUENCES, body_fixed_from_dcm, dcm_from_body_fixed, space_fixed_from_dcm
+    from orientation import (
+        SEQUENCES,
+        body_fixed_from_dcm,
+        dcm_from_body_fixed,
+        space_fixed_from_dcm,
+    )
 
     angles = [float(angle) for angle in answer]
     dcm = dcm_from_body_fixed(angles, question.arguments["sequence"])
@@ -293,13 +348,21 @@ def of_angles(question, answer, turns, turned):
         )
     yield Mistake("sign of every angle", {}, [-angle for angle in angles])
     yield Mistake("angles in reverse", {}, angles[::-1])
-    yield Mistake("angles of the transpose", {}, list(body_fixed_from_dcm(dcm.T, question.arguments["sequence"])))
+    yield Mistake(
+        "angles of the transpose",
+        {},
+        list(body_fixed_from_dcm(dcm.T, question.arguments["sequence"])),
+    )
     yield Mistake("in degrees", {}, [math.degrees(angle) for angle in angles])
-    yield Mistake("space fixed angles", {}, list(space_fixed_from_dcm(dcm, question.arguments["sequence"])))
+    yield Mistake(
+        "space fixed angles", {}, list(space_fixed_from_dcm(dcm, question.arguments["sequence"]))
+    )
     for sequence in SEQUENCES:
         if sequence != question.arguments["sequence"]:
             yield Mistake(
-                "angles of another sequence", {"sequence": sequence}, list(body_fixed_from_dcm(dcm, sequence))
+                "angles of another sequence",
+                {"sequence": sequence},
+                list(body_fixed_from_dcm(dcm, sequence)),
             )
 
 
@@ -313,7 +376,9 @@ def of_axis_and_angle(question, answer, turns, turned):
     yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
     yield Mistake("half", {}, [axis, angle / 2])
     left = sympy.cos(angle) + 1
-    if not left.is_number or left > 1e-9:  # twice half a turn is none at all, and that is nobody's doubled angle
+    if (
+        not left.is_number or left > 1e-9
+    ):  # twice half a turn is none at all, and that is nobody's doubled angle
         yield Mistake("double", {}, [axis, 2 * angle])
 
 

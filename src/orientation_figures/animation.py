@@ -9,8 +9,8 @@ import numpy as np
 from .drawing import collapsed, pair, path_data
 from .style import STYLE
 
-# Without this script the figure is a still. It shows the controls, and lets the browser's own animation
-# clock (SMIL) be set by the slider or run by the button.
+# Without this script the figure is a still. It shows the controls, and lets the browser's own
+# animation clock (SMIL) be set by the slider or run by the button.
 SCRIPT = """
 document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
   const svg = figure.querySelector('svg'), [button, slider] = figure.querySelectorAll('button, input');
@@ -54,7 +54,8 @@ document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure
 
 
 def one_after_another(angles, progress):
-    """Return the angles as they are when ``progress`` of the turns are done, each turn after the one before.
+    """Return the angles as they are when ``progress`` of the turns are done, each turn after the
+    one before.
 
     Examples
     --------
@@ -62,7 +63,9 @@ def one_after_another(angles, progress):
     >>> one_after_another((0.5, 0.8, -0.2), 1.5)
     [0.5, 0.4, 0.0]
     """
-    return [float(angle) * min(max(progress - turn, 0), 1) + 0.0 for turn, angle in enumerate(angles)]
+    return [
+        float(angle) * min(max(progress - turn, 0), 1) + 0.0 for turn, angle in enumerate(angles)
+    ]
 
 
 class Animation:
@@ -74,8 +77,8 @@ class Animation:
         ``draw(progress)`` returns the ``Drawing`` at that moment; ``progress`` runs from 0 to the
         number of steps. All drawings must consist of the same marks in the same order.
     steps : sequence of (str, float or str)
-        What happens in each step: the words shown under the picture, and what a screen reader adds to
-        them, either the angle turned so far (the last value is given, in radians) or more words.
+        What happens in each step: the words shown under the picture, and what a screen reader adds
+        to them, either the angle turned so far (the last value is given, in radians) or more words.
     still : float, optional
         The moment shown at first, by default the end. The ``alt`` of its drawing is used.
     frames : int
@@ -93,20 +96,27 @@ class Animation:
         self.steps = list(steps)
         # Each step starts and ends gently, and then rests for one key frame.
         eased = [(j / frames) ** 2 * (3 - 2 * j / frames) for j in range(1, frames + 1)]
-        self.moments = [0] + [step + part for step in range(len(self.steps)) for part in [*eased, 1]]
+        self.moments = [0] + [
+            step + part for step in range(len(self.steps)) for part in [*eased, 1]
+        ]
         self.still = len(self.moments) - 1 if still is None else round(still * (frames + 1))
         self.drawings = [draw(moment) for moment in self.moments]
         self.seconds = seconds / frames
-        shapes = [[(kind, shape) for kind, shape, _, _ in drawing.marks] for drawing in self.drawings]
+        shapes = [
+            [(kind, shape) for kind, shape, _, _ in drawing.marks] for drawing in self.drawings
+        ]
         for moment, shape in zip(self.moments, shapes):
             if shape != shapes[0]:
                 raise ValueError(
-                    f"the drawing at {moment:.2f} does not consist of the same marks as the one at 0; "
+                    f"the drawing at {moment:.2f} does not consist of the same marks as "
+                    "the one at 0; "
                     "an arrow may point straight at the reader there: choose another view"
                 )
 
     def texts(self):
-        """Return, for each key frame, the number of its step (from 0) and what a screen reader adds."""
+        """Return, for each key frame, the number of its step (from 0) and what a screen reader
+        adds.
+        """
         texts = []
         for moment in self.moments:
             step = max(int(np.ceil(moment)) - 1, 0)
@@ -124,8 +134,13 @@ class Animation:
     def _repr_html_(self):
         motions = [_motion(marks) for marks in zip(*(drawing.marks for drawing in self.drawings))]
         svg = self.drawings[self.still].svg(motions, self.bounds(), decimals=1)
-        words = [f"Step {step} of {len(self.steps)}: {words}" for step, (words, _) in enumerate(self.steps, start=1)]
-        texts = escape(json.dumps([words, self.texts()], separators=(",", ":")), quote=False).replace("'", "&#39;")
+        words = [
+            f"Step {step} of {len(self.steps)}: {words}"
+            for step, (words, _) in enumerate(self.steps, start=1)
+        ]
+        texts = escape(
+            json.dumps([words, self.texts()], separators=(",", ":")), quote=False
+        ).replace("'", "&#39;")
         name = hashlib.sha256(svg.encode()).hexdigest()[:10]
         return (
             f'<figure class="orientation-figure" data-moving="{name}" data-texts=\'{texts}\'>'
@@ -145,11 +160,16 @@ def _motion(marks):
         return ""
     shape = marks[0][1]
     if isinstance(shape, str):
-        return _animate('animate attributeName="d"', [path_data(shape, place, 1) for _, _, place, _ in marks])
-    places, opacities = [pair(place, 1) for _, _, place, _ in marks], [f"{opacity:.2g}" for *_, opacity in marks]
-    return _animate('animateTransform attributeName="transform" type="translate"', places) + _animate(
-        'animate attributeName="opacity"', opacities
+        return _animate(
+            'animate attributeName="d"', [path_data(shape, place, 1) for _, _, place, _ in marks]
+        )
+    places, opacities = (
+        [pair(place, 1) for _, _, place, _ in marks],
+        [f"{opacity:.2g}" for *_, opacity in marks],
     )
+    return _animate(
+        'animateTransform attributeName="transform" type="translate"', places
+    ) + _animate('animate attributeName="opacity"', opacities)
 
 
 def _animate(tag, values):
@@ -157,6 +177,13 @@ def _animate(tag, values):
     if len(set(values)) == 1:
         return ""
     # A value equal to both its neighbours says nothing new.
-    keys = [i for i in range(last + 1) if i in (0, last) or not values[i - 1] == values[i] == values[i + 1]]
+    keys = [
+        i
+        for i in range(last + 1)
+        if i in (0, last) or not values[i - 1] == values[i] == values[i + 1]
+    ]
     times = ";".join(f"{i / last:.4g}".removeprefix("0") or "0" for i in keys)
-    return f'<{tag} begin="indefinite" keyTimes="{times}" values="{";".join(values[i] for i in keys)}"/>'
+    return (
+        f'<{tag} begin="indefinite" keyTimes="{times}" '
+        f'values="{";".join(values[i] for i in keys)}"/>'
+    )

@@ -1,4 +1,6 @@
-"""``python -m orientation_figures.card``: the convention card, a sheet with two sides, from the table."""
+"""``python -m orientation_figures.card``: the convention card, a sheet with two sides, from the
+table.
+"""
 
 import io
 import textwrap
@@ -9,10 +11,14 @@ from orientation_workbench.programs import PROGRAMS
 COMMAND = "python -m orientation_figures.card"
 SETTINGS = {"svg.hashsalt": "convention card", "svg.fonttype": "path", "pdf.fonttype": 42}
 FOLDER = Path(__file__).parents[2] / "chapters"
-FILES = {name: FOLDER / name for name in ("convention-card.pdf", "convention-card.svg", "convention-card-back.svg")}
+FILES = {
+    name: FOLDER / name
+    for name in ("convention-card.pdf", "convention-card.svg", "convention-card-back.svg")
+}
 FILE = FILES["convention-card.pdf"]
 WIDTH, HEIGHT, MARGIN = 595, 842, 34  # points: A4
-# What stands in the lines: the parts of a quaternion, of a rotation vector and of a matrix, and the gimbal's angles.
+# What stands in the lines: the parts of a quaternion, of a rotation vector and of a matrix, and the
+# gimbal's angles.
 QUATERNION = {"w": "q0", "x": "qi", "y": "qj", "z": "qk"}
 VECTOR = {"x": "rx", "y": "ry", "z": "rz"}
 ANGLES = {
@@ -32,23 +38,38 @@ BY_AXIS = {"az": "psi", "ax": "theta", "ay": "phi"}
 LONGEST = 82  # characters of a line of code that fit beside the name of its form
 ON_THE_FRONT = 12
 FRONT = (
-    "Orientation of Reference Frames. “As here” is the matrix whose rows are the unit vectors of A in N;",
-    "a program with the transposed one gives its columns. Quaternions are Hamilton's, q0 the scalar; angles z-x-y.",
+    "Orientation of Reference Frames. “As here” is the matrix whose rows are the unit "
+    "vectors of A in N;",
+    "a program with the transposed one gives its columns. Quaternions are Hamilton's, q0 the "
+    "scalar; angles z-x-y.",
 )
 BACK = (
-    "Of “inverse” numbers the orientation is the inverse. In sequences other than z-x-y the angles phi, theta, psi are",
-    "about x, y, z. Where two programs name their axes otherwise, exchange them on both sides of the matrix.",
+    "Of “inverse” numbers the orientation is the inverse. In sequences other than z-x-y the angles "
+    "phi, theta, psi are",
+    "about x, y, z. Where two programs name their axes otherwise, exchange them on both sides of "
+    "the matrix.",
 )
 QUESTIONS = (
-    ("1  Which way round?", "+30 degrees about z: first row (0.87, 0.5, 0) as here, (0.87, -0.5, 0) transposed."),
-    ("2  Body or space fixed?", "90 degrees about z, then 90 about x: x ends along y body fixed, along z space fixed."),
+    (
+        "1  Which way round?",
+        "+30 degrees about z: first row (0.87, 0.5, 0) as here, (0.87, -0.5, 0) transposed.",
+    ),
+    (
+        "2  Body or space fixed?",
+        "90 degrees about z, then 90 about x: x ends along y body fixed, along z space fixed.",
+    ),
     ("3  Where is the scalar?", "The quaternion of no turn: the 1 is the scalar."),
-    ("4  Conjugate?", "The quaternion of +30 degrees about z: 0.259 beside 0.966 as here, -0.259 the conjugate."),
+    (
+        "4  Conjugate?",
+        "The quaternion of +30 degrees about z: 0.259 beside 0.966 as here, -0.259 the conjugate.",
+    ),
 )
 
 
 def rows():
-    """What the card says of each program: name, version that was run, convention, and a line of code for each form."""
+    """What the card says of each program: name, version that was run, convention, and a line of
+    code for each form.
+    """
     found = []
     for program, facts in PROGRAMS.items():
         scalar = f"scalar {facts['scalar']}" if facts["scalar"] else "no quaternions"
@@ -56,14 +77,24 @@ def rows():
         whole = {"m": matrix, "t": f"columns of {matrix}"}
         lines = []
         for form, line in facts["lines"].items():
-            names = QUATERNION if form == "quaternion" else VECTOR if form == "axis times angle" else ANGLES | BY_AXIS
+            names = (
+                QUATERNION
+                if form == "quaternion"
+                else VECTOR
+                if form == "axis times angle"
+                else ANGLES | BY_AXIS
+            )
             only = facts.get("sequences", {}).get(form, [])
             if len(only) == 1:
                 angles = [{"x": "phi", "y": "theta", "z": "psi"}[letter] for letter in only[0]]
-                names = dict(zip("abc", angles)) | {f"a{letter}": angle for letter, angle in zip(only[0], angles)}
+                names = dict(zip("abc", angles)) | {
+                    f"a{letter}": angle for letter, angle in zip(only[0], angles)
+                }
                 form = f"{form}, {'-'.join(only[0])}"
             names |= {f"-{name}": f"-{names[name]}" for name in "abc" if name in names}
-            if {"quaternion": form, "axis times angle": "rotation vector"}.get(form) in facts.get("inverse", ()):
+            if {"quaternion": form, "axis times angle": "rotation vector"}.get(form) in facts.get(
+                "inverse", ()
+            ):
                 form = f"{form}, inverse"
             lines.append((form, line.replace("}f", "}").format(**names, **whole)))
         convention = f"matrix {facts['matrix']}, {scalar}, {facts['unit']}"
@@ -88,7 +119,9 @@ class _Side:
         self.down -= 7
         self.figure.add_artist(_rule(self.down + 9.5))
         self.write(MARGIN, name, 8.6, weight="bold")
-        self.write(MARGIN + 118, convention + (f"; run with {version}" if version else ""), style="italic")
+        self.write(
+            MARGIN + 118, convention + (f"; run with {version}" if version else ""), style="italic"
+        )
         self.down -= 10.5
         for form, line in lines:
             self.write(MARGIN, form)
@@ -122,7 +155,9 @@ def draw():
 def _rule(height):
     from matplotlib.lines import Line2D
 
-    return Line2D((MARGIN / WIDTH, 1 - MARGIN / WIDTH), (height / HEIGHT,) * 2, linewidth=0.5, color="0.6")
+    return Line2D(
+        (MARGIN / WIDTH, 1 - MARGIN / WIDTH), (height / HEIGHT,) * 2, linewidth=0.5, color="0.6"
+    )
 
 
 def metadata(kind):

@@ -21,11 +21,20 @@ from orientation.direction_cosines import simple_dcm
 
 from .style import STYLE
 
-# Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their strokes, without colour.
+# Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their
+# strokes, without colour.
 BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
 TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
 DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
-HEADS = {"A": TRIANGLE, "B": TRIANGLE, "C": DIAMOND, "D": TRIANGLE, "E": TRIANGLE, "F": DIAMOND, "Z": TRIANGLE}
+HEADS = {
+    "A": TRIANGLE,
+    "B": TRIANGLE,
+    "C": DIAMOND,
+    "D": TRIANGLE,
+    "E": TRIANGLE,
+    "F": DIAMOND,
+    "Z": TRIANGLE,
+}
 
 #: How the labels of the book's drawings are set: ``python -m tools.labels`` writes it.
 LABELS = Path(__file__).with_name("labels.json")
@@ -94,10 +103,10 @@ def hatted(letter):
 class Drawing:
     r"""A sheet on which frames, vectors and angles are drawn.
 
-    The sheet is cut to what is drawn. Every drawing method returns the drawing, so that calls can be
-    chained. Points are given by their three components along :math:`N`, lengths in the same unit.
-    ``colour`` is the letter of a frame, ``'ink'``, ``'muted'`` or ``'accent'``. Texts between dollar
-    signs are set as mathematics; ``shift`` moves a text by pixels to the right and down.
+    The sheet is cut to what is drawn. Every drawing method returns the drawing, so that calls can
+    be chained. Points are given by their three components along :math:`N`, lengths in the same
+    unit. ``colour`` is the letter of a frame, ``'ink'``, ``'muted'`` or ``'accent'``. Texts between
+    dollar signs are set as mathematics; ``shift`` moves a text by pixels to the right and down.
 
     Parameters
     ----------
@@ -132,16 +141,24 @@ class Drawing:
             )
         self.view = np.asarray(view, dtype=float)
         if self.view.shape != (3, 3):
-            raise ValueError(f"view has shape {self.view.shape}; it must be a (3, 3) direction cosine matrix")
+            raise ValueError(
+                f"view has shape {self.view.shape}; it must be a (3, 3) direction cosine matrix"
+            )
         self.alt, self.scale, self.marks = alt.strip(), scale, []
 
     def on_sheet(self, points):
-        """Return where points of shape ``(..., 3)`` stand: pixels right and down from the origin."""
+        """Return where points of shape ``(..., 3)`` stand: pixels right and down from the
+        origin.
+        """
         return self.scale * (np.asarray(points, dtype=float) @ self.view.T)[..., :2] * (1, -1)
 
     def path(self, commands, points, kind):
-        """Add an SVG path, one letter of ``commands`` per step; ``points`` on the sheet, ``kind`` its classes."""
-        self.marks.append((kind.strip(), commands, np.asarray(points, dtype=float).reshape(-1, 2), 1.0))
+        """Add an SVG path, one letter of ``commands`` per step; ``points`` on the sheet, ``kind``
+        its classes.
+        """
+        self.marks.append(
+            (kind.strip(), commands, np.asarray(points, dtype=float).reshape(-1, 2), 1.0)
+        )
         return self
 
     def _write(self, text, place, colour, size=20, opacity=1.0):
@@ -151,13 +168,17 @@ class Drawing:
     # Lines, areas and words.
 
     def line(self, points, colour="ink", kind=""):
-        """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or 'tube'."""
+        """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or
+        'tube'.
+        """
         for layer in (kind, "tube core") if kind == "tube" else (kind,):
             self.path("M" + "L" * (len(points) - 1), self.on_sheet(points), f"{layer} {colour}")
         return self
 
     def area(self, points, colour="ink", fill=16, edge=True):
-        """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the colour."""
+        """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the
+        colour.
+        """
         kind = f"fill-{fill} " + ("" if edge else "bare ")
         return self.path("M" + "L" * (len(points) - 1) + "Z", self.on_sheet(points), kind + colour)
 
@@ -177,11 +198,12 @@ class Drawing:
     # Arrows and frames.
 
     def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0, size=20):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from the tip.
+        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
+        the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
-        away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels, and
-        carries its label at its middle.
+        away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
+        and carries its label at its middle.
         """
         reach = np.subtract(end, start)
         tail, tip = self.on_sheet([start, end])
@@ -191,11 +213,15 @@ class Drawing:
             if self.view[2] @ reach > 0:
                 self.path(*ellipse(tip, (3, 0), (0, 3)), f"head {colour}")
             else:
-                self.path("MLML", tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour)
+                self.path(
+                    "MLML", tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour
+                )
             outward = np.array((15, 15))
         elif bow:
             left = np.array((along[1], -along[0]))
-            first, second = (tail + part * (tip - tail) + 4 / 3 * bow * left for part in (0.25, 0.75))
+            first, second = (
+                tail + part * (tip - tail) + 4 / 3 * bow * left for part in (0.25, 0.75)
+            )
             along = _direction(tip - second)[0]
             self.path("MC", [tail, first, second, tip - 9 * along], f"axis {colour}")
             self._head(tip, along, 1, colour)
@@ -205,18 +231,24 @@ class Drawing:
             self.path("ML", [tail, tip - 10 * head * along], f"axis {colour}")
             self._head(tip, along, head, colour)
             outward = 17 * along
-        return self._write(label, tip + (outward if shift is None else shift), colour, size) if label else self
+        return (
+            self._write(label, tip + (outward if shift is None else shift), colour, size)
+            if label
+            else self
+        )
 
     def _head(self, tip, along, size, colour):
         corners = size * np.array(HEADS.get(colour, BARB)) @ [along, (-along[1], along[0])]
         self.path("MLLLZ", tip + corners, f"head {colour}")
 
-    def triad(self, letter, dcm, origin=(0, 0, 0), length=1.0, labels=None, shifts=(None, None, None)):
+    def triad(
+        self, letter, dcm, origin=(0, 0, 0), length=1.0, labels=None, shifts=(None, None, None)
+    ):
         """Draw the unit vectors of the frame ``letter``.
 
-        ``dcm``, shape ``(3, 3)``, is the direction cosine matrix of that frame with respect to N: its
-        rows are the frame's unit vectors. ``labels`` are three strings, by default the hatted symbols;
-        an empty string leaves that arrow without a label, and None leaves that arrow out.
+        ``dcm``, shape ``(3, 3)``, is the direction cosine matrix of that frame with respect to N:
+        its rows are the frame's unit vectors. ``labels`` are three strings, by default the hatted
+        symbols; an empty string leaves that arrow without a label, and None leaves that arrow out.
         """
         if labels is None:
             labels = hatted(letter.lower())
@@ -233,9 +265,21 @@ class Drawing:
     # Angles and circles.
 
     def turn(
-        self, axis, angle, start, radius=0.5, label="", origin=(0, 0, 0), colour="ink", shift=(0, 0), kind="", head=True
+        self,
+        axis,
+        angle,
+        start,
+        radius=0.5,
+        label="",
+        origin=(0, 0, 0),
+        colour="ink",
+        shift=(0, 0),
+        kind="",
+        head=True,
     ):
-        """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about ``axis``."""
+        """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about
+        ``axis``.
+        """
         axis, angle, pieces = _direction(axis)[0], float(angle), 4
         arm = radius * _direction(start)[0]
 
@@ -252,7 +296,9 @@ class Drawing:
             near, far = turned(last * k / pieces), turned(last * (k + 1) / pieces)
             points += [near + reach * np.cross(axis, near), far - reach * np.cross(axis, far), far]
         self.path("M" + "C" * pieces, self.on_sheet(np.add(origin, points)), f"{kind} {colour}")
-        tip, before, middle, centre = self.on_sheet(np.add(origin, [turned(1), turned(last), turned(0.5), 0 * arm]))
+        tip, before, middle, centre = self.on_sheet(
+            np.add(origin, [turned(1), turned(last), turned(0.5), 0 * arm])
+        )
         if head:
             self._head(tip, _direction(tip - before)[0], size, colour)
         if label:
@@ -260,8 +306,21 @@ class Drawing:
             self._write(label, place, colour, opacity=min(1.0, abs(angle) / 0.2))
         return self
 
-    def arc(self, start, end, radius=0.5, label="", origin=(0, 0, 0), colour="ink", shift=(0, 0), kind="", head=True):
-        """Draw the angle from the direction ``start`` to the direction ``end``, the short way round."""
+    def arc(
+        self,
+        start,
+        end,
+        radius=0.5,
+        label="",
+        origin=(0, 0, 0),
+        colour="ink",
+        shift=(0, 0),
+        kind="",
+        head=True,
+    ):
+        """Draw the angle from the direction ``start`` to the direction ``end``, the short way
+        round.
+        """
         axis, sine = _direction(np.cross(start, end))
         angle = np.arctan2(sine, np.dot(start, end))
         return self.turn(axis, angle, start, radius, label, origin, colour, shift, kind, head)
@@ -275,10 +334,12 @@ class Drawing:
         """Draw the circle about ``normal``; ``kind`` as in ``line``, or 'fill-8', 'fill-16', ..."""
         normal = _direction(normal)[0]
         first = radius * _direction(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))[0]
-        return self.path(*ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}")
+        return self.path(
+            *ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}"
+        )
 
-    # Solid bodies. Draw what lies farther from the reader first. Faces turned away shrink to nothing
-    # instead of being left out, so that an Animation finds the same marks at every moment.
+    # Solid bodies. Draw what lies farther from the reader first. Faces turned away shrink to
+    # nothing instead of being left out, so that an Animation finds the same marks at every moment.
 
     def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
         """Draw a box with edges ``size`` along the rows of ``dcm``, its middle at ``origin``."""
@@ -287,7 +348,9 @@ class Drawing:
             u, v = half[(i + 1) % 3], half[(i + 2) % 3]
             for outward in (half[i], -half[i]):
                 seen = outward @ self.view[2] > 0
-                self.area(origin + outward + seen * np.array([u + v, v - u, -u - v, u - v]), colour, fill)
+                self.area(
+                    origin + outward + seen * np.array([u + v, v - u, -u - v, u - v]), colour, fill
+                )
         return self
 
     def cylinder(self, start, end, radius, colour="ink", fill=26):
@@ -326,12 +389,21 @@ class Drawing:
         """Return left, top, right and bottom of what has been drawn, in pixels from the origin."""
         corners = []
         for _, shape, place, _ in self.marks:
-            ink = np.zeros((2, 2)) if isinstance(shape, str) else shape[1] / 1000 * typeset(shape[0])[1]
-            corners += [np.min(np.atleast_2d(place), axis=0) + ink[0], np.max(np.atleast_2d(place), axis=0) + ink[1]]
+            ink = (
+                np.zeros((2, 2))
+                if isinstance(shape, str)
+                else shape[1] / 1000 * typeset(shape[0])[1]
+            )
+            corners += [
+                np.min(np.atleast_2d(place), axis=0) + ink[0],
+                np.max(np.atleast_2d(place), axis=0) + ink[1],
+            ]
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 
     def svg(self, motions=None, bounds=None, decimals=2):
-        """Return the SVG element; an ``Animation`` gives what goes inside each mark, and its own bounds."""
+        """Return the SVG element; an ``Animation`` gives what goes inside each mark, and its own
+        bounds.
+        """
         bounds = self.bounds() if bounds is None else bounds
         left, top, right, bottom = np.rint(np.add(bounds, (-8.01, -8.01, 8.01, 8.01))).astype(int)
         outlines = {}
@@ -340,29 +412,39 @@ class Drawing:
             for mark, motion in zip(self.marks, motions or [""] * len(self.marks), strict=True)
             if motion or not collapsed(mark)
         )
-        glyphs = "".join(f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items())
-        # Ids come from the content: two figures on one page cannot clash, and no run differs from the last.
+        glyphs = "".join(
+            f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items()
+        )
+        # Ids come from the content: two figures on one page cannot clash, and no run differs from
+        # the last.
         name = "g" + hashlib.sha256((self.alt + glyphs + marks).encode()).hexdigest()[:10]
         inside = (f"<defs>{glyphs}</defs>" if glyphs else "") + marks
         return (
-            f'<svg viewBox="{left} {top} {right - left} {bottom - top}" style="max-width:{right - left}px" '
+            f'<svg viewBox="{left} {top} {right - left} {bottom - top}" '
+            f'style="max-width:{right - left}px" '
             f'role="img" aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
         )
 
     def picture(self):
-        """Return the drawing as an SVG file of its own, on white paper, which needs no style of any page."""
+        """Return the drawing as an SVG file of its own, on white paper, which needs no style of any
+        page.
+        """
         inner = self.svg()
         left, top, width, height = inner.partition('viewBox="')[2].partition('"')[0].split()
         place = f'x="{left}" y="{top}" width="{width}" height="{height}"'
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} {top} {width} {height}" width="{width}" '
-            f'height="{height}" color="#1d2125"><style>{escape(STYLE, quote=False)}</style><rect {place} fill="#fff"/>'
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} {top} {width} {height}" '
+            f'width="{width}" '
+            f'height="{height}" color="#1d2125"><style>{escape(STYLE, quote=False)}</style><rect '
+            f'{place} fill="#fff"/>'
             f'<g class="orientation-figure">{inner.replace("<svg ", f"<svg {place} ", 1)}</g></svg>'
         )
 
 
 def collapsed(mark):
-    """Return whether a mark is a path that has shrunk to one point, as the far sides of bodies do."""
+    """Return whether a mark is a path that has shrunk to one point, as the far sides of bodies
+    do.
+    """
     return isinstance(mark[1], str) and np.ptp(mark[2], axis=0).max() < 1e-6
 
 
@@ -385,10 +467,12 @@ def _element(mark, motion, outlines, decimals):
 
 @cache
 def typeset(text):
-    """Set ``text`` in Computer Modern, 1000 units to the em, right and down from the middle of a small letter.
+    """Set ``text`` in Computer Modern, 1000 units to the em, right and down from the middle of a
+    small letter.
 
-    Returns a list of (outline as path data, place, size), and the two corners of the ink. Where there is no Matplotlib,
-    as on a page that has not fetched it, the labels of the book's own drawings are at hand.
+    Returns a list of (outline as path data, place, size), and the two corners of the ink. Where
+    there is no Matplotlib, as on a page that has not fetched it, the labels of the book's own
+    drawings are at hand.
     """
     try:
         from matplotlib.font_manager import FontProperties
@@ -399,7 +483,9 @@ def typeset(text):
         return _kept_labels()[text]
     font = FontProperties(family="cmr10", math_fontfamily="cm")
     placed, shapes, rules = text_to_path.get_glyphs_mathtext(font, text)
-    found = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [(*rule, (0, 0), 1) for rule in rules]
+    found = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [
+        (*rule, (0, 0), 1) for rule in rules
+    ]
     unit = 1000 / text_to_path.FONT_SCALE * np.array((1, -1))
     glyphs, ink = [], []
     for vertices, codes, corner, size in found:
@@ -419,13 +505,18 @@ def typeset(text):
 def _kept_labels():
     kept = json.loads(LABELS.read_text("utf8"))
     return {
-        text: ([(kept["outlines"][k], np.array((x, y)), size) for k, x, y, size in glyphs], np.array(ink))
+        text: (
+            [(kept["outlines"][k], np.array((x, y)), size) for k, x, y, size in glyphs],
+            np.array(ink),
+        )
         for text, (glyphs, ink) in kept["labels"].items()
     }
 
 
 def labels_to_keep(texts):
-    """Return what ``labels.json`` holds: the outlines of glyphs, and for each text where they stand and its ink."""
+    """Return what ``labels.json`` holds: the outlines of glyphs, and for each text where they stand
+    and its ink.
+    """
     outlines, labels = {}, {}
     for text in sorted(texts):
         placed, ink = typeset(text)
@@ -442,13 +533,19 @@ def _outline(vertices, codes):
     data, k = "", 0
     last = beginning = np.zeros(2, dtype=int)
     while k < len(codes):
-        letter, count = {1: ("m", 1), 2: ("l", 1), 3: ("q", 2), 4: ("c", 3), 79: ("z", 1)}[int(codes[k])]
+        letter, count = {1: ("m", 1), 2: ("l", 1), 3: ("q", 2), 4: ("c", 3), 79: ("z", 1)}[
+            int(codes[k])
+        ]
         data += letter
         if letter == "z":
             last = beginning
         else:
             corners = np.rint(vertices[k : k + count]).astype(int)
-            data += "".join(f"{number:+d}" for number in (corners - last).ravel()).replace("+", " ").strip()
+            data += (
+                "".join(f"{number:+d}" for number in (corners - last).ravel())
+                .replace("+", " ")
+                .strip()
+            )
             last = corners[-1]
             if letter == "m":
                 beginning = last
@@ -483,7 +580,9 @@ def _direction(vector):
 
 
 def ellipse(middle, u, v):
-    """Return the commands and points of the ellipse with conjugate half diameters ``u`` and ``v``."""
+    """Return the commands and points of the ellipse with conjugate half diameters ``u`` and
+    ``v``.
+    """
     middle, u, v = np.asarray(middle), np.asarray(u), np.asarray(v)
     points = [u]
     for near, far in ((u, v), (v, -u), (-u, -v), (-v, u)):

@@ -1,4 +1,6 @@
-"""The machines of the cases from practice: an aircraft, a robot's wrist, a satellite, a phone and a leg."""
+"""The machines of the cases from practice: an aircraft, a robot's wrist, a satellite, a phone and a
+leg.
+"""
 
 import numpy as np
 
@@ -14,11 +16,16 @@ NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
 
 
 def aircraft_drawing(bank=np.radians(30)):
-    """Return a drawing of an airliner in a turn to the right, banked by ``bank`` radians, seen from ahead."""
+    """Return a drawing of an airliner in a turn to the right, banked by ``bank`` radians, seen from
+    ahead.
+    """
     drawing = Drawing(
-        f"An airliner seen from ahead and a little above, banked to the right by {np.degrees(bank):.0f} degrees. "
-        "Its frame D has d x out of the nose, d y along the right wing, which points down and to the left of the "
-        "picture, and d z through the floor. Beside it stands the frame N of the ground: x north, y east, z down.",
+        "An airliner seen from ahead and a little above, banked to the right by "
+        f"{np.degrees(bank):.0f} degrees. "
+        "Its frame D has d x out of the nose, d y along the right wing, which points down and to "
+        "the left of the "
+        "picture, and d z through the floor. Beside it stands the frame N of the ground: x north, "
+        "y east, z down.",
         view_from(np.radians(-38), np.radians(16)),
         92,
     )
@@ -48,11 +55,16 @@ def aircraft_drawing(bank=np.radians(30)):
 
 
 def wrist_drawing(angles=(0.3, 0.9, 0.4)):
-    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body fixed z-y-z, from forearm to gripper."""
+    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body fixed z-y-z, from
+    forearm to gripper.
+    """
     drawing = Drawing(
-        "A robot's wrist. The forearm, frame F, comes from below; f z points along it. On its end a first joint turns "
-        "about f z through psi, a second one bends the wrist through theta about an axis across, and a third turns the "
-        "gripper about its own length through phi. The gripper, frame G, has two fingers; g z points out between them. "
+        "A robot's wrist. The forearm, frame F, comes from below; f z points along it. On its end "
+        "a first joint turns "
+        "about f z through psi, a second one bends the wrist through theta about an axis across, "
+        "and a third turns the "
+        "gripper about its own length through phi. The gripper, frame G, has two fingers; g z "
+        "points out between them. "
         "The three axes meet in one point.",
         view_from(np.radians(-48), np.radians(20)),
         104,
@@ -76,8 +88,12 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
     for side in (-0.2, 0.2):
         drawing.box(gripper, (0.08, 0.18, 0.42), place(gripper, (side, 0, 1.18))[0], "D")
     drawing.turn((0, 0, 1), 2.6, (0.5, -0.9, 0), 0.5, r"$\psi$", (0, 0, -0.75))
-    drawing.turn(first[1], 2.2, first[0] - first[2], 0.42, r"$\theta$", place(first, (0, 0.5, 0))[0])
-    drawing.turn(second[2], 2.6, (0.5, -0.9, 0) @ second, 0.42, r"$\varphi$", place(second, (0, 0, 0.62))[0])
+    drawing.turn(
+        first[1], 2.2, first[0] - first[2], 0.42, r"$\theta$", place(first, (0, 0.5, 0))[0]
+    )
+    drawing.turn(
+        second[2], 2.6, (0.5, -0.9, 0) @ second, 0.42, r"$\varphi$", place(second, (0, 0, 0.62))[0]
+    )
     forearm = hatted("f")
     drawing.triad("F", np.eye(3), -1.6 * drawing.view[0] - 1.5 * drawing.view[1], 0.62, forearm)
     hand = hatted("g")
@@ -85,16 +101,25 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
 
 
 def star_cameras_drawing(apart=np.radians(102)):
-    """Return a drawing of a satellite whose two star cameras look ``apart`` (radians) from each other."""
+    """Return a drawing of a satellite whose two star cameras look ``apart`` (radians) from each
+    other.
+    """
     drawing = Drawing(
-        "A satellite with two wings of solar cells and two star cameras on its body. Each camera is a short tube "
-        "with a cone of view before it. The camera S looks along s z to the upper right, with s x and s y across its "
+        "A satellite with two wings of solar cells and two star cameras on its body. Each camera "
+        "is a short tube "
+        "with a cone of view before it. The camera S looks along s z to the upper right, with s x "
+        "and s y across its "
         "view; the camera T looks along t z to the upper left. Small dots are stars.",
         view_from(np.radians(-90), np.radians(14)),
         88,
     )
     for side in (-1, 1):
-        panel = np.array([(side * x, 0.25, y) for x, y in ((0.75, -0.28), (2.1, -0.28), (2.1, 0.28), (0.75, 0.28))])
+        panel = np.array(
+            [
+                (side * x, 0.25, y)
+                for x, y in ((0.75, -0.28), (2.1, -0.28), (2.1, 0.28), (0.75, 0.28))
+            ]
+        )
         drawing.area(panel, "muted", 16)
         for x in (1.2, 1.65):
             drawing.line([(side * x, 0.25, -0.28), (side * x, 0.25, 0.28)], "muted", "faint")
@@ -107,7 +132,9 @@ def star_cameras_drawing(apart=np.radians(102)):
         across = np.array([0.0, -1.0, 0.0])
         third = np.cross(along, across)
         for edge in (-1, 1):
-            drawing.line([mount + 0.25 * along, mount + 2.1 * along + edge * 0.5 * third], colour, "guide")
+            drawing.line(
+                [mount + 0.25 * along, mount + 2.1 * along + edge * 0.5 * third], colour, "guide"
+            )
         drawing.circle(along, 0.5, mount + 2.1 * along, colour, "guide")
         for depth, y in zip(random.uniform(1.5, 2.2, 7), random.uniform(-0.2, 0.2, 7), strict=True):
             drawing.dot(mount + depth * (along + y * third), "ink", 2.5)
@@ -118,12 +145,18 @@ def star_cameras_drawing(apart=np.radians(102)):
 
 
 def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
-    """Return a drawing of a phone, turned by ``angles`` (radians, z-x-y), with what its two sensors feel."""
+    """Return a drawing of a phone, turned by ``angles`` (radians, z-x-y), with what its two sensors
+    feel.
+    """
     drawing = Drawing(
-        "A phone lies inclined above the ground. Its frame P: p x to the right across the screen, p y to its top edge, "
-        "p z out of the screen. From its middle an arrow points straight up; it is what the accelerometer feels. "
-        f"Another one points north and {np.degrees(dip):.0f} degrees into the ground; it is the magnetic field. Up "
-        "crossed with the field is level and points west. Beside the phone stands the frame E: x north, y west, z up.",
+        "A phone lies inclined above the ground. Its frame P: p x to the right across the screen, "
+        "p y to its top edge, "
+        "p z out of the screen. From its middle an arrow points straight up; it is what the "
+        "accelerometer feels. "
+        f"Another one points north and {np.degrees(dip):.0f} degrees into the ground; it is the "
+        "magnetic field. Up "
+        "crossed with the field is level and points west. Beside the phone stands the frame E: x "
+        "north, y west, z up.",
         view_from(np.radians(-60), np.radians(22)),
         118,
     )
@@ -131,7 +164,9 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
     field = np.array([np.cos(dip), 0, -np.sin(dip)])
     drawing.arrow(1.25 * field, colour="accent", label="field")
     drawing.box(phone, (0.72, 1.4, 0.09), colour="B")
-    screen = [(x, y, 0.045) @ phone for x, y in ((-0.3, -0.58), (0.3, -0.58), (0.3, 0.58), (-0.3, 0.58))]
+    screen = [
+        (x, y, 0.045) @ phone for x, y in ((-0.3, -0.58), (0.3, -0.58), (0.3, 0.58), (-0.3, 0.58))
+    ]
     drawing.area(screen, "B", 8)
     drawing.triad("B", phone, length=0.95, labels=hatted("p"))
     drawing.arrow((0, 0, 1.3), colour="accent", label="up")
@@ -141,10 +176,14 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
 
 
 def leg_drawing(bend=np.radians(35)):
-    """Return a drawing of a leg, its knee bent by ``bend`` radians, with four markers on thigh and shank."""
+    """Return a drawing of a leg, its knee bent by ``bend`` radians, with four markers on thigh and
+    shank.
+    """
     drawing = Drawing(
-        "A leg seen from its right side, the knee bent. On the thigh and on the shank sits a plate with four "
-        "reflecting balls. The thigh's frame A and the shank's frame B are drawn beside the knee: x forwards, y up "
+        "A leg seen from its right side, the knee bent. On the thigh and on the shank sits a plate "
+        "with four "
+        "reflecting balls. The thigh's frame A and the shank's frame B are drawn beside the knee: "
+        "x forwards, y up "
         "along the bone, z to the right, towards the reader. The angle between the two is theta.",
         view_from(np.radians(-74), np.radians(10)),
         98,
@@ -158,14 +197,25 @@ def leg_drawing(bend=np.radians(35)):
         return np.array(points, dtype=float) @ frame
 
     def cluster(frame, height, letter):
-        plate = [(-0.16, height - 0.2, 0.22), (0.16, height - 0.2, 0.22), (0.16, height + 0.2, 0.22)]
+        plate = [
+            (-0.16, height - 0.2, 0.22),
+            (0.16, height - 0.2, 0.22),
+            (0.16, height + 0.2, 0.22),
+        ]
         plate.append((-0.16, height + 0.2, 0.22))
         drawing.area(place(frame, *plate), letter, 26)
         for x, y, z in plate:
             drawing.dot(place(frame, (x, y, z + 0.08))[0], "ink", 6)
 
     drawing.cylinder(*place(thigh, (0, 1.55, 0), (0, 0.12, 0)), 0.24, "A", 8)
-    foot = place(shank, (-0.2, -1.72, 0), (0.62, -1.72, 0), (0.6, -1.6, 0), (0.14, -1.42, 0), (-0.2, -1.45, 0))
+    foot = place(
+        shank,
+        (-0.2, -1.72, 0),
+        (0.62, -1.72, 0),
+        (0.6, -1.6, 0),
+        (0.14, -1.42, 0),
+        (-0.2, -1.45, 0),
+    )
     drawing.area(foot, "B", 8)
     drawing.cylinder(*place(shank, (0, -0.12, 0), (0, -1.5, 0)), 0.19, "B", 8)
     drawing.cylinder(*place(thigh, (0, 0, -0.2), (0, 0, 0.2)), 0.21, "muted", 16)
@@ -180,7 +230,9 @@ def leg_drawing(bend=np.radians(35)):
 
 
 def slew_drawing(before, after):
-    """Return a drawing of a satellite whose telescope turns from ``before`` to ``after``, both ``(3, 3)`` along N."""
+    """Return a drawing of a satellite whose telescope turns from ``before`` to ``after``, both
+    ``(3, 3)`` along N.
+    """
     before, after = np.asarray(before, dtype=float), np.asarray(after, dtype=float)
     turned = after @ before.T
     vector, angles = rotation_vector_from_dcm(turned), body_fixed_from_dcm(turned, "zyx")
@@ -190,10 +242,14 @@ def slew_drawing(before, after):
     three = dcm_from_body_fixed(shares * angles, "zyx") @ before
     degrees = np.degrees(np.append(np.linalg.norm(vector), angles))
     drawing = Drawing(
-        "A satellite, a box with a telescope, in a sphere of the sky, before the slew in grey and after it in blue. "
-        f"One turn through {degrees[0]:.0f} degrees leads the telescope's line of sight along an arc from the one "
-        f"star to the other. Three single turns, {degrees[1]:.0f} degrees about z, {degrees[2]:.0f} about y and "
-        f"{degrees[3]:.0f} about x, lead it along two arcs that meet in a corner; the last leaves it in its place.",
+        "A satellite, a box with a telescope, in a sphere of the sky, before the slew in grey and "
+        "after it in blue. "
+        f"One turn through {degrees[0]:.0f} degrees leads the telescope's line of sight along an "
+        "arc from the one "
+        f"star to the other. Three single turns, {degrees[1]:.0f} degrees about z, "
+        f"{degrees[2]:.0f} about y and "
+        f"{degrees[3]:.0f} about x, lead it along two arcs that meet in a corner; the last leaves "
+        "it in its place.",
         view_from(np.radians(32), np.radians(24)),
         150,
     )
@@ -206,18 +262,26 @@ def slew_drawing(before, after):
         drawing.cylinder(0.21 * rows[0], 0.48 * rows[0], 0.1, colour)
         drawing.line([0.48 * rows[0], rows[0]], colour, "guide")
         drawing.dot(rows[0], colour, 6)
-    drawing.arrow(1.25 * vector / np.linalg.norm(vector) @ before, colour="accent", label=r"$\hat{e}$")
+    drawing.arrow(
+        1.25 * vector / np.linalg.norm(vector) @ before, colour="accent", label=r"$\hat{e}$"
+    )
     return drawing.triad("D", after, length=0.75)
 
 
 def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
-    """Return a drawing of the Earth with its own frame and, at one place, the two frames of the ground there."""
+    """Return a drawing of the Earth with its own frame and, at one place, the two frames of the
+    ground there.
+    """
     drawing = Drawing(
-        "The Earth as a sphere with its equator and one meridian. From its middle: e z to the north pole, e x to where "
+        "The Earth as a sphere with its equator and one meridian. From its middle: e z to the "
+        "north pole, e x to where "
         "the meridian of Greenwich meets the equator, e y to the east of it. At a place "
-        f"{np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} degrees north two triads stand on "
-        "the ground. G: g x east, g y north, g z straight up. N: n x north, n y east, n z down, into the Earth. The "
-        "angle lambda runs along the equator from e x to the meridian of the place, phi up the meridian from there.",
+        f"{np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} degrees north "
+        "two triads stand on "
+        "the ground. G: g x east, g y north, g z straight up. N: n x north, n y east, n z down, "
+        "into the Earth. The "
+        "angle lambda runs along the equator from e x to the meridian of the place, phi up the "
+        "meridian from there.",
         view_from(np.radians(48), np.radians(22)),
         150,
     )
@@ -234,4 +298,6 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
     drawing.turn((0, 0, 1), longitude, (1, 0, 0), 0.55, r"$\lambda$")
     drawing.turn(np.cross(meridian, (0, 0, 1)), latitude, meridian, 0.4, r"$\phi$")
     drawing.triad("C", ground, up, 0.55, hatted("g"))
-    return drawing.triad("N", aviation, up + 0.02 * ground[0], 0.42, shifts=[(16, 6), (4, 18), None])
+    return drawing.triad(
+        "N", aviation, up + 0.02 * ground[0], 0.42, shifts=[(16, 6), (4, 18), None]
+    )

@@ -14,19 +14,25 @@ def draw_eye(drawing, point, size=40, colour="ink"):
     def place(points):
         return drawing.on_sheet(point) + size * np.array(points)
 
-    drawing.path("MQQ", place([(-0.5, 0), (0, -0.62), (0.5, 0.05), (0, 0.45), (-0.5, 0)]), f"paper {colour}")
+    drawing.path(
+        "MQQ", place([(-0.5, 0), (0, -0.62), (0.5, 0.05), (0, 0.45), (-0.5, 0)]), f"paper {colour}"
+    )
     for x, y, outward in ((-0.3, -0.22, -0.12), (-0.05, -0.31, -0.02), (0.2, -0.24, 0.1)):
         drawing.path("ML", place([(x, y), (x + outward, y - 0.15)]), colour)
     return drawing.dot(point, "muted", 0.19 * size).dot(point, colour, 0.09 * size)
 
 
 def draw_book(drawing, dcm, origin=(0, 0, 0), colour="A", size=(0.8, 1.1, 0.22)):
-    """Draw a closed book: the rows of ``dcm`` point across the cover, up the cover, and out of the cover."""
+    """Draw a closed book: the rows of ``dcm`` point across the cover, up the cover, and out of the
+    cover.
+    """
     rows, (width, height, depth) = np.asarray(dcm, dtype=float), size
     drawing.box(rows, size, origin, colour)
     if rows[2] @ drawing.view[2] > 0:
         for y, half in ((0.28, 0.28), (0.14, 0.2)):
-            ends = np.array([(-half * width, y * height, depth / 2), (half * width, y * height, depth / 2)])
+            ends = np.array(
+                [(-half * width, y * height, depth / 2), (half * width, y * height, depth / 2)]
+            )
             drawing.line(origin + ends @ rows, colour, "thick")
     return drawing
 
@@ -58,16 +64,24 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
     right, up = ("xyz"[np.argmax(row)] for row in view[:2])
     old, new = first.lower(), second.lower()
     alt = (
-        f"Looking down the {axis} direction that the frames {first} and {second} share; {old} {shared} and "
+        f"Looking down the {axis} direction that the frames {first} and {second} share; {old} "
+        f"{shared} and "
         f"{new} {shared} point "
-        + ("away from the reader, a circle with a cross. " if away else "at the reader, a circle with a dot. ")
-        + f"{old} {right} points to the right and {old} {up} up. {new} {right} is turned counterclockwise from "
+        + (
+            "away from the reader, a circle with a cross. "
+            if away
+            else "at the reader, a circle with a dot. "
+        )
+        + f"{old} {right} points to the right and {old} {up} up. {new} {right} is turned "
+        "counterclockwise from "
         f"{old} {right} through {name}, and {new} {up} from {old} {up} through the same angle."
     )
     if components:
         alt += (
-            f" Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine {name} along "
-            f"{old} {right} and sine {name} along {old} {up}; the tip of {new} {up} at minus sine {name} along "
+            f" Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine "
+            f"{name} along "
+            f"{old} {right} and sine {name} along {old} {up}; the tip of {new} {up} at minus sine "
+            f"{name} along "
             f"{old} {right} and cosine {name} along {old} {up}."
         )
     drawing = Drawing(alt, view, scale)
@@ -88,7 +102,12 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
             drawing.dot(foot, "muted", 3).label(foot, f"${words}{symbol}$", "muted", shift, 18)
     for letter, dcm in ((first, np.eye(3)), (second, turn)):
         drawing.triad(
-            letter, dcm, labels=[None if other == shared else rf"$\hat{{{letter.lower()}}}_{other}$" for other in "xyz"]
+            letter,
+            dcm,
+            labels=[
+                None if other == shared else rf"$\hat{{{letter.lower()}}}_{other}$"
+                for other in "xyz"
+            ],
         )
     drawing.arc(x, tip, 0.44, f"${symbol}$").arc(y, top, 0.44, f"${symbol}$")
     return drawing.arrow(
@@ -100,19 +119,27 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
 
 
 TURNING_FRAMES_ALT = (
-    "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed arrows, C green with "
-    "dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the reader and to the "
-    "left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows marked z of B, C "
-    "and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x of C and D "
-    "stay where they are. Last, D turns alone through 40 degrees; the arrow marked z of D stays where it is, no "
-    "longer upright. Seen from the tip of the arrow that stays, each turn is counterclockwise. The still picture "
-    "is the end: with each frame a thin grey triad shows the frame before it in the order A, B, C, D, and curved "
+    "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed arrows, "
+    "C green with "
+    "dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the "
+    "reader and to the "
+    "left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows "
+    "marked z of B, C "
+    "and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x "
+    "of C and D "
+    "stay where they are. Last, D turns alone through 40 degrees; the arrow marked z of D stays "
+    "where it is, no "
+    "longer upright. Seen from the tip of the arrow that stays, each turn is counterclockwise. The "
+    "still picture "
+    "is the end: with each frame a thin grey triad shows the frame before it in the order A, B, C, "
+    "D, and curved "
     "arrows lead from the grey arrows to the turned ones."
 )
 
 
 def turning_frames_animation():
-    """Return the animation of four frames that turn one after another, for the exercise on Euler angles.
+    """Return the animation of four frames that turn one after another, for the exercise on Euler
+    angles.
 
     The turns are kept here, so that the page of the exercise does not tell its answer.
 
@@ -133,7 +160,9 @@ def turning_frames_animation():
                 for row, name in zip(before, "xyz"):
                     drawing.line([place, place + row], "muted")
                     if name != axis:
-                        drawing.turn(before["xyz".index(axis)], angle, row, 0.8, origin=place, colour="muted")
+                        drawing.turn(
+                            before["xyz".index(axis)], angle, row, 0.8, origin=place, colour="muted"
+                        )
             drawing.triad(letter, dcm, place)
         return drawing
 

@@ -38,13 +38,14 @@ SETTINGS = {
 }
 
 
-# How wide a plot is set at most, in pixels. It is shown larger on a wide page; on a telephone of 380 pixels,
-# where 348 are left for it, its words are 11 pixels high.
+# How wide a plot is set at most, in pixels. It is shown larger on a wide page; on a telephone of
+# 380 pixels, where 348 are left for it, its words are 11 pixels high.
 SET = 411
 
 
 class Plot:
-    """One or more Matplotlib axes, shown as inline SVG in the colours of the light or the dark page.
+    """One or more Matplotlib axes, shown as inline SVG in the colours of the light or the dark
+    page.
 
     Draw inside ``with Plot(...) as plot:``, where Matplotlib has the book's settings.
 
@@ -80,7 +81,8 @@ class Plot:
             )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):
-            # Set smaller than it is shown, so that its words can still be read where a telephone shrinks the whole.
+            # Set smaller than it is shown, so that its words can still be read where a telephone
+            # shrinks the whole.
             size = [round(min(0.8, SET / width) * length) / 72 for length in (width, height)]
             self.figure = Figure(figsize=size, layout="constrained")
             self.axes = self.figure.subplots(rows, sharex=True)
@@ -122,10 +124,12 @@ class Plot:
 def _lighten(root, name):
     """Leave out of Matplotlib's drawing what nobody sees: it would be most of its weight.
 
-    Numbers keep a tenth of a pixel along curves and a hundredth elsewhere; ids that nothing refers to, groups
-    without a meaning, invisible frames and the document's own style go. The ids that stay begin with `name`.
+    Numbers keep a tenth of a pixel along curves and a hundredth elsewhere; ids that nothing refers
+    to, groups without a meaning, invisible frames and the document's own style go. The ids that
+    stay begin with `name`.
     """
-    # Matplotlib's style is for every element of a page: it would take the round ends of lines from all drawings.
+    # Matplotlib's style is for every element of a page: it would take the round ends of lines from
+    # all drawings.
     for child in list(root):
         if child.tag == f"{SVG}metadata" or child.find(f"{SVG}style") is not None:
             root.remove(child)
@@ -142,7 +146,13 @@ def _lighten(root, name):
         for key, value in element.attrib.items():
             if key == "d":
                 value = _short_path(value)
-            elif key in ("x", "y", "width", "height", "transform"):  # scales and turns keep all of their digits
+            elif key in (
+                "x",
+                "y",
+                "width",
+                "height",
+                "transform",
+            ):  # scales and turns keep all of their digits
                 value = re.sub(r"^-?[\d.]+$|translate\([^)]*\)", _shorter, value)
             elif key == "style":
                 value = re.sub(r"([:;]) ", r"\1", value)
@@ -153,11 +163,17 @@ def _lighten(root, name):
 
 
 def _drop_shells(element):
-    """Take out paths that draw nothing, and put the children of groups that say nothing in their place."""
+    """Take out paths that draw nothing, and put the children of groups that say nothing in their
+    place.
+    """
     for child in list(element):
         _drop_shells(child)
         place = list(element).index(child)
-        invisible = child.tag == f"{SVG}path" and child.get("style") == "fill:none" and "id" not in child.attrib
+        invisible = (
+            child.tag == f"{SVG}path"
+            and child.get("style") == "fill:none"
+            and "id" not in child.attrib
+        )
         if invisible or child.tag == f"{SVG}g" and not (child.attrib and len(child)):
             element[place : place + 1] = [] if invisible else list(child)
 
@@ -186,17 +202,26 @@ def _short_path(path):
             steps, here = [*steps, ("z", [])], list(start)
             continue
         size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter]  # all that Matplotlib writes, absolute
-        step = [round(float(token) - here[k % 2], digits) for k, token in enumerate(tokens[place : place + size])]
+        step = [
+            round(float(token) - here[k % 2], digits)
+            for k, token in enumerate(tokens[place : place + size])
+        ]
         place += size
         here = [here[0] + step[-2], here[1] + step[-1]]
         if letter == "M":
             start = list(here)
-        if letter == "L" and steps and steps[-1][0] == "L" and any(_along(step, steps[-1][1], k) for k in (0, 1)):
+        if (
+            letter == "L"
+            and steps
+            and steps[-1][0] == "L"
+            and any(_along(step, steps[-1][1], k) for k in (0, 1))
+        ):
             step = [sum(both) for both in zip(step, steps.pop()[1])]
         steps.append((letter, step))
     found = ""
     for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):
-        # A letter that is repeated need not be written, and a minus parts two numbers as well as a blank does.
+        # A letter that is repeated need not be written, and a minus parts two numbers as well as a
+        # blank does.
         written = "" if letter == before != "M" else letter.lower() if found else letter
         numbers = " ".join(_short(value, digits) for value in step).replace(" -", "-")
         found += written + (" " if not written and not numbers.startswith("-") else "") + numbers

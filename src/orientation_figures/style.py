@@ -31,7 +31,8 @@ DARK = {
     "accent": "#5fd3da",
 }
 
-# Without colour, frames differ in the stroke of their arrows (width, dashes) and in the shape of the head.
+# Without colour, frames differ in the stroke of their arrows (width, dashes) and in the shape of
+# the head.
 STROKES = {
     "N": (1.7, "none"),
     "A": (3.4, "none"),
@@ -48,10 +49,14 @@ STROKES = {
 
 
 def _style():
-    """Return the style sheet that goes with every figure; a page may set ``--frame-a`` and so on."""
+    """Return the style sheet that goes with every figure; a page may set ``--frame-a`` and so
+    on.
+    """
 
     def colours(table):
-        return "".join(f"--{name}:var(--frame-{name.lower()},{colour});" for name, colour in table.items())
+        return "".join(
+            f"--{name}:var(--frame-{name.lower()},{colour});" for name, colour in table.items()
+        )
 
     rules = {
         "": colours(LIGHT) + "--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));"
@@ -77,10 +82,12 @@ def _style():
         rules[f" .{name}"] = f"color:var(--{name})"
         rules[f" .axis.{name}"] = f"stroke-width:{width};stroke-dasharray:{dashes}"
     dark = ",".join(
-        f"{page} .orientation-figure" for page in ('html[data-theme="dark"]', 'body[data-jp-theme-light="false"]')
+        f"{page} .orientation-figure"
+        for page in ('html[data-theme="dark"]', 'body[data-jp-theme-light="false"]')
     )
     return (
-        "".join(f".orientation-figure{part}{{{rule}}}" for part, rule in rules.items()) + f"{dark}{{{colours(DARK)}}}"
+        "".join(f".orientation-figure{part}{{{rule}}}" for part, rule in rules.items())
+        + f"{dark}{{{colours(DARK)}}}"
     )
 
 

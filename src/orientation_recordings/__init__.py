@@ -1,12 +1,15 @@
-"""What real instruments recorded: five small boxes with gyroscopes, carried by hands and by a walking leg.
+"""What real instruments recorded: five small boxes with gyroscopes, carried by hands and by a
+walking leg.
 
-The files in ``data/`` are excerpts from the recordings that come with *scikit-kinematics* 0.10.4 by Thomas
-Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``). :mod:`orientation_recordings.excerpts` cuts them out;
-every digit is the instrument's. The functions here give them with times in seconds, angular velocities in radians
-per second and specific forces in multiples of standard gravity; quaternions and angles stay as they were printed.
+The files in ``data/`` are excerpts from the recordings that come with *scikit-kinematics* 0.10.4 by
+Thomas Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``).
+:mod:`orientation_recordings.excerpts` cuts them out; every digit is the instrument's. The functions
+here give them with times in seconds, angular velocities in radians per second and specific forces
+in multiples of standard gravity; quaternions and angles stay as they were printed.
 
-Beside them stand the directions of bright stars, as the satellite Hipparcos measured them (ESA 1997), in the table
-that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in ``data/LICENSE-stars.txt``).
+Beside them stand the directions of bright stars, as the satellite Hipparcos measured them (ESA
+1997), in the table that comes with *PyEphem* 4.2.1 by Brandon Rhodes (MIT licence; its text is in
+``data/LICENSE-stars.txt``).
 """
 
 from __future__ import annotations
@@ -23,12 +26,14 @@ Array: TypeAlias = "NDArray[np.float64]"
 
 #: Metres per second squared.
 STANDARD_GRAVITY = 9.80665
-#: Samples per second. The x-IMU's follows from its register ``InertialAndMagneticDataRate``, 9, which stands for 256.
+#: Samples per second. The x-IMU's follows from its register ``InertialAndMagneticDataRate``, 9,
+#: which stands for 256.
 X_IMU_RATE, XSENS_RATE, WALKING_RATE = 256, 50, 120
 
 
 class Recording(NamedTuple):
-    """What one instrument measured, sample by sample, and the orientation that it worked out itself.
+    """What one instrument measured, sample by sample, and the orientation that it worked out
+    itself.
 
     Attributes
     ----------
@@ -37,7 +42,8 @@ class Recording(NamedTuple):
     angular_velocity : array of shape ``(n, 3)``
         Of the instrument, along its own axes, radians per second.
     specific_force : array of shape ``(n, 3)``
-        What the accelerometer feels, along its own axes, in multiples of standard gravity: at rest, up.
+        What the accelerometer feels, along its own axes, in multiples of standard gravity: at rest,
+        up.
     magnetic_field : array of shape ``(n, 3)`` or ``None``
         Along the instrument's axes, in the unit that it prints.
     quaternion_time : array of shape ``(m,)``
@@ -61,7 +67,8 @@ def table(name: str) -> Array:
 
 
 def x_imu() -> Recording:
-    """Give sixteen seconds of an x-IMU in a hand: held, carried about, held. It printed on memory card.
+    """Give sixteen seconds of an x-IMU in a hand: held, carried about, held. It printed on memory
+    card.
 
     Returns
     -------
@@ -168,7 +175,14 @@ def xsens() -> Recording:
     """
     rows = table("xsens")
     time = np.arange(len(rows)) / XSENS_RATE
-    return Recording(time, rows[:, 4:7], rows[:, 1:4] / STANDARD_GRAVITY, rows[:, 7:10], time, _unit(rows[:, 10:14]))
+    return Recording(
+        time,
+        rows[:, 4:7],
+        rows[:, 1:4] / STANDARD_GRAVITY,
+        rows[:, 7:10],
+        time,
+        _unit(rows[:, 10:14]),
+    )
 
 
 def walking_leg() -> tuple[Recording, Recording]:
@@ -177,7 +191,8 @@ def walking_leg() -> tuple[Recording, Recording]:
     Returns
     -------
     tuple of two :class:`Recording`
-        Thigh and shank, 120 samples a second, sample for sample at the same times, without quaternions.
+        Thigh and shank, 120 samples a second, sample for sample at the same times, without
+        quaternions.
     """
     return _of_the_leg("upper_leg"), _of_the_leg("lower_leg")
 
@@ -195,9 +210,9 @@ def bright_stars() -> tuple[list[str], Array, Array]:
     Returns
     -------
     tuple of a list of str, an array of shape ``(n, 3)`` and an array of shape ``(n,)``
-        Names; unit vectors along the equatorial frame :math:`N`, :math:`\\hat{n}_z` to the celestial pole and
-        :math:`\\hat{n}_x` to the vernal equinox (International Celestial Reference System); magnitudes, smaller ones
-        for brighter stars.
+        Names; unit vectors along the equatorial frame :math:`N`, :math:`\\hat{n}_z` to the
+        celestial pole and :math:`\\hat{n}_x` to the vernal equinox (International Celestial
+        Reference System); magnitudes, smaller ones for brighter stars.
 
     Examples
     --------
@@ -206,12 +221,18 @@ def bright_stars() -> tuple[list[str], Array, Array]:
     >>> directions[names.index('Polaris')].round(2).tolist()
     [0.01, 0.01, 1.0]
     """
-    with resources.files(__package__).joinpath("data", "bright_stars.csv").open(encoding="utf8") as file:
+    with (
+        resources.files(__package__)
+        .joinpath("data", "bright_stars.csv")
+        .open(encoding="utf8") as file
+    ):
         rows = [line.split(",") for line in file.read().splitlines()[1:]]
     hours, degrees, magnitudes = np.array([row[1:] for row in rows], dtype=float).T
     ascension, declination = np.radians(15 * hours), np.radians(degrees)
     level = np.cos(declination)
-    directions = np.stack([level * np.cos(ascension), level * np.sin(ascension), np.sin(declination)], axis=-1)
+    directions = np.stack(
+        [level * np.cos(ascension), level * np.sin(ascension), np.sin(declination)], axis=-1
+    )
     return [row[0] for row in rows], directions, magnitudes
 
 

@@ -1,10 +1,11 @@
-"""Cut the excerpts in ``data/`` out of the recordings they come from, and the stars out of their catalogue.
+"""Cut the excerpts in ``data/`` out of the recordings they come from, and the stars out of their
+catalogue.
 
 Run it with ``python -m orientation_recordings.excerpts WHEEL STARS``.
 
-``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``, ``STARS`` any wheel of ``ephem`` 4.2.1. Lines are
-taken as they stand, so that every digit is the instrument's, or the catalogue's; only columns that the book does not
-use are left out.
+``WHEEL`` is the file ``scikit_kinematics-0.10.4-py3-none-any.whl``, ``STARS`` any wheel of
+``ephem`` 4.2.1. Lines are taken as they stand, so that every digit is the instrument's, or the
+catalogue's; only columns that the book does not use are left out.
 """
 
 import io
@@ -15,7 +16,16 @@ from pathlib import Path
 
 DATA = Path(__file__).parent / "data"
 SOURCE = "tests/data"
-OTHER_NAMES = {"Adara", "Agena", "Albereo", "Alcaid", "Etamin", "Formalhaut", "Gienah Corvi", "Sirrah"}
+OTHER_NAMES = {
+    "Adara",
+    "Agena",
+    "Albereo",
+    "Alcaid",
+    "Etamin",
+    "Formalhaut",
+    "Gienah Corvi",
+    "Sirrah",
+}
 
 
 def excerpts(wheel: str) -> dict[str, str]:
@@ -36,9 +46,14 @@ def excerpts(wheel: str) -> dict[str, str]:
     ) -> str:
         """The column names and the rows whose first number lies between two values."""
         text = lines(name)
-        kept = [text[head - 1], *(line for line in text[head:] if first <= float(line.split(separator)[0]) < last)]
+        kept = [
+            text[head - 1],
+            *(line for line in text[head:] if first <= float(line.split(separator)[0]) < last),
+        ]
         cells = ([cell.strip() for cell in line.split(separator)] for line in kept)
-        return "".join(",".join([row[k] for k in columns] if columns else row) + "\n" for row in cells)
+        return "".join(
+            ",".join([row[k] for k in columns] if columns else row) + "\n" for row in cells
+        )
 
     # The first 16 s: held in a hand, carried about, held again.
     x_imu = (115, 6355)
@@ -68,7 +83,9 @@ def bright_stars(wheel: str) -> str:
     found = "name,right ascension (hours),declination (degrees),magnitude\n"
     for name, _, ascension, declination, magnitude in lines:
         if name not in OTHER_NAMES:
-            found += ",".join([name, ascension.partition("|")[0], declination.partition("|")[0], magnitude])
+            found += ",".join(
+                [name, ascension.partition("|")[0], declination.partition("|")[0], magnitude]
+            )
     return found
 
 

@@ -1,4 +1,6 @@
-"""The command ``orientation``: ``orientation explain FIRST SECOND`` and ``orientation recording FILE``."""
+"""The command ``orientation``: ``orientation explain FIRST SECOND`` and ``orientation recording
+FILE``.
+"""
 
 import argparse
 import json
@@ -31,14 +33,17 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments=None):
     parser = _Parser(
-        prog="orientation", description="Where the world's numbers meet the book Orientation of Reference Frames."
+        prog="orientation",
+        description="Where the world's numbers meet the book Orientation of Reference Frames.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
     _add_recording(commands)
     given = sys.argv[1:] if arguments is None else arguments
     # What begins with a minus and a digit is a number, and no option.
-    chosen = parser.parse_args([f" {word}" if re.match(r"-[.\d]", word) else word for word in given])
+    chosen = parser.parse_args(
+        [f" {word}" if re.match(r"-[.\d]", word) else word for word in given]
+    )
     sys.exit(chosen.run(chosen))
 
 
@@ -47,22 +52,33 @@ def _add_explain(commands):
         "explain",
         help="name the mix-up between two programs that disagree",
         description="Name the mix-up between two programs from what they give for the same poses.",
-        epilog="Exit code: 0 both give the same, 1 a mix-up is named, 2 none fits or the numbers cannot tell, "
+        epilog="Exit code: 0 both give the same, 1 a mix-up is named, 2 none fits or the numbers "
+        "cannot tell, "
         "3 the input cannot be read.",
     )
     parser.add_argument("first", help="a file, or the numbers themselves: one pose a line")
     parser.add_argument("second", help="the same poses by the other program")
-    parser.add_argument("--json", action="store_true", help="the answer as JSON, with a format number")
+    parser.add_argument(
+        "--json", action="store_true", help="the answer as JSON, with a format number"
+    )
     parser.add_argument("--all", action="store_true", help="every other reading that fits, too")
-    parser.add_argument("--noise", type=float, default=0.0, metavar="DEGREES", help="what the two may differ by anyway")
+    parser.add_argument(
+        "--noise",
+        type=float,
+        default=0.0,
+        metavar="DEGREES",
+        help="what the two may differ by anyway",
+    )
     for side in ("first", "second"):
         parser.add_argument(
             f"--{side}", dest=f"{side}_program", metavar="PROGRAM",
-            help=f"the program that gave the {side} numbers, as far as its manual is known here: {', '.join(PROGRAMS)}",
+            help=f"the program that gave the {side} numbers, as far as its manual is known here: "
+                f"{', '.join(PROGRAMS)}",
         )  # fmt: skip
         parser.add_argument(
             f"--{side}-is", action="append", default=[], metavar="WHAT",
-            help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice such as "
+            help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice "
+                "such as "
             f"'zyx', 'space fixed', 'degrees', 'xyzw'",
         )  # fmt: skip
     parser.set_defaults(run=_explain)
@@ -71,10 +87,15 @@ def _add_explain(commands):
 def _add_recording(commands):
     parser = commands.add_parser(
         "recording",
-        help="what is in a recording of an instrument that turns, and whether a filter is honest on it",
-        description="Put a recording on the bench: what its columns are, their units, axes, signs and errors, the "
-        "convention of an orientation in it, and whether a filter tells the truth about itself on it.",
-        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it cannot be read.",
+        help="what is in a recording of an instrument that turns, and whether a filter is "
+        "honest on it",
+        description="Put a recording on the bench: what its columns are, their units, "
+        "axes, signs and "
+        "errors, the "
+        "convention of an orientation in it, and whether a filter tells the truth about "
+        "itself on it.",
+        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it "
+        "cannot be read.",
     )
     parser.add_argument(
         "files",
@@ -82,11 +103,21 @@ def _add_recording(commands):
         metavar="FILE",
         help="a table of numbers, a zip or a folder of them; several share a clock",
     )
-    parser.add_argument("--rate", type=float, help="samples a second, where the file only counts them")
-    parser.add_argument("--html", type=Path, metavar="REPORT", help="write the report with its plots as one page")
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="write the corrected recording with an orientation")
-    parser.add_argument("--convention", default="wxyz", help="of that orientation: wxyz, xyzw, yaw-pitch-roll")
-    parser.add_argument("--quick", action="store_true", help="leave out the filter, which takes longest")
+    parser.add_argument(
+        "--rate", type=float, help="samples a second, where the file only counts them"
+    )
+    parser.add_argument(
+        "--html", type=Path, metavar="REPORT", help="write the report with its plots as one page"
+    )
+    parser.add_argument(
+        "--csv", type=Path, metavar="FILE", help="write the corrected recording with an orientation"
+    )
+    parser.add_argument(
+        "--convention", default="wxyz", help="of that orientation: wxyz, xyzw, yaw-pitch-roll"
+    )
+    parser.add_argument(
+        "--quick", action="store_true", help="leave out the filter, which takes longest"
+    )
     parser.set_defaults(run=_recording)
 
 
@@ -112,7 +143,10 @@ def _declared(words):
     """Choices by the words for them; each word names one choice of one group."""
     declared = {}
     choices = {
-        choice["value"]: group["group"] for groups in KINDS.values() for group in groups for choice in group["choices"]
+        choice["value"]: group["group"]
+        for groups in KINDS.values()
+        for group in groups
+        for choice in group["choices"]
     }
     for word in words:
         if word in COUNTS:
@@ -120,7 +154,9 @@ def _declared(words):
         elif word in choices:
             declared[choices[word]] = word
         else:
-            raise ValueError(f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}) nor a choice of one")
+            raise ValueError(
+                f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}) nor a choice of one"
+            )
     return declared
 
 
@@ -138,7 +174,9 @@ def _explain(chosen):
         )
     except (ValueError, UnicodeDecodeError) as error:
         if chosen.json:
-            print(json.dumps({"format": 1, "verdict": "bad input", "message": str(error)}, indent=2))
+            print(
+                json.dumps({"format": 1, "verdict": "bad input", "message": str(error)}, indent=2)
+            )
         else:
             print(f"orientation: {error}", file=sys.stderr)
         return BAD_INPUT
@@ -167,11 +205,17 @@ def as_data(explanation):
         "poses": explanation.poses,
         "faults": list(explanation.faults),
         # Below a millionth of a degree it is the processor's rounding.
-        "residual in degrees": None if explanation.residual is None else round(explanation.residual, 6),
+        "residual in degrees": None
+        if explanation.residual is None
+        else round(explanation.residual, 6),
         "readings left": len(explanation.chains),
         "others": [chain.words() for chain in explanation.chains[1:]],
         "further pose": explanation.further_pose,
-        "mended by": mend.python_line(explanation.chains[0]) if explanation.verdict == "named" else "",
-        "mended in C++ by": mend.cpp_line(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "mended by": mend.python_line(explanation.chains[0])
+        if explanation.verdict == "named"
+        else "",
+        "mended in C++ by": mend.cpp_line(explanation.chains[0])
+        if explanation.verdict == "named"
+        else "",
         "formula": mend.formula(explanation.chains[0]) if explanation.verdict == "named" else "",
     }

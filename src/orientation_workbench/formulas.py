@@ -1,8 +1,9 @@
 """Record the formulas of ``orientation``: what each computes, step by step, without any number.
 
-Each conversion is written once, as a formula that takes components and a namespace of functions. Here the components
-are :class:`Value`, which remember how they were made, and so the formula tells itself, with its operations in their
-order. :mod:`orientation_workbench.languages` writes it down in other languages.
+Each conversion is written once, as a formula that takes components and a namespace of functions.
+Here the components are :class:`Value`, which remember how they were made, and so the formula tells
+itself, with its operations in their order. :mod:`orientation_workbench.languages` writes it down in
+other languages.
 """
 
 import math
@@ -17,7 +18,9 @@ _made = {}
 
 
 class Value:
-    """A number, or what is true or false, that is not known yet: an operation, and what it is applied to."""
+    """A number, or what is true or false, that is not known yet: an operation, and what it is
+    applied to.
+    """
 
     __slots__ = ("operation", "parts")
     __hash__ = object.__hash__
@@ -75,7 +78,9 @@ class Value:
 
 
 def made(operation, *parts):
-    """The value that an operation makes: the same object for the same operation on the same parts."""
+    """The value that an operation makes: the same object for the same operation on the same
+    parts.
+    """
     key = (operation, *(id(part) if isinstance(part, Value) else (part,) for part in parts))
     if key not in _made:
         _made[key] = Value(operation, parts)
@@ -143,7 +148,11 @@ def _pick(scores, rows):
 
 
 def _where(condition, yes, no):
-    return yes if yes is no or (type(yes) is int and _is(no, yes)) else made("where", condition, yes, no)
+    return (
+        yes
+        if yes is no or (type(yes) is int and _is(no, yes))
+        else made("where", condition, yes, no)
+    )
 
 
 #: The namespace that a formula is given.
@@ -217,7 +226,8 @@ def recorded(function, *arguments):
         results[:] = applied(formula, *components)
         return results.reshape(shape)
 
-    # The function looks its helpers up among the names of its module: there it finds these, and goes on.
+    # The function looks its helpers up among the names of its module: there it finds these, and
+    # goes on.
     helpers = {
         "evaluate": record,
         "evaluate_numbers": record,
@@ -229,10 +239,15 @@ def recorded(function, *arguments):
 
 
 def _flat(value):
-    return [entry for row in value for entry in _flat(row)] if isinstance(value, (list, tuple)) else [value]
+    return (
+        [entry for row in value for entry in _flat(row)]
+        if isinstance(value, (list, tuple))
+        else [value]
+    )
 
 
-#: What can be taken away: what each function takes, by the names of its arguments, and what it gives.
+#: What can be taken away: what each function takes, by the names of its arguments, and what it
+#: gives.
 FORMULAS = {
     "simple_dcm": ({"angle": "angle"}, "matrix"),
     "dcm_from_body_fixed": ({"angles": "angles"}, "matrix"),
@@ -245,7 +260,10 @@ FORMULAS = {
     "dcm_from_quaternion": ({"quaternion": "quaternion"}, "matrix"),
     "quaternion_from_dcm": ({"dcm": "matrix"}, "quaternion"),
     "multiply_quaternions": ({"first": "quaternion", "second": "quaternion"}, "quaternion"),
-    "interpolate_quaternions": ({"first": "quaternion", "second": "quaternion", "share": "number"}, "quaternion"),
+    "interpolate_quaternions": (
+        {"first": "quaternion", "second": "quaternion", "share": "number"},
+        "quaternion",
+    ),
     "dcm_from_rotation_vector": ({"vector": "angles"}, "matrix"),
     "rotation_vector_from_dcm": ({"dcm": "matrix"}, "angles"),
     "angular_velocity_matrix": ({"angles": "angles"}, "entries"),
@@ -254,7 +272,15 @@ FORMULAS = {
     "rotation_vector_rate": ({"vector": "vector", "angular_velocity": "vector"}, "vector"),
 }
 #: How many numbers each is; one alone is no list.
-SIZES = {"angle": 1, "number": 1, "angles": 3, "vector": 3, "quaternion": 4, "matrix": 9, "entries": 9}
+SIZES = {
+    "angle": 1,
+    "number": 1,
+    "angles": 3,
+    "vector": 3,
+    "quaternion": 4,
+    "matrix": 9,
+    "entries": 9,
+}
 LISTS = ("angles", "vector", "quaternion", "matrix", "entries")
 #: What is chosen once for a whole function, and not a number of it.
 CHOICES = {
@@ -270,7 +296,9 @@ CHOICES = {
 
 
 def formula_of(name, components, choice=None):
-    """The results of one of :data:`FORMULAS` for the components of its arguments, each a list of values."""
+    """The results of one of :data:`FORMULAS` for the components of its arguments, each a list of
+    values.
+    """
     given = [
         [entries[k : k + 3] for k in (0, 3, 6)] if kind in ("matrix", "entries") else entries if kind in LISTS
         else entries[0]

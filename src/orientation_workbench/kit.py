@@ -1,15 +1,23 @@
-"""A kit for tests: which convention a function has, found by what it answers, and asserted in one line."""
+"""A kit for tests: which convention a function has, found by what it answers, and asserted in one
+line.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
-from orientation import axis_angle_from_dcm, dcm_from_body_fixed, quaternion_from_dcm, rotation_vector_from_dcm
+from orientation import (
+    axis_angle_from_dcm,
+    dcm_from_body_fixed,
+    quaternion_from_dcm,
+    rotation_vector_from_dcm,
+)
 
 from .mismatch import table
 from .mismatch.explanation import explain
 
-#: Three orientations that nothing special can be said of; no angle of theirs is small or near half a turn.
+#: Three orientations that nothing special can be said of; no angle of theirs is small or near half
+#: a turn.
 _TURNS = ((0.4, 0.7, -0.3), (-1.1, 0.5, 0.9), (0.8, -0.6, 1.3))
 
 #: What a function may take, and the arguments of this book's convention that it is called with.
@@ -26,9 +34,10 @@ class Convention(NamedTuple):
     """What :func:`convention_of` found.
 
     ``takes`` and ``gives`` say how the arguments and the result are to be read: for each group of
-    :data:`orientation_workbench.mismatch.table.KINDS` the choice. ``inverse`` is whether the result is the transpose
-    of this book's matrix, the conjugate of its quaternion, or the turn in the other sense. ``body`` and ``world`` are
-    the axes that the result calls x, y and z. ``words`` are all departures from this book, each as a phrase.
+    :data:`orientation_workbench.mismatch.table.KINDS` the choice. ``inverse`` is whether the result
+    is the transpose of this book's matrix, the conjugate of its quaternion, or the turn in the
+    other sense. ``body`` and ``world`` are the axes that the result calls x, y and z. ``words`` are
+    all departures from this book, each as a phrase.
     """
 
     takes: dict
@@ -42,19 +51,23 @@ class Convention(NamedTuple):
         return "; ".join(self.words) or "as in this book"
 
 
-def convention_of(function, takes: str, *, gives: str | None = None, sequence: str | None = None) -> Convention:
+def convention_of(
+    function, takes: str, *, gives: str | None = None, sequence: str | None = None
+) -> Convention:
     """Find out by a few experiments which convention a function of orientations has.
 
-    The function is called with three orientations as this book writes them, and what it answers is read in every way.
+    The function is called with three orientations as this book writes them, and what it answers is
+    read in every way.
 
     Parameters
     ----------
     function : callable
-        Is given an axis of shape ``(3,)`` and an angle, or one array: a rotation vector or angles of shape ``(3,)``, a
-        quaternion ``(4,)``, a matrix ``(3, 3)``. Returns a matrix of shape ``(3, 3)`` or ``(4, 4)``, a quaternion, or
-        three numbers.
+        Is given an axis of shape ``(3,)`` and an angle, or one array: a rotation vector or angles
+        of shape ``(3,)``, a quaternion ``(4,)``, a matrix ``(3, 3)``. Returns a matrix of shape
+        ``(3, 3)`` or ``(4, 4)``, a quaternion, or three numbers.
     takes : str
-        ``'axis and angle'``, ``'rotation vector'``, ``'Euler angles'``, ``'quaternion'`` or ``'matrix'``.
+        ``'axis and angle'``, ``'rotation vector'``, ``'Euler angles'``, ``'quaternion'`` or
+        ``'matrix'``.
     gives : str, optional
         The same of the result: needed where that is three numbers, or an axis and its angle.
     sequence : str, optional
@@ -67,7 +80,8 @@ def convention_of(function, takes: str, *, gives: str | None = None, sequence: s
     Raises
     ------
     ValueError
-        If the answers are no orientations, or follow from the arguments by no convention that is known.
+        If the answers are no orientations, or follow from the arguments by no convention that is
+        known.
 
     Examples
     --------
@@ -83,7 +97,9 @@ def convention_of(function, takes: str, *, gives: str | None = None, sequence: s
     asked, answered = [], []
     for angles in _TURNS:
         # The same three numbers as angles, or the orientation that they make as something else.
-        arguments = (np.array(angles),) if takes == "Euler angles" else TAKES[takes](_dcm_of(angles))
+        arguments = (
+            (np.array(angles),) if takes == "Euler angles" else TAKES[takes](_dcm_of(angles))
+        )
         asked.append(np.concatenate([np.ravel(argument) for argument in arguments]))
         answered.append(np.asarray(function(*arguments), float))
     known = [{"kind": takes}, {"kind": gives} if gives else {}]
@@ -135,19 +151,22 @@ def assert_convention(
     world: str = "x y z",
     **expected: str,
 ) -> None:
-    """Assert in one line of a test that a function has a convention; what is not said is as in this book.
+    """Assert in one line of a test that a function has a convention; what is not said is as in this
+    book.
 
     Parameters
     ----------
     function, takes, gives, sequence
         As for :func:`convention_of`.
     inverse : bool
-        Whether it gives the transpose, or the conjugate, of what this book does, as SciPy's matrices are.
+        Whether it gives the transpose, or the conjugate, of what this book does, as SciPy's
+        matrices are.
     body, world : str
         What it calls x, y and z, as ``'x -y -z'``.
     order, turns, places, signs, unit, place : str
-        Of a quaternion ``'wxyz'`` or ``'xyzw'``; of angles ``'body fixed'`` or ``'space fixed'``, how they are printed
-        and signed, and ``'radians'`` or ``'degrees'``; whether the angle of an axis stands ``'first'`` or ``'last'``.
+        Of a quaternion ``'wxyz'`` or ``'xyzw'``; of angles ``'body fixed'`` or ``'space fixed'``,
+        how they are printed and signed, and ``'radians'`` or ``'degrees'``; whether the angle of an
+        axis stands ``'first'`` or ``'last'``.
 
     Raises
     ------
@@ -163,7 +182,9 @@ def assert_convention(
     >>> assert_convention(lambda q: Rotation.from_quat(q).as_matrix(), 'quaternion', order='xyzw', inverse=True)
     """
     if unknown := set(expected) - set(EXPECTED):
-        raise ValueError(f"{', '.join(sorted(unknown))} is not known; there is {', '.join(EXPECTED)}")
+        raise ValueError(
+            f"{', '.join(sorted(unknown))} is not known; there is {', '.join(EXPECTED)}"
+        )
     found = convention_of(function, takes, gives=gives, sequence=sequence)
     wrong = []
     for word, group in EXPECTED.items():
@@ -178,7 +199,11 @@ def assert_convention(
             for side in (found.takes, found.gives) if side.get("sequence", sequence) != sequence
         ]  # fmt: skip
     if found.inverse != inverse:
-        wrong.append("the inverse, transposed or conjugate" if found.inverse else "not the inverse, which was expected")
+        wrong.append(
+            "the inverse, transposed or conjugate"
+            if found.inverse
+            else "not the inverse, which was expected"
+        )
     for name, axes, wanted in (("body", found.body, body), ("world", found.world, world)):
         if " ".join(axes) != wanted:
             wrong.append(f"the {name}'s axes: {' '.join(axes)}, not {wanted}")

@@ -1,7 +1,7 @@
 """Take a formula away: the module's own, in another language and in another convention.
 
-:mod:`orientation_workbench.formulas` records what a function of ``orientation`` computes; here it is written down. No
-formula stands here a second time.
+:mod:`orientation_workbench.formulas` records what a function of ``orientation`` computes; here it
+is written down. No formula stands here a second time.
 """
 
 import math
@@ -17,7 +17,13 @@ CONVENTIONS = {
     "unit": ("radians", "degrees"),
 }
 
-_SHORT = {"sin": "sin({})", "cos": "cos({})", "atan2": "atan2({}, {})", "sqrt": "sqrt({})", "abs": "abs({})"}
+_SHORT = {
+    "sin": "sin({})",
+    "cos": "cos({})",
+    "atan2": "atan2({}, {})",
+    "sqrt": "sqrt({})",
+    "abs": "abs({})",
+}
 
 
 @dataclass(frozen=True)
@@ -48,22 +54,27 @@ LANGUAGES = {
         functions=_SHORT | {"abs": "fabs({})"},
     ),
     "C++": Language(
-        "#include <array>\n#include <cmath>\n\nstd::array<double, {count}> {function}({arguments})\n{{\n"
+        "#include <array>\n#include <cmath>\n\nstd::array<double, {count}> "
+        "{function}({arguments})\n{{\n"
         "    std::array<double, {count}> result;\n{body}\n    return result;\n}}",
-        "double {name}", "const std::array<double, {count}>& {name}", "    const double {part} = {value};",
+        "double {name}", "const std::array<double, {count}>& {name}", "    const double {part} = "
+            "{value};",
         "    const double {part} = {condition} ? {yes} : {no};",
-        frame_alone="#include <array>\n#include <cmath>\n\ndouble {function}({arguments})\n{{\n{body}\n}}",
+        frame_alone="#include <array>\n#include <cmath>\n\ndouble {function}({arguments})\n"
+            "{{\n{body}\n}}",
         functions={name: f"std::{text}" for name, text in _SHORT.items()},
     ),
     "Rust": Language(
-        "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n{body}\n    result\n}}",
+        "fn {function}({arguments}) -> [f64; {count}] {{\n    let mut result = [0.0; {count}];\n"
+        "{body}\n    result\n}}",
         "{name}: f64", "{name}: &[f64; {count}]", "    let {part}: f64 = {value};",
         "    let {part}: f64 = if {condition} {{ {yes} }} else {{ {no} }};",
         alone="    {value}", frame_alone="fn {function}({arguments}) -> f64 {{\n{body}\n}}",
         functions={name: f"f64::{text}" for name, text in _SHORT.items()},
     ),
     "Julia": Language(
-        "function {function}({arguments})\n    result = zeros({count})\n{body}\n    return result\nend",
+        "function {function}({arguments})\n    result = zeros({count})\n{body}\n    "
+        "return result\nend",
         "{name}", "{name}", "    {part} = {value}", "    {part} = {condition} ? {yes} : {no}",
         result="    result[{index}] = {value}", alone="    return {value}",
         frame_alone="function {function}({arguments})\n{body}\nend", start=1, whole="{}",
@@ -71,14 +82,17 @@ LANGUAGES = {
     ),
     "Octave": Language(
         "function result = {function}({arguments})\n    result = zeros({count}, 1);\n{body}\nend",
-        "{name}", "{name}", "    {part} = {value};", "    if {condition}, {part} = {yes}; else, {part} = {no}; end",
+        "{name}", "{name}", "    {part} = {value};", "    if {condition}, {part} = {yes}; else, "
+            "{part} = {no}; end",
         result="    result({index}) = {value};", alone="    result = {value};",
         frame_alone="function result = {function}({arguments})\n{body}\nend", index="{name}({index})", start=1,
         whole="{}",
     ),
     "JavaScript": Language(
-        "function {function}({arguments}) {{\n    const result = new Array({count});\n{body}\n    return result;\n}}",
-        "{name}", "{name}", "    const {part} = {value};", "    const {part} = {condition} ? {yes} : {no};",
+        "function {function}({arguments}) {{\n    const result = new Array({count});\n{body}\n"
+        "    return result;\n}}",
+        "{name}", "{name}", "    const {part} = {value};", "    const {part} = {condition} ? "
+            "{yes} : {no};",
         frame_alone="function {function}({arguments}) {{\n{body}\n}}", whole="{}",
         functions={name: f"Math.{text}" for name, text in _SHORT.items()},
     ),
@@ -91,14 +105,16 @@ LANGUAGES = {
     ),
 }  # fmt: skip
 
-# How strongly an operation binds what it is applied to: sums, signs, products, what needs no brackets.
+# How strongly an operation binds what it is applied to: sums, signs, products, what needs no
+# brackets.
 _SUM, _SIGN, _PRODUCT, _ONE = range(4)
 
 
 def written(language: Language, results: list, names: dict) -> tuple[list[str], list[str]]:
     """The lines of the parts that the results need, each of them once, and the results themselves.
 
-    What is used twice, and each choice, becomes a part. ``names`` says how each variable is written.
+    What is used twice, and each choice, becomes a part. ``names`` says how each variable is
+    written.
     """
     uses, lines, texts = {}, [], {}
 
@@ -125,7 +141,12 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
             return texts[value]
         text, strength = expression(value.operation, *value.parts)
         condition = value.operation in ("<", ">", ">=", "==", "and")
-        if value.operation == "where" or uses[value] > 1 and value.operation != "variable" and not condition:
+        if (
+            value.operation == "where"
+            or uses[value] > 1
+            and value.operation != "variable"
+            and not condition
+        ):
             if value.operation == "where":
                 yes, no = map(write, value.parts[1:])
                 line, filled = language.chosen, {"condition": text, "yes": yes, "no": no}
@@ -168,7 +189,12 @@ def _in_convention(kind, components, convention):
 
 
 def formula_in(
-    language: str, name: str, choice: str | None = None, *, derivative: bool = False, **convention: str
+    language: str,
+    name: str,
+    choice: str | None = None,
+    *,
+    derivative: bool = False,
+    **convention: str,
 ) -> str:
     """A formula of the module as a function in another language.
 
@@ -177,14 +203,15 @@ def formula_in(
     language : str
         One of :data:`LANGUAGES`.
     name : str
-        One of :data:`~orientation_workbench.formulas.FORMULAS`, a public function of ``orientation``.
+        One of :data:`~orientation_workbench.formulas.FORMULAS`, a public function of
+        ``orientation``.
     choice : str, optional
         The sequence of Euler angles, or the axis, where the function takes one.
     derivative : bool
         Give the derivatives of the results by the numbers of the first argument, result by result.
     **convention
-        ``matrix='transposed'``, ``scalar='last'``, ``unit='degrees'`` where the numbers are to come and go so; the
-        book's own convention is the default.
+        ``matrix='transposed'``, ``scalar='last'``, ``unit='degrees'`` where the numbers are to come
+        and go so; the book's own convention is the default.
 
     Returns
     -------
@@ -216,8 +243,12 @@ def formula_in(
         names |= {text: text for text in texts}
         order = _in_convention(kind, range(count), convention)
         entries = [variable(texts[order.index(k)]) for k in range(count)]
-        components.append([degree * entry for entry in entries] if kind in ("angle", "angles") else entries)
-        declarations.append((how.several if kind in LISTS else how.single).format(name=argument, count=count))
+        components.append(
+            [degree * entry for entry in entries] if kind in ("angle", "angles") else entries
+        )
+        declarations.append(
+            (how.several if kind in LISTS else how.single).format(name=argument, count=count)
+        )
         if argument == next(iter(takes)):
             first = [variable(text) for text in texts]
     results = formula_of(name, components, choice)
@@ -230,9 +261,16 @@ def formula_in(
     alone = len(values) == 1
     for k, value in enumerate(values):
         lines.append((how.alone if alone else how.result).format(index=k + how.start, value=value))
-    function = "_".join([name, *([choice] if choice else []), *(["derivative"] if derivative else [])])
+    function = "_".join(
+        [name, *([choice] if choice else []), *(["derivative"] if derivative else [])]
+    )
     frame = how.frame_alone if alone else how.frame
-    return frame.format(function=function, arguments=", ".join(declarations), count=len(values), body="\n".join(lines))
+    return frame.format(
+        function=function,
+        arguments=", ".join(declarations),
+        count=len(values),
+        body="\n".join(lines),
+    )
 
 
 def _demand(language, name, choice, convention):
@@ -250,5 +288,6 @@ def _demand(language, name, choice, convention):
         raise ValueError(f"{name} needs a choice of {what}: one of {', '.join(allowed)}")
     if choice is not None and choice not in allowed:
         raise ValueError(
-            f"{name} takes {f'the {what} {sorted(allowed)}' if allowed else 'no sequence'}, not {choice!r}"
+            f"{name} takes {f'the {what} {sorted(allowed)}' if allowed else 'no sequence'}, not "
+            f"{choice!r}"
         )

@@ -1,24 +1,31 @@
-"""What the numbers of each program mean: one table, for the converter, the printed card and the workbench.
+"""What the numbers of each program mean: one table, for the converter, the printed card and the
+workbench.
 
-A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this book's
-:math:`{}^A\\mathbf{C}^N`), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its angles. Its ``lines`` are
-the forms that it takes, each with the line of code for it. In a line, ``{w} {x} {y} {z}`` are the parts of a
-quaternion or of a vector, ``{a} {b} {c}`` three angles in the order of the turns and ``{ax} {ay} {az}`` the same by
-their axes; ``{s}`` is the sequence, ``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their
-numbers from 0; ``{m}`` a matrix, row by row, and ``{t}`` its nine numbers column by column;
-``{-a}`` is what ``{a}`` is with the other sign. ``sequences`` names the only ones where there are not all twelve.
-``version`` is the one that was run, by ``python -m tools.programs``, and empty where the table follows the manual
-alone, which is at ``manual`` and was read in November 2026.
+A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this
+book's :math:`{}^A\\mathbf{C}^N`), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its
+angles. Its ``lines`` are the forms that it takes, each with the line of code for it. In a line,
+``{w} {x} {y} {z}`` are the parts of a quaternion or of a vector, ``{a} {b} {c}`` three angles in
+the order of the turns and ``{ax} {ay} {az}`` the same by their axes; ``{s}`` is the sequence,
+``{S}`` the same in capitals, ``{A} {B} {C}`` its letters, ``{i} {j} {k}`` their numbers from 0;
+``{m}`` a matrix, row by row, and ``{t}`` its nine numbers column by column; ``{-a}`` is what
+``{a}`` is with the other sign. ``sequences`` names the only ones where there are not all twelve.
+``version`` is the one that was run, by ``python -m tools.programs``, and empty where the table
+follows the manual alone, which is at ``manual`` and was read in November 2026.
 
-What two programs can be expected to differ by is said by some more, each left out where the manual has nothing on it:
-``angles`` are the choices for three numbers by that program, as
-:data:`~orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are a rotation vector;
-``printed`` is the order in which it prints a quaternion, if it takes it in another; ``inverse`` are forms, besides the
-matrix, that mean the inverse of this book's; ``body`` and ``world`` are where x, y and z of a thing and of its world
-point to. East counts as forward there and north as left, as ROS has it.
+What two programs can be expected to differ by is said by some more, each left out where the manual
+has nothing on it: ``angles`` are the choices for three numbers by that program, as
+:data:`~orientation_workbench.mismatch.table.KINDS` calls them; ``three numbers`` says that they are
+a rotation vector; ``printed`` is the order in which it prints a quaternion, if it takes it in
+another; ``inverse`` are forms, besides the matrix, that mean the inverse of this book's; ``body``
+and ``world`` are where x, y and z of a thing and of its world point to. East counts as forward
+there and north as left, as ROS has it.
 """
 
-FLU, FRD, RDF = ["forward", "left", "up"], ["forward", "right", "down"], ["right", "down", "forward"]
+FLU, FRD, RDF = (
+    ["forward", "left", "up"],
+    ["forward", "right", "down"],
+    ["right", "down", "forward"],
+)
 RUB, LUF = ["right", "up", "back"], ["left", "up", "forward"]
 ROLL_PITCH_YAW = {"sequence": "xyz", "axes of the turns": "space fixed", "unit": "radians"}
 
@@ -26,9 +33,10 @@ FORMS = ("matrix", "quaternion", "body fixed angles", "space fixed angles", "axi
 TAIT_BRYAN = ["xyz", "yzx", "zxy", "xzy", "zyx", "yxz"]
 OTHER = "another program"
 
-#: What each program, by its name, means by its numbers: its ``matrix`` (``'as here'`` or ``'transposed'``), where the
-#: ``scalar`` of its quaternions stands, the ``unit`` of its angles, the ``lines`` of code for each form, the
-#: ``version`` that was run and the ``manual``. The head of the file explains every entry.
+#: What each program, by its name, means by its numbers: its ``matrix`` (``'as here'`` or
+#: ``'transposed'``), where the ``scalar`` of its quaternions stands, the ``unit`` of its angles,
+#: the ``lines`` of code for each form, the ``version`` that was run and the ``manual``. The head of
+#: the file explains every entry.
 PROGRAMS = {
     "this book": {
         "version": "",
@@ -80,8 +88,10 @@ PROGRAMS = {
         "lines": {
             "matrix": "np.array({m})",
             "quaternion": "pr.matrix_from_quaternion(({w}, {x}, {y}, {z}))",
-            "body fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, extrinsic=False)",
-            "space fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, extrinsic=True)",
+            "body fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, "
+            "extrinsic=False)",
+            "space fixed angles": "pr.matrix_from_euler(({a}, {b}, {c}), {i}, {j}, {k}, "
+            "extrinsic=True)",
             "axis times angle": "pr.matrix_from_compact_axis_angle(({x}, {y}, {z}))",
         },
     },
@@ -107,9 +117,11 @@ PROGRAMS = {
         "printed": "xyzw",
         "lines": {
             "quaternion": "Quaterniond({w}, {x}, {y}, {z})",
-            "body fixed angles": "AngleAxisd({a}, Vector3d::Unit{A}()) * AngleAxisd({b}, Vector3d::Unit{B}())"
+            "body fixed angles": "AngleAxisd({a}, Vector3d::Unit{A}()) * AngleAxisd({b}, "
+            "Vector3d::Unit{B}())"
             " * AngleAxisd({c}, Vector3d::Unit{C}())",
-            "space fixed angles": "AngleAxisd({c}, Vector3d::Unit{C}()) * AngleAxisd({b}, Vector3d::Unit{B}())"
+            "space fixed angles": "AngleAxisd({c}, Vector3d::Unit{C}()) * AngleAxisd({b}, "
+            "Vector3d::Unit{B}())"
             " * AngleAxisd({a}, Vector3d::Unit{A}())",
         },
     },
@@ -252,7 +264,8 @@ PROGRAMS = {
         "lines": {
             "matrix": "PerspectiveCameras(R=torch.tensor([{m}]))",
             "quaternion": "quaternion_to_matrix(torch.tensor([{w}, {x}, {y}, {z}]).double())",
-            "body fixed angles": "euler_angles_to_matrix(torch.tensor([{a}, {b}, {c}]).double(), '{S}')",
+            "body fixed angles": "euler_angles_to_matrix(torch.tensor([{a}, {b}, "
+            "{c}]).double(), '{S}')",
             "axis times angle": "axis_angle_to_matrix(torch.tensor([{x}, {y}, {z}]).double())",
         },
     },
@@ -266,9 +279,11 @@ PROGRAMS = {
         "angles": ROLL_PITCH_YAW,
         "lines": {
             "matrix": "torch.tensor([{m}])",
-            "quaternion": "quaternion_to_rotation_matrix(torch.tensor([[{w}, {x}, {y}, {z}]]).double())",
+            "quaternion": "quaternion_to_rotation_matrix(torch.tensor([[{w}, {x}, {y}, "
+            "{z}]]).double())",
             "space fixed angles": "quaternion_from_euler(*torch.tensor([{a}, {b}, {c}]).double())",
-            "axis times angle": "axis_angle_to_rotation_matrix(torch.tensor([[{x}, {y}, {z}]]).double())",
+            "axis times angle": "axis_angle_to_rotation_matrix(torch.tensor([[{x}, {y}, "
+            "{z}]]).double())",
         },
     },
     "three.js": {
@@ -320,7 +335,12 @@ PROGRAMS = {
         "matrix": "transposed",
         "scalar": "last",
         "unit": "degrees",
-        "angles": {"sequence": "zyx", "axes of the turns": "body fixed", "places": "213", "signs": "+--"},
+        "angles": {
+            "sequence": "zyx",
+            "axes of the turns": "body fixed",
+            "places": "213",
+            "signs": "+--",
+        },
         "body": ["forward", "right", "up"],
         "world": ["forward", "right", "up"],
         "sequences": {"body fixed angles": ["zyx"]},
@@ -430,7 +450,8 @@ PROGRAMS = {
 
 
 def program_named(words):
-    """The one program whose name has these words at the start of one of its own, whatever their case.
+    """The one program whose name has these words at the start of one of its own, whatever their
+    case.
 
     Raises
     ------
@@ -442,7 +463,10 @@ def program_named(words):
     found = exact or [program for program in PROGRAMS if f" {given}" in f" {program.casefold()}"]
     if len(found) != 1:
         which = ", ".join(found or PROGRAMS)
-        raise ValueError(f"{words!r} names {'several programs' if found else 'no program that is known here'}: {which}")
+        raise ValueError(
+            f"{words!r} names "
+            f"{'several programs' if found else 'no program that is known here'}: {which}"
+        )
     return found[0]
 
 
@@ -451,8 +475,13 @@ def expected_of(program):
     facts = PROGRAMS[program]
     order = facts.get("printed") or {"first": "wxyz", "last": "xyzw", "": None}[facts["scalar"]]
     return {
-        "declared": {"unit": facts["unit"]} | ({"order": order} if order else {}) | facts.get("angles", {}),
-        "inverse": [*(["matrix"] if facts["matrix"] == "transposed" else []), *facts.get("inverse", ())],
+        "declared": {"unit": facts["unit"]}
+        | ({"order": order} if order else {})
+        | facts.get("angles", {}),
+        "inverse": [
+            *(["matrix"] if facts["matrix"] == "transposed" else []),
+            *facts.get("inverse", ()),
+        ],
         "three numbers": facts.get("three numbers", "Euler angles"),
         "body": facts.get("body"),
         "world": facts.get("world"),

@@ -13,12 +13,17 @@ from orientation_recordings import bright_stars
 def printed(words):
     """What the cell that prints these words has printed."""
     notebook = json.loads((REPOSITORY / "chapters" / "cases-from-practice.ipynb").read_text("utf8"))
-    texts = ["".join(out.get("text", "")) for cell in notebook["cells"] for out in cell.get("outputs", [])]
+    texts = [
+        "".join(out.get("text", ""))
+        for cell in notebook["cells"]
+        for out in cell.get("outputs", [])
+    ]
     return next(text for text in texts if words in text)
 
 
 def test_the_phone_is_as_wrong_as_its_noise_says():
-    # Across the level field of 20 microtesla, and up as far as it is wrong, times the tangent of the dip.
+    # Across the level field of 20 microtesla, and up as far as it is wrong, times the tangent of
+    # the dip.
     heading = np.degrees(np.hypot(0.5 / 20, 0.03 / 9.81 * 44 / 20))
     told = float(re.search(r"heading: ([\d.]+)", printed("of which the heading"))[1])
     assert abs(told / heading - 1) < 0.05, "one draw stands for many, or the noise is another"
@@ -35,8 +40,14 @@ def numbers(text):
 
 def test_the_stars_say_what_another_program_finds():
     names, directions, magnitudes = bright_stars()
-    rows = [names.index(name) for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()]
-    stars, deviations = directions[rows], np.radians(15 / 3600) * 10 ** (0.2 * (magnitudes[rows] - 2))
+    rows = [
+        names.index(name)
+        for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()
+    ]
+    stars, deviations = (
+        directions[rows],
+        np.radians(15 / 3600) * 10 ** (0.2 * (magnitudes[rows] - 2)),
+    )
     out = stars.sum(axis=0) / np.linalg.norm(stars.sum(axis=0))
     east = np.cross([0, 0, 1], out) / np.linalg.norm(np.cross([0, 0, 1], out))
     seen = stars @ np.array([east, np.cross(out, east), out]).T
@@ -45,9 +56,13 @@ def test_the_stars_say_what_another_program_finds():
         noisy = seen + deviations[:, None] * random.normal(size=seen.shape)
         errors.append(Rotation.align_vectors(noisy, seen, weights=deviations**-2.0)[0].as_rotvec())
     arcseconds = np.degrees(np.sqrt(np.mean(np.square(errors), axis=0))) * 3600
-    one, many, foretold, alike = (numbers(line.partition(":")[2]) for line in printed("rms over 2000").splitlines())
+    one, many, foretold, alike = (
+        numbers(line.partition(":")[2]) for line in printed("rms over 2000").splitlines()
+    )
     # An rms over 400 is uncertain by 3.5 per cent, one over 2000 by 1.6: three times that.
-    assert np.abs(arcseconds / foretold - 1).max() < 0.11 and np.abs(many / foretold - 1).max() < 0.06
+    assert (
+        np.abs(arcseconds / foretold - 1).max() < 0.11 and np.abs(many / foretold - 1).max() < 0.06
+    )
     assert (alike > 1.1 * many).all() and np.abs(one[2]) < 4 * many[2]
 
 
@@ -64,22 +79,37 @@ def test_a_wrist_near_straight_must_hurry():
 
 
 def test_an_axis_that_is_marked_wrong_makes_an_adduction():
-    # The marked frame is turned by 5 degrees about y from the true one; by SciPy, whose matrices are active.
+    # The marked frame is turned by 5 degrees about y from the true one; by SciPy, whose matrices
+    # are active.
     for line in printed("5 sin:").splitlines():
         bend, *report, _, told = numbers(line)
         true = Rotation.from_euler("z", -bend, degrees=True)
-        seen = (Rotation.from_euler("y", -5, degrees=True) * true).as_euler("ZXY", degrees=True) * (-1, 1, 1)
-        assert np.abs(seen - report).max() < 0.06 and abs(told - 5 * np.sin(np.radians(bend))) < 0.06
+        seen = (Rotation.from_euler("y", -5, degrees=True) * true).as_euler("ZXY", degrees=True) * (
+            -1,
+            1,
+            1,
+        )
+        assert (
+            np.abs(seen - report).max() < 0.06 and abs(told - 5 * np.sin(np.radians(bend))) < 0.06
+        )
 
 
 def walks():
-    """Heading errors by group and way: middle, least, largest of walking, by the car, after it; and the verdicts."""
+    """Heading errors by group and way: middle, least, largest of walking, by the car, after it; and
+    the verdicts.
+    """
     text = printed("what the filter says of the heading")
     errors, _, verdicts = text.partition("\nwhat the filter")
     rows = {
-        (line[:12].strip(), line[13:25].strip()): numbers(line[25:]) for line in errors.splitlines()[1:] if line.strip()
+        (line[:12].strip(), line[13:25].strip()): numbers(line[25:])
+        for line in errors.splitlines()[1:]
+        if line.strip()
     }
-    lights = {line[:12].strip(): numbers(line[12:]) for line in verdicts.splitlines()[1:] if "red light:" in line[12:]}
+    lights = {
+        line[:12].strip(): numbers(line[12:])
+        for line in verdicts.splitlines()[1:]
+        if "red light:" in line[12:]
+    }
     return rows, lights
 
 
@@ -87,8 +117,11 @@ def test_the_filter_is_better_than_two_sensors_on_a_walk_and_what_varies_decides
     rows, _ = walks()
     groups = ["nothing", "pose", "all", "all, no car"]
     for group in groups:
-        assert rows[group, "filter"][2] < 4 < rows[group, "two sensors"][1]  # the worst against the best
-    # Ten microtesla across twenty turn the level field by 26.6 degrees, along it by none; steps add a little.
+        assert (
+            rows[group, "filter"][2] < 4 < rows[group, "two sensors"][1]
+        )  # the worst against the best
+    # Ten microtesla across twenty turn the level field by 26.6 degrees, along it by none; steps add
+    # a little.
     assert 26.6 < rows["nothing", "two sensors"][3] < 33 and rows["all", "two sensors"][4] < 20
     # One story told many times, where only noise varies.
     after = {group: np.ptp(rows[group, "filter"][6:]) for group in groups}
@@ -104,13 +137,17 @@ def test_the_bench_warns_of_the_car_and_of_nothing_else():
 
 
 def test_skin_that_tips_a_plate_does_more_harm_than_balls_that_slip_each_for_itself():
-    lines = {line[:20].strip(): numbers(line[20:]) for line in printed("plate tips").splitlines()[1:]}
+    lines = {
+        line[:20].strip(): numbers(line[20:]) for line in printed("plate tips").splitlines()[1:]
+    }
     alone, together = lines["skin, each its way"], lines["skin, plate tips"]
     assert (together[::3] > 1.4 * alone[::3]).all()
 
 
 def test_one_turn_is_quicker_than_three():
-    one, three = (numbers(line.partition(":")[2]) for line in printed("three single turns:").splitlines())
+    one, three = (
+        numbers(line.partition(":")[2]) for line in printed("three single turns:").splitlines()
+    )
     assert one[0] < three[0] and one[1] < three[1]
     lines = printed("the quickest of twelve").splitlines()
     assert all(numbers(line.partition("times (")[2])[0] > 1 for line in lines[1:])
@@ -118,12 +155,19 @@ def test_one_turn_is_quicker_than_three():
 
 
 def test_the_attitude_of_an_aircraft_for_a_robot():
-    """East, north, up and forwards, left, up, by SciPy: its rotations turn components of the body into the ground's."""
+    """East, north, up and forwards, left, up, by SciPy: its rotations turn components of the body
+    into the ground's.
+    """
     text = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
-    outputs = ["".join(out.get("text", "")) for cell in text["cells"] for out in cell.get("outputs", [])]
+    outputs = [
+        "".join(out.get("text", "")) for cell in text["cells"] for out in cell.get("outputs", [])
+    ]
     told = next(text for text in outputs if "south-west" in text).splitlines()
     swap = Rotation.from_matrix([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
     for line, angles in zip(told, ((90, 0, 0), (225, 10, 25)), strict=True):
         aviation = Rotation.from_euler("ZYX", angles, degrees=True)
         robot = swap * aviation * Rotation.from_matrix(np.diag([1, -1, -1]))
-        assert np.abs(robot.as_euler("ZYX", degrees=True) - numbers(line.partition(":")[2])).max() < 1e-6
+        assert (
+            np.abs(robot.as_euler("ZYX", degrees=True) - numbers(line.partition(":")[2])).max()
+            < 1e-6
+        )

@@ -1,4 +1,6 @@
-"""Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has all of them."""
+"""Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has
+all of them.
+"""
 
 import os
 import re
@@ -46,7 +48,12 @@ FORGOTTEN = {
         "",
         r"chapters/gimbal-lock.ipynb:\d+ \(cell \d+\): no summary",
     ),
-    "label": ("chapters/gimbal-lock.ipynb", "(chapter-gimbal-lock)=", "(gimbal)=", r"gimbal-lock.ipynb:1 \(cell 1\)"),
+    "label": (
+        "chapters/gimbal-lock.ipynb",
+        "(chapter-gimbal-lock)=",
+        "(gimbal)=",
+        r"gimbal-lock.ipynb:1 \(cell 1\)",
+    ),
     "solution": (
         "appendix/solutions-going-further.ipynb",
         "{solution-start} exercise-scalar-last",
@@ -77,7 +84,12 @@ FORGOTTEN = {
         "- file: chapters/gimbal-lok",
         r"_toc.yml:\d+: there is no page chapters/gimbal-lok$",
     ),
-    "line of the index": ("exercises/index.md", "- {doc}`gimbal-lock`\n", "", r"exercises/index.md:\d+: .*gimbal-lock"),
+    "line of the index": (
+        "exercises/index.md",
+        "- {doc}`gimbal-lock`\n",
+        "",
+        r"exercises/index.md:\d+: .*gimbal-lock",
+    ),
     "sentence": (
         "chapters/gimbal-lock.ipynb",
         "# Gimbal lock",
@@ -102,7 +114,9 @@ def test_a_notebook_of_exercises_that_is_not_there(book):
     (book / "exercises/gimbal-lock.ipynb").unlink()
     told = "\n".join(chapters.faults())
     assert "its exercises are missing, tests/solutions/gimbal-lock.ipynb" in told
-    assert re.search(r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", told)
+    assert re.search(
+        r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", told
+    )
 
 
 def make(*arguments):
@@ -112,9 +126,13 @@ def make(*arguments):
 
 
 def test_a_new_chapter_has_all_its_parts(book):
-    done = make("chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "quaternions-in-full")
+    done = make(
+        "chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "quaternions-in-full"
+    )
     assert done.returncode == 0, done.stderr
-    shutil.copy("tests/solutions/chapter-of-the-tests.ipynb", "exercises")  # as a release would put it there
+    shutil.copy(
+        "tests/solutions/chapter-of-the-tests.ipynb", "exercises"
+    )  # as a release would put it there
     told = list(chapters.faults())
     assert told and all("TO BE WRITTEN" in fault for fault in told), told
     pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
@@ -131,18 +149,29 @@ def test_a_new_chapter_has_all_its_parts(book):
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("chapter", "Chapter of the tests", "Chapter of the tests"), "NAME in small letters and hyphens"),
+        (
+            ("chapter", "Chapter of the tests", "Chapter of the tests"),
+            "NAME in small letters and hyphens",
+        ),
         (("chapter", "chapter-of-the-tests", ""), "a TITLE"),
         (
             ("chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "gimbals"),
             "no chapter 'gimbals'; it has",
         ),
         (("question", "gimbal-lock", ""), "is CHAPTER/QUESTION"),
-        (("question", "chapter-of-the-tests/twist", ""), "`make new-chapter NAME=chapter-of-the-tests"),
-        (("question", "gimbal-lock/twist", "", "--kind", "riddle"), "no KIND of question 'riddle'; there are expr"),
+        (
+            ("question", "chapter-of-the-tests/twist", ""),
+            "`make new-chapter NAME=chapter-of-the-tests",
+        ),
+        (
+            ("question", "gimbal-lock/twist", "", "--kind", "riddle"),
+            "no KIND of question 'riddle'; there are expr",
+        ),
     ],
 )
-def test_what_cannot_be_made_is_told_and_nothing_changed(book, capsys, monkeypatch, arguments, says):
+def test_what_cannot_be_made_is_told_and_nothing_changed(
+    book, capsys, monkeypatch, arguments, says
+):
     before = {path: path.read_bytes() for path in book.rglob("*") if path.is_file()}
     monkeypatch.setattr(sys, "argv", ["new", *arguments])
     with pytest.raises(SystemExit, match=says):
@@ -153,7 +182,9 @@ def test_what_cannot_be_made_is_told_and_nothing_changed(book, capsys, monkeypat
 def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
     assert set(new.EXAMPLES) == {*KINDS, *orientation_course.KINDS}
     path = book / "tests" / "solutions" / "trial.ipynb"
-    notebook = nbformat.v4.new_notebook(cells=[new.code("import sympy as sm\n\nfrom coursework import check")])
+    notebook = nbformat.v4.new_notebook(
+        cells=[new.code("import sympy as sm\n\nfrom coursework import check")]
+    )
     nbformat.write(notebook, path)
     for kind in new.EXAMPLES:
         new.new_question(f"trial/{kind.replace(' ', '-').lower()}", "", kind)
@@ -163,11 +194,15 @@ def test_a_new_question_of_every_kind_is_one_that_can_be_released(book):
 
 
 EQUATIONS = re.findall(
-    r":eq:`([^`]*)`", "".join(path.read_text("utf8") for path in (REPOSITORY / "src" / "orientation").glob("*.py"))
+    r":eq:`([^`]*)`",
+    "".join(path.read_text("utf8") for path in (REPOSITORY / "src" / "orientation").glob("*.py")),
 )
 
 
 def test_docstrings_name_equations_of_the_book():
     """By their labels, from which the reference page makes numbers and links: numbers move."""
     texts = "".join(path.read_text("utf8") for path in (REPOSITORY / "chapters").glob("*.ipynb"))
-    assert len(EQUATIONS) >= 20 and [label for label in EQUATIONS if f"$$ ({label})" not in texts] == []
+    assert (
+        len(EQUATIONS) >= 20
+        and [label for label in EQUATIONS if f"$$ ({label})" not in texts] == []
+    )

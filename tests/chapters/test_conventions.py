@@ -1,4 +1,6 @@
-"""What other libraries answered, as the convention card prints it; ``python -m tools.programs`` asks them anew."""
+"""What other libraries answered, as the convention card prints it; ``python -m tools.programs``
+asks them anew.
+"""
 
 import ast
 import json
@@ -12,7 +14,11 @@ from orientation import dcm_from_body_fixed
 def stored():
     """The table of the card: library, line of code, answer."""
     notebook = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
-    source = next("".join(cell["source"]) for cell in notebook["cells"] if "ASKED = [" in "".join(cell["source"]))
+    source = next(
+        "".join(cell["source"])
+        for cell in notebook["cells"]
+        if "ASKED = [" in "".join(cell["source"])
+    )
     assigned = next(node for node in ast.parse(source).body if isinstance(node, ast.Assign))
     return ast.literal_eval(assigned.value)
 

@@ -1,4 +1,6 @@
-"""What every chapter holds; and what the first eight claim: their own code is run, and held against other results."""
+"""What every chapter holds; and what the first eight claim: their own code is run, and held against
+other results.
+"""
 
 import re
 from functools import cache
@@ -40,7 +42,9 @@ def names_of(name):
 
 
 def code_with(name, text):
-    [code] = [cell.source for cell in cells(name) if cell.cell_type == "code" and text in cell.source]
+    [code] = [
+        cell.source for cell in cells(name) if cell.cell_type == "code" and text in cell.source
+    ]
     return code
 
 
@@ -56,7 +60,9 @@ BOXES = re.compile(r"^`{3,}\{(predict|exercise|recap)\}.*?^`{3,}$", re.MULTILINE
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_chapter_is_read_first_and_practised_at_its_end(name):
-    """How many questions stand where is the author's to judge; but what interrupts no argument stands after it."""
+    """How many questions stand where is the author's to judge; but what interrupts no argument
+    stands after it.
+    """
     text = text_of(name)
     reading, _, practice = text.partition("## Exercises\n")
     assert practice and "\n## " not in practice
@@ -66,7 +72,9 @@ def test_a_chapter_is_read_first_and_practised_at_its_end(name):
     assert reading.rstrip().endswith(":::") or ":class: summary" in reading
     for question in re.findall(r"^```\{question\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
         assert len(re.findall(r"\n\n(?=[^\n]+\n: )", question)) >= 2, question
-    for exercise in re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL):
+    for exercise in re.findall(
+        r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL
+    ):
         assert re.search(r"^:difficulty: [123]$", exercise, re.MULTILINE), exercise
         assert re.search(r"^:minutes: \d+$", exercise, re.MULTILINE), exercise
 
@@ -75,14 +83,20 @@ def test_a_chapter_is_read_first_and_practised_at_its_end(name):
 def test_some_exercise_asks_for_a_proof_or_an_explanation(name):
     text = text_of(name)
     exercises = re.findall(r"^`{3,}\{exercise\}.*?\n(.*?)^`{3,}$", text, re.MULTILINE | re.DOTALL)
-    assert any(re.search(r"\b([Pp]rove|[Ss]how|[Ee]xplain|[Ww]hy)\b", exercise) for exercise in exercises)
+    assert any(
+        re.search(r"\b([Pp]rove|[Ss]how|[Ee]xplain|[Ww]hy)\b", exercise) for exercise in exercises
+    )
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_no_sentence_is_cut_in_two_by_a_cell(name):
-    """Text before a cell ends as a sentence does, or with a colon, and what follows begins as one."""
+    """Text before a cell ends as a sentence does, or with a colon, and what follows begins as
+    one.
+    """
     for before, cell in zip(cells(name), cells(name)[1:]):
-        text = re.sub(r"<!--.*?-->", "", before.source, flags=re.DOTALL).rstrip()  # without the marks of a lecture
+        text = re.sub(
+            r"<!--.*?-->", "", before.source, flags=re.DOTALL
+        ).rstrip()  # without the marks of a lecture
         if before.cell_type == "markdown" and text:
             last = text.splitlines()[-1]
             assert re.search(r"([.:?!)*]|\$\$.*|:::|```+|</\w+>|^#.*|\|)$", last), last
@@ -95,11 +109,15 @@ def test_a_chapter_says_what_for_shows_something_real_and_sums_up(name):
     """A figure that moves, or what an instrument has recorded."""
     text = text_of(name)
     for part in ("objectives", "summary"):
-        [points] = re.findall(rf"^:::\{{admonition\}} .*\n:class: {part}\n(.*?)^:::$", text, re.MULTILINE | re.DOTALL)
+        [points] = re.findall(
+            rf"^:::\{{admonition\}} .*\n:class: {part}\n(.*?)^:::$", text, re.MULTILINE | re.DOTALL
+        )
         assert re.search(r"^- ", points, re.MULTILINE)
     code = "\n".join(cell.source for cell in cells(name) if cell.cell_type == "code")
     assert re.search(
-        r"^(from orientation_figures\.(moving|animation) import |import orientation_recordings)", code, re.MULTILINE
+        r"^(from orientation_figures\.(moving|animation) import |import orientation_recordings)",
+        code,
+        re.MULTILINE,
     )
 
 
@@ -130,7 +148,9 @@ def test_a_prediction_is_a_question_and_not_only_a_box(name):
 
 def test_a_left_handed_triad_passes_where_it_is_measured_along_itself_and_fails_along_a_right_handed_one():
     names = names_of("reference-frames")
-    mirrored, turned = (sm.Matrix.hstack(*(names[f"{letter}_{axis}"] for axis in "xyz")) for letter in "ma")
+    mirrored, turned = (
+        sm.Matrix.hstack(*(names[f"{letter}_{axis}"] for axis in "xyz")) for letter in "ma"
+    )
     assert mirrored.det() == -1 and turned.det() == 1
     for triad in (mirrored, turned):
         assert triad * triad.T == sm.eye(3)
@@ -224,20 +244,31 @@ def test_two_half_turns_are_one_turn_through_twice_the_angle_between_their_axes(
     assert (halves.inv() * Rotation.from_rotvec(theta * axis)).magnitude() < 1e-7
     vector = random.normal(size=3)
     turned = multiply_quaternions(multiply_quaternions(q, [0, *vector]), q * [1, -1, -1, -1])
-    assert turned == pytest.approx([0, *Rotation.from_rotvec(theta * axis).apply(vector)], abs=1e-14)
+    assert turned == pytest.approx(
+        [0, *Rotation.from_rotvec(theta * axis).apply(vector)], abs=1e-14
+    )
 
 
 def test_the_matrix_of_a_quaternion_is_that_of_rodrigues_for_every_unit_axis():
     names = names_of("unit-quaternions")
-    difference, e, c, s = names["by_quaternion"] - names["by_rodrigues"], names["e"], names["c"], names["s"]
+    difference, e, c, s = (
+        names["by_quaternion"] - names["by_rodrigues"],
+        names["e"],
+        names["c"],
+        names["s"],
+    )
     # With the two conditions that the text names, every entry is zero: they divide it.
     conditions = sm.groebner([e.dot(e) - 1, c**2 + s**2 - 1], *e, c, s)
     assert all(conditions.contains(sm.expand(entry)) for entry in difference)
-    assert not conditions.contains(sm.expand((names["by_quaternion"] - names["by_rodrigues"].T)[0, 1]))
+    assert not conditions.contains(
+        sm.expand((names["by_quaternion"] - names["by_rodrigues"].T)[0, 1])
+    )
 
 
 def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_like():
-    """|q|^2 belongs beside the stretch of a matrix. One angle for all steps would share one rounding error."""
+    """|q|^2 belongs beside the stretch of a matrix. One angle for all steps would share one
+    rounding error.
+    """
     names = names_of("unit-quaternions")
     squared, matrices = names["drifts"]((111, 112, 113, 114, 115, 116, 117, 118))
     quaternion, matrix = abs(squared - 1), names["worst_stretch"](matrices)
@@ -245,7 +276,8 @@ def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_
     assert 1 / 5 < np.exp(np.mean(np.log(quaternion / matrix))) < 5
     constant = np.float32([np.cos(0.01), np.sin(0.01)])
     assert abs(np.hypot(*constant.astype(float)) ** 20_000 - 1) > 1e-4
-    # The matrix of a quaternion stretches by its length squared, and one step of Newton's puts a matrix right.
+    # The matrix of a quaternion stretches by its length squared, and one step of Newton's puts a
+    # matrix right.
     q = np.array([0.7, -0.2, 0.5, 0.6])
     image = multiply_quaternions(multiply_quaternions(q, [0, 1, 2, 3]), q * [1, -1, -1, -1])
     assert np.linalg.norm(image) == pytest.approx(q @ q * np.sqrt(14))
@@ -254,12 +286,18 @@ def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_
 
 def test_two_full_turns_shrink_to_a_point_with_both_ends_held_and_one_does_not():
     names = names_of("unit-quaternions")
-    parts = sm.lambdify((names["beta"], names["half_turned"]), [names["scalar"], names["along_e"], names["along_u"]])
+    parts = sm.lambdify(
+        (names["beta"], names["half_turned"]), [names["scalar"], names["along_e"], names["along_u"]]
+    )
     turned = np.linspace(0, 2 * np.pi, 200)
-    loops = np.array([np.broadcast_arrays(*parts(beta, turned)) for beta in np.linspace(0, np.pi / 2, 50)])
+    loops = np.array(
+        [np.broadcast_arrays(*parts(beta, turned)) for beta in np.linspace(0, np.pi / 2, 50)]
+    )
     assert np.allclose(np.linalg.norm(loops, axis=1), 1)
     assert np.allclose(loops[:, :, [0, -1]], np.array([1, 0, 0])[:, None])
-    assert np.allclose(loops[0], [np.cos(turned), np.sin(turned), 0 * turned])  # two full turns about e
+    assert np.allclose(
+        loops[0], [np.cos(turned), np.sin(turned), 0 * turned]
+    )  # two full turns about e
     assert np.allclose(loops[-1], np.array([1, 0, 0])[:, None])  # flat
     assert abs(np.diff(loops, axis=0)).max() < 0.1  # nothing jumps
 
@@ -270,6 +308,8 @@ def test_the_components_of_a_vector_that_stays_go_the_other_way():
     for q in random.normal(size=(20, 4)):
         q, vector = q / np.linalg.norm(q), random.normal(size=3)
         conjugate = q * [1, -1, -1, -1]
-        units = [multiply_quaternions(multiply_quaternions(q, [0, *n]), conjugate)[1:] for n in np.eye(3)]
+        units = [
+            multiply_quaternions(multiply_quaternions(q, [0, *n]), conjugate)[1:] for n in np.eye(3)
+        ]
         along_a = multiply_quaternions(multiply_quaternions(conjugate, [0, *vector]), q)
         assert np.allclose(along_a, [0, *(np.array(units) @ vector)])

@@ -1,4 +1,6 @@
-"""What numbers mean on another processor: how far they may move, and that no cell prints what is rounding alone."""
+"""What numbers mean on another processor: how far they may move, and that no cell prints what is
+rounding alone.
+"""
 
 import re
 import subprocess
@@ -79,7 +81,8 @@ class Cell:
 
 
 @pytest.mark.parametrize(
-    ("now", "same"), [("0.5 and 2e-16", True), ("0.50001 and 2e-16", False), ("0.5 and 2e-16 and more", False)]
+    ("now", "same"),
+    [("0.5 and 2e-16", True), ("0.50001 and 2e-16", False), ("0.5 and 2e-16 and more", False)],
 )
 def test_stored_outputs_are_compared_by_number(now, same):
     def outputs(text):
@@ -96,17 +99,25 @@ def printed(notebook):
     for number, cell in enumerate(notebook.cells):
         for output in cell.get("outputs", []):
             data = output.get("data", {})
-            for text in (output.get("text", ""), data.get("text/plain", ""), data.get("text/latex", "")):
+            for text in (
+                output.get("text", ""),
+                data.get("text/plain", ""),
+                data.get("text/latex", ""),
+            ):
                 yield number, text
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_no_cell_prints_rounding(path):
-    """Another processor rounds otherwise: what is that small is said as a bound, which the cell asserts."""
+    """Another processor rounds otherwise: what is that small is said as a bound, which the cell
+    asserts.
+    """
     for number, text in printed(nbformat.read(path, as_version=4)):
         for found in FREE.finditer(text):
             said = re.search(r"(less than|below|under) (about )?$", text[: found.start()])
-            assert said or not 0 < abs(float(found[0])) < 1e-12, f"cell {number} prints {found[0]}: {text}"
+            assert said or not 0 < abs(float(found[0])) < 1e-12, (
+                f"cell {number} prints {found[0]}: {text}"
+            )
 
 
 @pytest.mark.parametrize("day", [(2026, 11, 23), (2027, 2, 28), (2028, 2, 29)])
@@ -122,5 +133,7 @@ os.environ.pop("BOOK_TEST_SEED", None)
 import seed
 print(seed.SEED, seed.spread(range(100), 7))
 """
-    told = subprocess.check_output([sys.executable, "-c", program], cwd=REPOSITORY / "coursework" / "tests", text=True)
+    told = subprocess.check_output(
+        [sys.executable, "-c", program], cwd=REPOSITORY / "coursework" / "tests", text=True
+    )
     assert told == "every day [7, 21, 35, 50, 64, 78, 92]\n"

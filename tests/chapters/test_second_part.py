@@ -32,16 +32,23 @@ def printed(name, word):
 
 
 def test_with_one_angular_velocity_the_descriptions_differ():
-    """By the numbers of a second computation; one crude angular velocity for all had made them look alike."""
+    """By the numbers of a second computation; one crude angular velocity for all had made them look
+    alike.
+    """
     text = printed("orientation-in-motion", "'Euler angles': euler(angle_rates")
     found = {
-        name.strip(): float(wrong) for name, wrong in re.findall(r"^(.*) wrong by ([\d.]+) rad", text, re.MULTILINE)
+        name.strip(): float(wrong)
+        for name, wrong in re.findall(r"^(.*) wrong by ([\d.]+) rad", text, re.MULTILINE)
     }
-    assert found == pytest.approx({"matrix": 0.0143, "quaternion": 0.0036, "Euler angles": 0.101}, rel=0.05)
+    assert found == pytest.approx(
+        {"matrix": 0.0143, "quaternion": 0.0036, "Euler angles": 0.101}, rel=0.05
+    )
 
 
 def test_over_a_whole_flight_a_matrix_and_a_quaternion_are_nearly_alike_and_lock_is_not_the_cause():
-    """The steps of Euler's method, by the tangent that they are; and what a hundred throws showed."""
+    """The steps of Euler's method, by the tangent that they are; and what a hundred throws
+    showed.
+    """
     for angle in (0.02, 0.05, 0.1):
         tangent = nearest_dcm(np.eye(3) - angle * np.cross(np.eye(3), [0, 0, 1.0])).dcm
         assert angle_between(tangent, np.eye(3)) == pytest.approx(np.arctan(angle), rel=1e-9)
@@ -60,7 +67,11 @@ def test_coning_of_reports_is_what_the_chapter_says_and_pairs_of_reports_mend_it
     text = printed("orientation-in-motion", "def in_pairs(totals):")
     found = [float(number) for number in re.findall(r"each ([\d.]+) degrees", text)]
     assert found == pytest.approx([0.996, 0.177, 0.045], abs=5e-4)
-    [remedied] = [cell.source for cell in cells("orientation-in-motion") if "def in_pairs(totals):" in cell.source]
+    [remedied] = [
+        cell.source
+        for cell in cells("orientation-in-motion")
+        if "def in_pairs(totals):" in cell.source
+    ]
     names = {"np": np}
     exec(re.search(r"def in_pairs.*?\n\n\n", remedied, re.DOTALL)[0], names)
     # For an angular velocity that runs along a straight line, against many small turns.
@@ -86,36 +97,51 @@ def test_a_second_camera_gains_what_the_prediction_keys():
     from orientation_recordings import bright_stars
 
     names, directions, magnitudes = bright_stars()
-    rows = [names.index(name) for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()]
+    rows = [
+        names.index(name)
+        for name in "Betelgeuse Rigel Bellatrix Alnilam Alnitak Mintaka Saiph".split()
+    ]
     stars, weights = directions[rows], 10 ** (-0.4 * magnitudes[rows])
     sight = stars.sum(axis=0) / np.linalg.norm(stars.sum(axis=0))
     across = np.cross([0, 0, 1], sight) / np.linalg.norm(np.cross([0, 0, 1], sight))
 
     def information(stars):
-        return sum(weight * (np.eye(3) - np.outer(star, star)) for star, weight in zip(stars, weights))
+        return sum(
+            weight * (np.eye(3) - np.outer(star, star)) for star, weight in zip(stars, weights)
+        )
 
     turned = Rotation.from_rotvec(np.pi / 2 * across).apply(stars)
-    alone, both = (np.linalg.inv(known) for known in (information(stars), information(stars) + information(turned)))
+    alone, both = (
+        np.linalg.inv(known)
+        for known in (information(stars), information(stars) + information(turned))
+    )
     gain = np.sqrt((sight @ alone @ sight) / (sight @ both @ sight))
     assert 6.5 < gain < 7.7
     assert (
         ":answer: C\n"
-        in (text := "".join(cell.source for cell in cells("cases-from-practice"))).split("predict-second-camera")[1][
-            :20
-        ]
+        in (text := "".join(cell.source for cell in cells("cases-from-practice"))).split(
+            "predict-second-camera"
+        )[1][:20]
     )
     assert "About seven times" in text
 
 
 def test_one_turn_is_not_always_the_cheapest():
     """Of a slew too small to reach the greatest rate, by the work of its wheels."""
-    moments, torque, angles = np.array([120.0, 90.0, 60.0]), 0.04, np.radians([2.463, -3.903, -1.829])
+    moments, torque, angles = (
+        np.array([120.0, 90.0, 60.0]),
+        0.04,
+        np.radians([2.463, -3.903, -1.829]),
+    )
     turn = (Rotation.from_euler("YZX", angles)).as_rotvec()
     angle = np.linalg.norm(turn)
     axis = turn / angle
     one = torque * angle * (moments * axis**2).sum() / max(moments * abs(axis)) / 2
     three = torque * abs(angles).sum() / 2
-    told = [float(number) for number in re.findall(r"([\d.]+) J", printed("cases-from-practice", "nearby = dcm"))]
+    told = [
+        float(number)
+        for number in re.findall(r"([\d.]+) J", printed("cases-from-practice", "nearby = dcm"))
+    ]
     assert three < one and told == pytest.approx([one, three], abs=1e-6)
 
 
@@ -134,7 +160,9 @@ def test_three_headings_cost_what_the_text_says():
 
 
 def test_signed_zeros_are_shown_and_no_longer_denied():
-    assert np.arctan2(0.0, -0.0) == np.pi and "180.0" in printed("back-from-a-matrix", "for zero in (0.0, -0.0)")
+    assert np.arctan2(0.0, -0.0) == np.pi and "180.0" in printed(
+        "back-from-a-matrix", "for zero in (0.0, -0.0)"
+    )
     text = "".join(cell.source for cell in cells("back-from-a-matrix"))
     assert "by definition" not in text
 
@@ -149,7 +177,11 @@ def test_half_way_the_restored_blend_is_slerps_middle():
 
 def test_no_speed_is_clipped():
     """The limits of the figure leave room for both curves."""
-    [cell] = [cell for cell in cells("quaternions-in-full") if "Speed of turning, in degrees" in cell.source]
+    [cell] = [
+        cell
+        for cell in cells("quaternions-in-full")
+        if "Speed of turning, in degrees" in cell.source
+    ]
     assert re.search(r"ylim=\(0, None\)", cell.source)
 
 
@@ -158,7 +190,9 @@ def test_what_is_called_measured_could_have_been_measured():
     [rows] = re.findall(r"\['Measured', (\[\[.*?\]\])\]", code)
     rows = np.array(eval(rows))
     assert abs(np.linalg.norm(rows, axis=1) - 1).max() < 0.02 and nearest_dcm(rows).distance < 0.03
-    [cell] = [cell for cell in cells("measured-matrices") if "\nmeasured = np.array(" in cell.source]
+    [cell] = [
+        cell for cell in cells("measured-matrices") if "\nmeasured = np.array(" in cell.source
+    ]
     names = {}
     exec(cell.source, names)
     assert (names["measured"] == rows).all()
@@ -173,11 +207,15 @@ def test_the_racket_is_a_real_one_and_the_aircraft_flies_straight():
 
 def prose(name):
     """The text of a chapter, its lines joined."""
-    return " ".join("\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown").split())
+    return " ".join(
+        "\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown").split()
+    )
 
 
 def test_the_part_across_the_axis_carries_its_own_label():
-    """Beside the middle of its arrow, and far from the arrow of v, whose label it had seemed to be."""
+    """Beside the middle of its arrow, and far from the arrow of v, whose label it had seemed to
+    be.
+    """
     [cell] = [cell for cell in cells("axis-and-angle") if "def rodrigues():" in cell.source]
     names = {}
     exec(cell.source, names)
@@ -190,7 +228,9 @@ def test_the_part_across_the_axis_carries_its_own_label():
         share = np.clip((place - start) @ (end - start) / ((end - start) @ (end - start)), 0, 1)
         return np.linalg.norm(start + share * (end - start) - place)
 
-    [place] = [place for _, shape, place, _ in drawing.marks if r"\mathbf{v}_\perp" in str(shape[0])]
+    [place] = [
+        place for _, shape, place, _ in drawing.marks if r"\mathbf{v}_\perp" in str(shape[0])
+    ]
     across, along = distance(place, foot, vector), distance(place, np.zeros(3), vector)
     assert across < 25 and along > 1.3 * across, (across, along)
 
@@ -202,11 +242,15 @@ def test_both_makers_signs_are_told_and_a_bias_of_ten_microtesla_costs_sixteen_d
     truth = Rotation.from_euler("ZXY", (70, 20, -35), degrees=True)
     north_up = np.array([20.0, 0, -44])
     told = re.findall(
-        r"heading off by (-?\d+) degrees", printed("cases-from-practice", "biased = orientation_of_phone")
+        r"heading off by (-?\d+) degrees",
+        printed("cases-from-practice", "biased = orientation_of_phone"),
     )
     for number, bias in zip(told, np.eye(3)[:2] * 10, strict=True):
         x, y, _ = north_up + truth.apply(bias)
-        assert abs(abs(int(number)) - abs(np.degrees(np.arctan2(y, x)))) < 0.51 and abs(int(number)) == 16
+        assert (
+            abs(abs(int(number)) - abs(np.degrees(np.arctan2(y, x)))) < 0.51
+            and abs(int(number)) == 16
+        )
 
 
 def test_angular_velocity_is_defined_and_proved_to_add():
@@ -225,7 +269,9 @@ def test_angular_velocity_is_defined_and_proved_to_add():
 
         inner = found(lambda time: moved(time, first, first_rate))
         outer = found(lambda time: moved(time, second, second_rate))
-        whole = found(lambda time: moved(time, second, second_rate) @ moved(time, first, first_rate))
+        whole = found(
+            lambda time: moved(time, second, second_rate) @ moved(time, first, first_rate)
+        )
         assert np.allclose(whole, outer + moved(0, second, 0) @ inner, atol=1e-6)
 
 
@@ -242,7 +288,9 @@ def test_a_fixed_direction_is_shown_to_be_the_axis_of_a_turn():
 
 
 def test_of_a_mirror_image_the_smallest_singular_value_is_given_up():
-    """No orientation among many near the answer, or anywhere, fits a matrix of negative determinant better."""
+    """No orientation among many near the answer, or anywhere, fits a matrix of negative determinant
+    better.
+    """
     assert "$$ (equation-nearest-mirror)" in prose("measured-matrices")
     random = np.random.default_rng(8)
     for _ in range(20):
@@ -263,16 +311,25 @@ def test_the_logarithm_jumps_at_half_a_turn_and_the_exponential_fails_at_a_whole
         and "At $\\theta = 2\\pi$ the *exponential is singular*" in text
     )
     axis, across = np.array([0.6, 0, 0.8]), np.array([0, 1.0, 0])
-    before, after = (rotation_vector_from_dcm(dcm_from_rotation_vector((np.pi + d) * axis)) for d in (-1e-4, 1e-4))
+    before, after = (
+        rotation_vector_from_dcm(dcm_from_rotation_vector((np.pi + d) * axis))
+        for d in (-1e-4, 1e-4)
+    )
     assert np.linalg.norm(after - before) == pytest.approx(2 * np.pi, abs=1e-3)
     assert np.linalg.norm(rotation_vector_rate(np.pi * axis, across)) == pytest.approx(np.pi / 2)
     assert np.linalg.norm(rotation_vector_rate((2 * np.pi - 1e-4) * axis, across)) > 1e4
 
 
 def test_the_square_of_the_quaternion_fits_its_line():
-    """The table is symmetric: below its diagonal stand dots, and no row is wider than a screen of 1300 pixels shows."""
-    [cell] = [cell for cell in cells("back-from-a-matrix") if "(equation-back-quaternion)" in cell.source]
-    [square] = re.findall(r"4\\,q\\,q\^T = \\begin{bmatrix}\n(.*?)\n\\end{bmatrix}", cell.source, re.DOTALL)
+    """The table is symmetric: below its diagonal stand dots, and no row is wider than a screen of
+    1300 pixels shows.
+    """
+    [cell] = [
+        cell for cell in cells("back-from-a-matrix") if "(equation-back-quaternion)" in cell.source
+    ]
+    [square] = re.findall(
+        r"4\\,q\\,q\^T = \\begin{bmatrix}\n(.*?)\n\\end{bmatrix}", cell.source, re.DOTALL
+    )
     rows = [[entry.strip() for entry in row.split("&")] for row in square.split("\\\\")]
     assert [row.count(r"\cdot") for row in rows] == [0, 1, 2, 3]
     assert all(len(re.sub(r"[_{}\\ ]", "", "".join(row))) <= 32 for row in rows)
@@ -280,7 +337,9 @@ def test_the_square_of_the_quaternion_fits_its_line():
 
 @pytest.mark.long
 def test_the_whole_bench_shows_the_lights_of_the_walks_past_a_car():
-    """The chapter runs the filter of the bench over all walks at once; here each is a file on the whole bench."""
+    """The chapter runs the filter of the bench over all walks at once; here each is a file on the
+    whole bench.
+    """
     names, chapter = {}, [cell for cell in cells("cases-from-practice") if cell.cell_type == "code"]
     last = next(k for k, cell in enumerate(chapter) if "def walk(" in cell.source)
     for cell in chapter[: last + 1]:

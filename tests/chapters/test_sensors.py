@@ -1,4 +1,6 @@
-"""What the chapters on sensors claim of recordings and of filters, computed a second time, by other means."""
+"""What the chapters on sensors claim of recordings and of filters, computed a second time, by other
+means.
+"""
 
 import json
 import re
@@ -25,8 +27,14 @@ FILTERS = "orientation-filters"
 
 def found(word, name="orientation-from-sensors"):
     """Code and print of the one cell whose code holds the word."""
-    [cell] = [cell for cell in cells(name) if cell["cell_type"] == "code" and re.search(word, "".join(cell["source"]))]
-    return "".join(cell["source"]), "".join("".join(output.get("text", "")) for output in cell["outputs"])
+    [cell] = [
+        cell
+        for cell in cells(name)
+        if cell["cell_type"] == "code" and re.search(word, "".join(cell["source"]))
+    ]
+    return "".join(cell["source"]), "".join(
+        "".join(output.get("text", "")) for output in cell["outputs"]
+    )
 
 
 def numbers(text):
@@ -46,7 +54,10 @@ def test_what_is_called_still_is_white_and_what_is_held_is_called_so():
     _, text = found("def likeness")
     of_held, of_still = re.findall(r"likeness of neighbours (.*)", text)
     assert min(numbers(of_held)) > 0.8 and max(map(abs, numbers(of_still))) < 0.3
-    words = "".join("".join(cell["source"]) for cell in cells("orientation-from-sensors")) + recordings.x_imu.__doc__
+    words = (
+        "".join("".join(cell["source"]) for cell in cells("orientation-from-sensors"))
+        + recordings.x_imu.__doc__
+    )
     assert "on a table" not in words.replace("lies still on a table", "")
 
 
@@ -58,7 +69,9 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
 
     def left(gain, bias):
         up, ups = x_imu.specific_force[:100].mean(axis=0), []
-        turns = Rotation.from_rotvec((x_imu.angular_velocity - bias) / 256).as_matrix().swapaxes(-1, -2)
+        turns = (
+            Rotation.from_rotvec((x_imu.angular_velocity - bias) / 256).as_matrix().swapaxes(-1, -2)
+        )
         for turn, force in zip(turns, x_imu.specific_force, strict=True):
             up = turn @ up
             up = up + gain / 256 * (force - up)
@@ -67,16 +80,24 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
         mean = np.array(ups)[end].mean(axis=0)
         return np.degrees(np.arccos(mean @ last / np.linalg.norm(mean) / np.linalg.norm(last)))
 
-    stretches = [(start, start + 0.5 * k) for k in (1, 2, 3, 4) for start in np.arange(0, 2.1 - 0.5 * k, 0.5)]
+    stretches = [
+        (start, start + 0.5 * k) for k in (1, 2, 3, 4) for start in np.arange(0, 2.1 - 0.5 * k, 0.5)
+    ]
     for line in found("nothing removed", FILTERS)[1].splitlines()[2:6]:
         gain, nothing, _, low, high, worse, count = numbers(line)
         assert abs(left(gain, 0) - nothing) < 0.06
         removed = [
-            left(gain, x_imu.angular_velocity[(x_imu.time >= start) & (x_imu.time < stop)].mean(axis=0))
+            left(
+                gain,
+                x_imu.angular_velocity[(x_imu.time >= start) & (x_imu.time < stop)].mean(axis=0),
+            )
             for start, stop in stretches
         ]
         assert abs(min(removed) - low) < 0.06 and abs(max(removed) - high) < 0.06
-        assert sum(one > left(gain, 0) for one in removed) == worse >= (8 if gain else 5) and count == 10
+        assert (
+            sum(one > left(gain, 0) for one in removed) == worse >= (8 if gain else 5)
+            and count == 10
+        )
 
 
 def test_eigenvector_and_decomposition_agree_to_rounding():
@@ -86,7 +107,10 @@ def test_eigenvector_and_decomposition_agree_to_rounding():
 
 
 def test_a_claim_is_tested_with_all_that_the_filter_is_told_and_over_twenty_draws():
-    rows = {line[:28].strip(): numbers(line[28:]) for line in found("def groups", FILTERS)[1].splitlines()[1:]}
+    rows = {
+        line[:28].strip(): numbers(line[28:])
+        for line in found("def groups", FILTERS)[1].splitlines()[1:]
+    }
     errors, innovations = ({name: row[k : k + 3] for name, row in rows.items()} for k in (0, 3))
     middle, low, high = errors["the truth"]
     assert low < 6.1 and 5.7 < middle < 6.4  # the first second lies above
@@ -94,7 +118,9 @@ def test_a_claim_is_tested_with_all_that_the_filter_is_told_and_over_twenty_draw
     assert errors["both twice as good"][0] / middle == pytest.approx(4, rel=0.05)
     assert errors["directions twice as good"][2] < errors["both twice as good"][1]
     low, high = innovations["the truth"][1:]
-    assert low < 2 < high and innovations["gyroscope twice as good"][1] > innovations["the truth"][0]
+    assert (
+        low < 2 < high and innovations["gyroscope twice as good"][1] > innovations["the truth"][0]
+    )
 
 
 def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments():
@@ -107,7 +133,9 @@ def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments
         for _ in range(200):
             estimate.turn(np.zeros((20, 3)), 0.01)
             seen = [0, 0, 1] + 0.02 * random.normal(size=(20, 3))
-            seen_against = estimate.observe(seen, np.broadcast_to([0, 0, 1.0], (20, 3)), claimed * 0.02)
+            seen_against = estimate.observe(
+                seen, np.broadcast_to([0, 0, 1.0], (20, 3)), claimed * 0.02
+            )
             squares.append(seen_against.normalised_square)
         means = np.mean(squares[50:], axis=0)
         assert means.min() < expected * 1.02 and means.max() > expected * 0.98
@@ -116,10 +144,14 @@ def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments
 
 
 def test_no_setting_of_the_filter_on_the_recording_is_said_to_be_right():
-    rows = [numbers(line) for line in found("it       normalised squares", FILTERS)[1].splitlines()[2:]]
+    rows = [
+        numbers(line) for line in found("it       normalised squares", FILTERS)[1].splitlines()[2:]
+    ]
     assert len(rows) >= 5
     for by_force, by_field, inclination, remains, claims, force, field, alike in rows:
-        assert 1.4 < inclination < 2.3 and 0 < by_force <= by_field and remains > 0.5 and claims > 0.5
+        assert (
+            1.4 < inclination < 2.3 and 0 < by_force <= by_field and remains > 0.5 and claims > 0.5
+        )
         assert not (1.8 < force < 2.2 and 1.8 < field < 2.2) and field < 1.8 and alike > 0.8
     remains, claims = np.array(rows)[:, 3:5].T
     assert np.ptp(claims) > 1 and np.ptp(remains) > 1 and np.abs(np.log(remains / claims)).max() > 1
@@ -135,10 +167,18 @@ def test_both_makers_have_their_matrix_in_the_table():
 
 
 def test_turning_a_filter_turns_what_it_expects():
-    """An innovation is along the body: the same flight, seen from a turned body, has turned innovations."""
+    """An innovation is along the body: the same flight, seen from a turned body, has turned
+    innovations.
+    """
     turned = Rotation.from_rotvec([0.3, -1.0, 0.5]).as_matrix()
-    filters = [MultiplicativeKalmanFilter(start, 0.01 * np.eye(6), 0.01, 0.001) for start in (np.eye(3), turned)]
-    rate, seen = np.array([0.3, -0.2, 1.0]), dcm_from_rotation_vector([0.1, 0.02, 0.0]) @ [0, 0.6, 0.8]
+    filters = [
+        MultiplicativeKalmanFilter(start, 0.01 * np.eye(6), 0.01, 0.001)
+        for start in (np.eye(3), turned)
+    ]
+    rate, seen = (
+        np.array([0.3, -0.2, 1.0]),
+        dcm_from_rotation_vector([0.1, 0.02, 0.0]) @ [0, 0.6, 0.8],
+    )
     answers = []
     for estimate, frame in zip(filters, (np.eye(3), turned), strict=True):
         estimate.turn(frame @ rate, 0.1)
@@ -148,15 +188,23 @@ def test_turning_a_filter_turns_what_it_expects():
 
 
 def walk(seed, car):
-    """The file of a phone on a table and then on a walk past a car, all things varied; as in the chapter, by SciPy."""
+    """The file of a phone on a table and then on a walk past a car, all things varied; as in the
+    chapter, by SciPy.
+    """
     random, step = np.random.default_rng(seed), 0.01
     time = np.arange(0, 45, step)
     going = np.clip(time - 8, 0, 1)[:, None]
     foot, look, side = random.uniform(0, 2 * np.pi, 3)
     paces = 2 * np.pi * 1.9 * time + foot
-    swing = [25 * np.sin(paces), 12 * np.sin(paces / 2), 20 * np.sin(2 * np.pi * 0.07 * time + look)]
+    swing = [
+        25 * np.sin(paces),
+        12 * np.sin(paces / 2),
+        20 * np.sin(2 * np.pi * 0.07 * time + look),
+    ]
     rates = going * np.radians(np.column_stack(swing))
-    pushes = going * np.column_stack([np.sin(paces + 1), 0.7 * np.sin(paces / 2), 2.5 * np.sin(paces)])
+    pushes = going * np.column_stack(
+        [np.sin(paces + 1), 0.7 * np.sin(paces / 2), 2.5 * np.sin(paces)]
+    )
     pose = Rotation.random(random_state=seed)
     ground = [pose]
     for turn in Rotation.from_rotvec((rates[1:] + rates[:-1]) / 2 * step):
@@ -180,4 +228,7 @@ def walk(seed, car):
 @pytest.mark.long
 def test_the_bench_warns_of_no_walk_without_a_car():
     """The chapter has twenty of its own; of half of these it had warned, once."""
-    assert sum(examine(walk(seed, False), "walk").light("filter") == "wrong" for seed in range(20)) <= 1
+    assert (
+        sum(examine(walk(seed, False), "walk").light("filter") == "wrong" for seed in range(20))
+        <= 1
+    )

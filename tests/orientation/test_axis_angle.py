@@ -27,14 +27,21 @@ from orientation import (
 theta = sm.Symbol("theta")
 SMALL = [0, 1e-300, 1e-16, 1e-12, 1e-8, 1e-7, 1e-4, 1e-2, 0.1]
 ANGLES = SMALL + [1.0, np.pi / 2, 2.0] + [np.pi - small for small in reversed(SMALL)]
-AXES = np.array([*COORDINATE_AXES, *random_unit_vectors(50, 1), *(random_unit_vectors(10, 2) * [1, 1, 1e-9])])
+AXES = np.array(
+    [*COORDINATE_AXES, *random_unit_vectors(50, 1), *(random_unit_vectors(10, 2) * [1, 1, 1e-9])]
+)
 UNIT_AXES = AXES / np.linalg.norm(AXES, axis=1, keepdims=True)
 
 
 def test_rows_are_the_turned_unit_vectors():
     for axis in AXES[:20]:
         for angle in (-4, -0.3, 1e-5, 0.7, 3.1, 5):
-            assert rotation_error(dcm_from_axis_angle(axis, angle), unit_vectors_after_turn(axis, angle)) < 1e-12
+            assert (
+                rotation_error(
+                    dcm_from_axis_angle(axis, angle), unit_vectors_after_turn(axis, angle)
+                )
+                < 1e-12
+            )
 
 
 @pytest.mark.parametrize("axis", "xyz")
@@ -62,7 +69,9 @@ def test_rodrigues_formula_with_symbols():
 def test_numbers_agree_with_scipy():
     angles = np.random.default_rng(3).uniform(-10, 10, len(AXES))
     scipy = Rotation.from_rotvec(UNIT_AXES * angles[:, None])
-    assert rotation_error(dcm_from_axis_angle(AXES, angles), scipy.as_matrix().swapaxes(1, 2)) < 1e-14
+    assert (
+        rotation_error(dcm_from_axis_angle(AXES, angles), scipy.as_matrix().swapaxes(1, 2)) < 1e-14
+    )
     ours, theirs = quaternion_from_axis_angle(AXES, angles), scipy.as_quat(scalar_first=True)
     sign = np.sign((ours * theirs).sum(axis=1, keepdims=True))
     np.testing.assert_allclose(ours, sign * theirs, atol=5e-15)
@@ -76,11 +85,19 @@ def test_the_axis_is_left_alone():
 @pytest.mark.parametrize("scale", [1e-149, 1e-100, 1e-9, 3.7, 1e9, 1e100, 1e149])
 def test_length_of_the_axis_does_not_matter(scale):
     for axis in AXES[:10]:
-        assert rotation_error(dcm_from_axis_angle(scale * axis, 1.1), dcm_from_axis_angle(axis, 1.1)) < 1e-15
-        np.testing.assert_allclose(
-            quaternion_from_axis_angle(scale * axis, 1.1), quaternion_from_axis_angle(axis, 1.1), atol=1e-15
+        assert (
+            rotation_error(dcm_from_axis_angle(scale * axis, 1.1), dcm_from_axis_angle(axis, 1.1))
+            < 1e-15
         )
-    assert rotation_error(dcm_from_axis_angle(scale * AXES, 1.1), dcm_from_axis_angle(AXES, 1.1)) < 1e-15
+        np.testing.assert_allclose(
+            quaternion_from_axis_angle(scale * axis, 1.1),
+            quaternion_from_axis_angle(axis, 1.1),
+            atol=1e-15,
+        )
+    assert (
+        rotation_error(dcm_from_axis_angle(scale * AXES, 1.1), dcm_from_axis_angle(AXES, 1.1))
+        < 1e-15
+    )
 
 
 @pytest.mark.parametrize("angle", ANGLES)
@@ -121,10 +138,15 @@ def test_exact_half_turns_and_rest():
 
 
 def test_half_angle():
-    assert quaternion_from_axis_angle((0, 0, 2), theta) == sm.Matrix([sm.cos(theta / 2), 0, 0, sm.sin(theta / 2)])
+    assert quaternion_from_axis_angle((0, 0, 2), theta) == sm.Matrix(
+        [sm.cos(theta / 2), 0, 0, sm.sin(theta / 2)]
+    )
     angles = np.random.default_rng(6).uniform(-10, 10, len(AXES))
     assert (
-        rotation_error(dcm_from_quaternion(quaternion_from_axis_angle(AXES, angles)), dcm_from_axis_angle(AXES, angles))
+        rotation_error(
+            dcm_from_quaternion(quaternion_from_axis_angle(AXES, angles)),
+            dcm_from_axis_angle(AXES, angles),
+        )
         < 1e-14
     )
 
@@ -134,7 +156,10 @@ def test_matrix_is_the_exponential_of_the_cross_product():
     from scipy.linalg import expm
 
     for axis in UNIT_AXES[:20]:
-        assert rotation_error(dcm_from_axis_angle(axis, 0.8), expm(-0.8 * cross_product_matrix(axis))) < 1e-14
+        assert (
+            rotation_error(dcm_from_axis_angle(axis, 0.8), expm(-0.8 * cross_product_matrix(axis)))
+            < 1e-14
+        )
 
 
 def test_symbols_cannot_be_taken_back():

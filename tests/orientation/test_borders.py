@@ -1,4 +1,6 @@
-"""The border to SciPy: one transpose, in one place. (The border to SymPy is Frames.reference_frames.)"""
+"""The border to SciPy: one transpose, in one place. (The border to SymPy is
+Frames.reference_frames.)
+"""
 
 import numpy as np
 import pytest
@@ -22,9 +24,17 @@ from orientation import (
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_euler_angles_keep_their_meaning_across_the_border(sequence):
     angles = np.random.default_rng(1).uniform(-3, 3, (200, 3))
-    body, space = Rotation.from_euler(sequence.upper(), angles), Rotation.from_euler(sequence, angles)
-    assert rotation_error(dcm_from_scipy_rotation(body), dcm_from_body_fixed(angles, sequence)) < 1e-14
-    assert rotation_error(dcm_from_scipy_rotation(space), dcm_from_space_fixed(angles, sequence)) < 1e-14
+    body, space = (
+        Rotation.from_euler(sequence.upper(), angles),
+        Rotation.from_euler(sequence, angles),
+    )
+    assert (
+        rotation_error(dcm_from_scipy_rotation(body), dcm_from_body_fixed(angles, sequence)) < 1e-14
+    )
+    assert (
+        rotation_error(dcm_from_scipy_rotation(space), dcm_from_space_fixed(angles, sequence))
+        < 1e-14
+    )
     there = scipy_rotation_from_dcm(dcm_from_body_fixed(angles, sequence))
     assert (there * body.inv()).magnitude().max() < 1e-14
 
@@ -32,7 +42,10 @@ def test_euler_angles_keep_their_meaning_across_the_border(sequence):
 def test_axis_and_angle_and_quaternions_keep_their_meaning_across_the_border():
     axes, quaternions = random_unit_vectors(100, 2), random_unit_vectors(100, 3, size=4)
     assert (
-        rotation_error(dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)), dcm_from_axis_angle(axes, 0.7))
+        rotation_error(
+            dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)),
+            dcm_from_axis_angle(axes, 0.7),
+        )
         < 1e-14
     )
     assert (
@@ -50,7 +63,9 @@ def test_rotation_turns_components_along_a_into_components_along_n():
     v_N = scipy_rotation_from_dcm(A_C_N).apply(v_A)
     np.testing.assert_allclose(A_C_N @ v_N, v_A, atol=1e-15)
     # A's x axis, measured along N, is the first row.
-    np.testing.assert_allclose(scipy_rotation_from_dcm(A_C_N).apply((1, 0, 0)), A_C_N[0], atol=1e-15)
+    np.testing.assert_allclose(
+        scipy_rotation_from_dcm(A_C_N).apply((1, 0, 0)), A_C_N[0], atol=1e-15
+    )
 
 
 @pytest.mark.parametrize("shape", [(), (1,), (7,), (0,), (2, 3), (2, 1, 3)])
@@ -76,4 +91,6 @@ def test_what_does_not_cross():
 
 
 def test_exact_numbers_cross():
-    np.testing.assert_allclose(scipy_rotation_from_dcm(simple_dcm("z", sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6))
+    np.testing.assert_allclose(
+        scipy_rotation_from_dcm(simple_dcm("z", sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6)
+    )

@@ -27,13 +27,17 @@ NUMBERS = (0.4, -0.7, 1.1)
 all_sequences = pytest.mark.parametrize("sequence", SEQUENCES)
 
 
-# --- the same orientation -----------------------------------------------------------------------------
+# --- the same orientation -------------------------------------------------------------------------
 
 
 def half_angle_form(angle):
     t = sm.tan(angle / 2)
     return sm.Matrix(
-        [[(1 - t**2) / (1 + t**2), 2 * t / (1 + t**2), 0], [-2 * t / (1 + t**2), (1 - t**2) / (1 + t**2), 0], [0, 0, 1]]
+        [
+            [(1 - t**2) / (1 + t**2), 2 * t / (1 + t**2), 0],
+            [-2 * t / (1 + t**2), (1 - t**2) / (1 + t**2), 0],
+            [0, 0, 1],
+        ]
     )
 
 
@@ -51,22 +55,35 @@ EQUAL = [
     (half_angle_form(theta), simple_dcm("z", theta)),
     (exponential_form(theta), simple_dcm("z", theta)),
     (exponential_form(theta), half_angle_form(theta)),
-    (simple_dcm("z", psi) * simple_dcm("z", theta) * simple_dcm("z", phi), simple_dcm("z", psi + theta + phi)),
+    (
+        simple_dcm("z", psi) * simple_dcm("z", theta) * simple_dcm("z", phi),
+        simple_dcm("z", psi + theta + phi),
+    ),
     (composed(SYMBOLS, "zxy"), composed(SYMBOLS, "zxy").expand()),
     (sum_form(composed(SYMBOLS, "zxy")), composed(SYMBOLS, "zxy")),
-    (composed(SYMBOLS, "zxy").adjugate() / composed(SYMBOLS, "zxy").det(), composed(SYMBOLS, "zxy").T),
+    (
+        composed(SYMBOLS, "zxy").adjugate() / composed(SYMBOLS, "zxy").det(),
+        composed(SYMBOLS, "zxy").T,
+    ),
     (
         dcm_from_quaternion(
             multiply_quaternions(
-                quaternion_from_axis_angle((0, 0, 1), psi), quaternion_from_axis_angle((1, 0, 0), theta)
+                quaternion_from_axis_angle((0, 0, 1), psi),
+                quaternion_from_axis_angle((1, 0, 0), theta),
             )
         ),
         composed((psi, theta), "zx"),
     ),
     (dcm_from_axis_angle((1, 1, 1), 2 * sm.pi / 3), sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])),
-    (simple_dcm("z", sm.acos(sm.Rational(3, 5))), np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])),
+    (
+        simple_dcm("z", sm.acos(sm.Rational(3, 5))),
+        np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]),
+    ),
     (quaternion_from_axis_angle((1, 2, 2), theta), -quaternion_from_axis_angle((2, 4, 4), theta)),
-    (quaternion_from_axis_angle((1, 2, 2), theta), quaternion_from_axis_angle((1, 2, 2), theta + 2 * sm.pi)),
+    (
+        quaternion_from_axis_angle((1, 2, 2), theta),
+        quaternion_from_axis_angle((1, 2, 2), theta + 2 * sm.pi),
+    ),
 ]
 
 
@@ -92,8 +109,14 @@ DIFFERENT = [
     (simple_dcm("z", theta), simple_dcm("z", -theta)),
     (simple_dcm("z", theta), simple_dcm("y", theta)),
     # Right for some angles and not for others:
-    (simple_dcm("z", theta).subs(sm.cos(theta), sm.sqrt(1 - sm.sin(theta) ** 2)), simple_dcm("z", theta)),
-    (simple_dcm("z", theta).subs(sm.sin(theta), sm.sqrt(1 - sm.cos(theta) ** 2)), simple_dcm("z", theta)),
+    (
+        simple_dcm("z", theta).subs(sm.cos(theta), sm.sqrt(1 - sm.sin(theta) ** 2)),
+        simple_dcm("z", theta),
+    ),
+    (
+        simple_dcm("z", theta).subs(sm.sin(theta), sm.sqrt(1 - sm.cos(theta) ** 2)),
+        simple_dcm("z", theta),
+    ),
     (simple_dcm("z", sm.Abs(theta)), simple_dcm("z", theta)),
     (simple_dcm("z", sm.asin(sm.sin(theta))), simple_dcm("z", theta)),
     (simple_dcm("z", sm.acos(sm.cos(theta))), simple_dcm("z", theta)),
@@ -118,7 +141,9 @@ def test_each_of_many_symbols_is_tried_with_both_signs(count):
     symbols = sm.symbols(f"a:{count}")
     for symbol in symbols:
         rest = sum(symbols) - symbol
-        assert not same_orientation(simple_dcm("x", sm.Abs(symbol) + rest), simple_dcm("x", symbol + rest))
+        assert not same_orientation(
+            simple_dcm("x", sm.Abs(symbol) + rest), simple_dcm("x", symbol + rest)
+        )
 
 
 def test_symbols_are_compared_by_name():
@@ -130,13 +155,22 @@ def test_symbols_are_compared_by_name():
 
 def test_time_inside_and_outside_a_function():
     turning, omega, t = me.dynamicsymbols("theta"), sm.Symbol("Omega"), me.dynamicsymbols._t
-    assert same_orientation(simple_dcm("z", turning + omega * t), simple_dcm("z", turning) * simple_dcm("z", omega * t))
-    assert not same_orientation(simple_dcm("z", turning + omega * t), simple_dcm("z", turning + omega))
+    assert same_orientation(
+        simple_dcm("z", turning + omega * t), simple_dcm("z", turning) * simple_dcm("z", omega * t)
+    )
+    assert not same_orientation(
+        simple_dcm("z", turning + omega * t), simple_dcm("z", turning + omega)
+    )
 
 
 def test_every_way_to_hold_a_matrix():
     matrix = composed(SYMBOLS, "zxy")
-    for form in (matrix.as_immutable(), matrix.tolist(), tuple(map(tuple, matrix.tolist())), np.array(matrix)):
+    for form in (
+        matrix.as_immutable(),
+        matrix.tolist(),
+        tuple(map(tuple, matrix.tolist())),
+        np.array(matrix),
+    ):
         assert same_orientation(form, matrix) and same_orientation(matrix, form)
         assert diagnose(form, matrix).same
     numbers = composed(NUMBERS, "zxy")
@@ -153,7 +187,9 @@ def test_batches():
     assert same_orientation(np.zeros((0, 3, 3)), np.zeros((0, 3, 3)))
     quaternions = random_unit_vectors(5, 2, size=4)
     assert same_orientation(quaternions, quaternions * [[1], [-1], [1], [-1], [-1]])
-    with pytest.raises(ValueError, match=r"batches of shapes \(2, 3\) and \(5,\) cannot be compared"):
+    with pytest.raises(
+        ValueError, match=r"batches of shapes \(2, 3\) and \(5,\) cannot be compared"
+    ):
         same_orientation(dcms, random_dcms(5, 3))
 
 
@@ -169,7 +205,7 @@ def test_no_random_state_of_the_reader_is_touched():
     assert before == (random.getstate(), str(np.random.get_state()))
 
 
-# --- every mix-up is named, and what is named is so ------------------------------------------------------
+# --- every mix-up is named, and what is named is so -----------------------------------------------
 
 DEGREES, TOO_OFTEN = 180 / np.pi, np.pi / 180
 
@@ -201,7 +237,9 @@ def rebuilt(cause, angles, sequence):
         return composed(
             scaled(
                 angles,
-                factors(found[1], -1) if found[1] in NAMES else [-1 if k == place(found[1]) else 1 for k in range(3)],
+                factors(found[1], -1)
+                if found[1] in NAMES
+                else [-1 if k == place(found[1]) else 1 for k in range(3)],
             ),
             sequence,
         )
@@ -210,9 +248,13 @@ def rebuilt(cause, angles, sequence):
         a, b = place(found[1]), place(found[2])
         order[a], order[b] = b, a
         return composed(tuple(angles[k] for k in order), sequence)
-    if found := re.fullmatch(r"(.+) (?:was|were) given in degrees where radians are expected", cause):
+    if found := re.fullmatch(
+        r"(.+) (?:was|were) given in degrees where radians are expected", cause
+    ):
         return composed(scaled(angles, factors(found[1], DEGREES)), sequence)
-    if found := re.fullmatch(r"(.+) (?:was|were) turned from degrees to radians once too often", cause):
+    if found := re.fullmatch(
+        r"(.+) (?:was|were) turned from degrees to radians once too often", cause
+    ):
         return composed(scaled(angles, factors(found[1], TOO_OFTEN)), sequence)
     raise AssertionError(f"nobody knows what this means: {cause}")
 
@@ -240,7 +282,9 @@ def demand_truth(diagnosis, answer, angles, sequence):
     assert not diagnosis.same
     assert len(set(diagnosis.causes)) == len(diagnosis.causes)
     for cause in diagnosis.causes:
-        np.testing.assert_allclose(rebuilt(cause, angles, sequence), answer, atol=1e-8, err_msg=cause)
+        np.testing.assert_allclose(
+            rebuilt(cause, angles, sequence), answer, atol=1e-8, err_msg=cause
+        )
     same = "mathematically the same" in str(diagnosis)
     assert same == (len(diagnosis.causes) > 1)
     assert all(cause in str(diagnosis) for cause in diagnosis.causes)
@@ -249,7 +293,12 @@ def demand_truth(diagnosis, answer, angles, sequence):
 @all_sequences
 @pytest.mark.parametrize("mixup", SENTENCES)
 def test_symbolic_mixups_are_named(sequence, mixup):
-    if sequence not in ("zxy", "yxy") and mixup in ("psi for theta", "degrees of theta", "too often", "sign of psi"):
+    if sequence not in ("zxy", "yxy") and mixup in (
+        "psi for theta",
+        "degrees of theta",
+        "too often",
+        "sign of psi",
+    ):
         return  # these do not depend on the axes
     sentence = SENTENCES[mixup]
     answer = rebuilt(sentence, SYMBOLS, sequence)
@@ -272,8 +321,13 @@ def test_symbolic_wrong_sequence_is_named(sequence):
 def test_numerical_mixups_are_named(sequence):
     expected = composed(NUMBERS, sequence)
     sentences = [SENTENCES[key] for key in ("transpose", "order", "reverse")]
-    sentences += [f"the angle of the {which} turn has the wrong sign" for which in ("first", "second", "third")]
-    sentences += [f"it is the sequence {other}, not {sequence}" for other in SEQUENCES if other != sequence]
+    sentences += [
+        f"the angle of the {which} turn has the wrong sign"
+        for which in ("first", "second", "third")
+    ]
+    sentences += [
+        f"it is the sequence {other}, not {sequence}" for other in SEQUENCES if other != sequence
+    ]
     sentences += [
         "the angles were given in degrees where radians are expected",
         "the angles were turned from degrees to radians once too often",
@@ -331,7 +385,9 @@ def test_mixups_that_are_mathematically_the_same_are_all_named():
 
 def test_chain_of_two_turns():
     expected = simple_dcm("x", psi) * simple_dcm("z", theta)
-    assert diagnose(simple_dcm("z", theta) * simple_dcm("x", psi), expected).causes == (SENTENCES["order"],)
+    assert diagnose(simple_dcm("z", theta) * simple_dcm("x", psi), expected).causes == (
+        SENTENCES["order"],
+    )
     assert diagnose(expected.T, expected).causes == (SENTENCES["transpose"],)
     assert diagnose(expected.subs(psi, -psi), expected).causes == ("psi has the wrong sign",)
 
@@ -339,7 +395,9 @@ def test_chain_of_two_turns():
 def test_expected_matrix_of_a_signed_and_reordered_sequence_is_recognised():
     expected = composed((theta, -psi, phi), "yzx")
     assert diagnose(composed((phi, -psi, theta), "xzy"), expected).causes == (SENTENCES["order"],)
-    assert diagnose(composed((theta, -psi, phi), "yzy"), expected).causes == ("it is the sequence yzy, not yzx",)
+    assert diagnose(composed((theta, -psi, phi), "yzy"), expected).causes == (
+        "it is the sequence yzy, not yzx",
+    )
 
 
 def test_given_angles_of_which_one_is_zero():
@@ -350,18 +408,24 @@ def test_given_angles_of_which_one_is_zero():
     )
 
 
-# --- answers that are no orientation -----------------------------------------------------------------------
+# --- answers that are no orientation --------------------------------------------------------------
 
 
 def test_faults_of_matrices_are_told_alone():
     for expected in (composed(NUMBERS, "zxy"), composed(SYMBOLS, "zxy")):
-        mirror = expected * sm.diag(1, 1, -1) if isinstance(expected, sm.MatrixBase) else expected * [1, 1, -1]
+        mirror = (
+            expected * sm.diag(1, 1, -1)
+            if isinstance(expected, sm.MatrixBase)
+            else expected * [1, 1, -1]
+        )
         (cause,) = diagnose(mirror, expected).causes
         assert cause.startswith("it is orthogonal but left-handed: its determinant is -1")
         (cause,) = diagnose(2 * expected, expected).causes
         assert "row x has length 2, not 1" in cause and "2 times an orthogonal one" in cause
     (cause,) = diagnose(composed(NUMBERS, "zxy").round(3), composed(NUMBERS, "zxy")).causes
-    assert re.match(r"it is not orthogonal: .*(length|dot product) .*Were its entries rounded", cause)
+    assert re.match(
+        r"it is not orthogonal: .*(length|dot product) .*Were its entries rounded", cause
+    )
     wrong_sign = composed(SYMBOLS, "zxy")
     wrong_sign[0, 1] *= -1
     (cause,) = diagnose(wrong_sign, composed(SYMBOLS, "zxy")).causes
@@ -375,10 +439,12 @@ def test_symbols_that_obey_a_condition_are_not_said_to_be_at_fault():
     dcm = dcm_from_quaternion(quaternion)
     assert SENTENCES["transpose"] in diagnose(dcm.T, dcm).causes
     last = sm.Matrix([*quaternion[1:], quaternion[0]])
-    assert diagnose(last, quaternion).causes == ("the scalar part stands last; in this book it stands first",)
+    assert diagnose(last, quaternion).causes == (
+        "the scalar part stands last; in this book it stands first",
+    )
 
 
-# --- quaternions --------------------------------------------------------------------------------------------
+# --- quaternions ----------------------------------------------------------------------------------
 
 LAST = "the scalar part stands last; in this book it stands first"
 CONJUGATE = "it is the conjugate, the orientation the other way round"
@@ -395,7 +461,12 @@ def quaternion_mixups(turn):
     return {
         LAST: [b, c, d, a],
         CONJUGATE: [a, -b, -c, -d],
-        "it is the conjugate, and the scalar part stands last; in this book it stands first": [-b, -c, -d, a],
+        "it is the conjugate, and the scalar part stands last; in this book it stands first": [
+            -b,
+            -c,
+            -d,
+            a,
+        ],
         NOT_HALVED: parts(turn(2)),
     }
 
@@ -412,11 +483,16 @@ def test_quaternion_mixups_are_named(sign):
                 answer = [sign * entry for entry in answer]
                 causes = diagnose(answer, turn(1)).causes
                 assert cause in causes
-                assert set(causes) - {cause} <= ({"theta has the wrong sign"} if angle == theta else set())
+                assert set(causes) - {cause} <= (
+                    {"theta has the wrong sign"} if angle == theta else set()
+                )
 
 
 def test_quaternion_and_its_negative_are_the_same():
-    for quaternion in (quaternion_from_axis_angle((1, 2, 3), theta), quaternion_from_axis_angle((1, 2, 3), 0.7)):
+    for quaternion in (
+        quaternion_from_axis_angle((1, 2, 3), theta),
+        quaternion_from_axis_angle((1, 2, 3), 0.7),
+    ):
         assert diagnose(-quaternion, quaternion) == (True, ())
 
 
@@ -424,7 +500,9 @@ def test_nothing_is_named_for_other_quaternions():
     expected = quaternion_from_axis_angle((1, 2, 3), 0.7)
     for answer in random_unit_vectors(50, 6, size=4):
         assert diagnose(answer, expected) == (False, ())
-    assert diagnose(quaternion_from_axis_angle((1, 2, 3), psi), quaternion_from_axis_angle((1, 2, 3), theta)) == (
+    assert diagnose(
+        quaternion_from_axis_angle((1, 2, 3), psi), quaternion_from_axis_angle((1, 2, 3), theta)
+    ) == (
         False,
         (),
     )
@@ -442,13 +520,15 @@ def test_a_quaternion_of_the_wrong_length():
     assert cause.startswith("it has length 1.41421356")
 
 
-# --- what cannot be compared ----------------------------------------------------------------------------------
+# --- what cannot be compared ----------------------------------------------------------------------
 
 
 def test_bad_input():
     dcm, quaternion = composed(NUMBERS, "zxy"), (1, 0, 0, 0)
     for function in (same_orientation, diagnose):
-        with pytest.raises(ValueError, match="is a direction cosine matrix and .* is a quaternion: convert one"):
+        with pytest.raises(
+            ValueError, match="is a direction cosine matrix and .* is a quaternion: convert one"
+        ):
             function(dcm, quaternion)
         with pytest.raises(ValueError, match="is neither a direction cosine matrix, of shape"):
             function(dcm, (1, 2, 3))
@@ -466,7 +546,9 @@ def test_bad_input():
         diagnose(dcm.T, dcm, sequence="zxy")
     with pytest.raises(ValueError, match="'zzx' is not a sequence"):
         diagnose(dcm.T, dcm, NUMBERS, "zzx")
-    with pytest.raises(ValueError, match="expected is not the body fixed orientation yxz of these angles"):
+    with pytest.raises(
+        ValueError, match="expected is not the body fixed orientation yxz of these angles"
+    ):
         diagnose(dcm.T, dcm, NUMBERS, "yxz")
 
 
@@ -483,11 +565,16 @@ def test_numbers_from_a_file_are_diagnosed_with_the_tolerance_of_their_digits():
 
 
 def test_a_tolerance_holds_for_everything_that_is_asked():
-    """Four digits from a file: rounding is not blamed for a mix-up, and angles make what they make to four digits."""
+    """Four digits from a file: rounding is not blamed for a mix-up, and angles make what they make
+    to four digits.
+    """
     right, other = composed(NUMBERS, "zxy"), composed(NUMBERS[::-1], "yxz")
     right, other = (np.round(np.array(dcm, dtype=float), 4) for dcm in (right, other))
     found = diagnose(other, right, angles=NUMBERS, sequence="zxy", tolerance=2e-3)
-    assert found.causes == diagnose(composed(NUMBERS[::-1], "yxz"), composed(NUMBERS, "zxy"), NUMBERS, "zxy").causes
+    assert (
+        found.causes
+        == diagnose(composed(NUMBERS[::-1], "yxz"), composed(NUMBERS, "zxy"), NUMBERS, "zxy").causes
+    )
     unrelated = np.round(random_dcms(1, seed=4)[0], 4)
     assert diagnose(unrelated, right, tolerance=2e-3).causes == ()
     assert diagnose(right * 1.1, right, tolerance=2e-3).causes[0].startswith("it")

@@ -1,4 +1,6 @@
-"""Rodrigues parameters, distances, means and random orientations, against SciPy, pytransform3d and formulas."""
+"""Rodrigues parameters, distances, means and random orientations, against SciPy, pytransform3d and
+formulas.
+"""
 
 import numpy as np
 import pytest
@@ -34,7 +36,7 @@ def cross_matrix(v):
     return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
 
 
-# ---- Rodrigues parameters ------------------------------------------------------------------------------
+# ---- Rodrigues parameters ------------------------------------------------------------------------
 
 
 def test_rodrigues_parameters_are_cayleys_transform():
@@ -49,12 +51,16 @@ def test_rodrigues_parameters_are_the_tangent_of_half_the_angle():
     vectors = rotation_vector_from_dcm(DCMS)
     angles = np.linalg.norm(vectors, axis=1)[:, None]
     assert np.allclose(rodrigues_from_dcm(DCMS), np.tan(angles / 2) * vectors / angles, rtol=1e-9)
-    assert np.allclose(modified_rodrigues_from_dcm(DCMS), np.tan(angles / 4) * vectors / angles, rtol=1e-12)
+    assert np.allclose(
+        modified_rodrigues_from_dcm(DCMS), np.tan(angles / 4) * vectors / angles, rtol=1e-12
+    )
 
 
 def test_modified_rodrigues_parameters_agree_with_scipy():
     # Only SciPy's matrix is turned round: its parameters of A in N are ours.
-    assert np.allclose(scipy_rotation_from_dcm(DCMS).as_mrp(), modified_rodrigues_from_dcm(DCMS), atol=1e-13)
+    assert np.allclose(
+        scipy_rotation_from_dcm(DCMS).as_mrp(), modified_rodrigues_from_dcm(DCMS), atol=1e-13
+    )
     vectors = np.random.default_rng(4).normal(size=(200, 3))
     theirs = dcm_from_scipy_rotation(Rotation.from_mrp(vectors))
     assert abs(dcm_from_modified_rodrigues(vectors) - theirs).max() < 1e-13
@@ -70,7 +76,9 @@ def test_modified_rodrigues_parameters_by_the_formula_of_their_docstring():
 def test_the_shadow_is_the_same_orientation_the_other_way_round():
     sigma = modified_rodrigues_from_dcm(DCMS)
     shadow = shadow_of_modified_rodrigues(sigma)
-    assert (np.linalg.norm(sigma, axis=1) <= 1).all() and (np.linalg.norm(shadow, axis=1) >= 1).all()
+    assert (np.linalg.norm(sigma, axis=1) <= 1).all() and (
+        np.linalg.norm(shadow, axis=1) >= 1
+    ).all()
     assert abs(dcm_from_modified_rodrigues(shadow) - DCMS).max() < 1e-13
     assert np.allclose(shadow_of_modified_rodrigues(shadow), sigma, rtol=1e-12)
     with pytest.raises(ValueError, match="infinitely long"):
@@ -102,11 +110,13 @@ def test_rodrigues_parameters_of_symbols_are_rational():
         modified_rodrigues_from_dcm(simple_dcm("x", sm.Symbol("theta")))
 
 
-# ---- distances -----------------------------------------------------------------------------------------
+# ---- distances -----------------------------------------------------------------------------------
 
 
 def test_angle_between_agrees_with_scipy_and_keeps_its_digits():
-    theirs = (scipy_rotation_from_dcm(DCMS[1:]).inv() * scipy_rotation_from_dcm(DCMS[:-1])).magnitude()
+    theirs = (
+        scipy_rotation_from_dcm(DCMS[1:]).inv() * scipy_rotation_from_dcm(DCMS[:-1])
+    ).magnitude()
     assert np.allclose(angle_between(DCMS[1:], DCMS[:-1]), theirs, atol=1e-13)
     for angle in (1e-12, 1e-7, np.pi - 1e-7, np.pi):
         turned = dcm_from_rotation_vector(angle * np.array([0.6, 0, 0.8])) @ DCMS[0]
@@ -121,11 +131,13 @@ def test_distances_are_functions_of_one_angle():
     entries = np.linalg.norm(DCMS[1:] - DCMS[:-1], axis=(1, 2))
     assert np.allclose(entries, np.sqrt(8) * np.sin(angle / 2), atol=1e-13)
     q = quaternion_from_dcm(DCMS)
-    chord = np.minimum(np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1))
+    chord = np.minimum(
+        np.linalg.norm(q[1:] - q[:-1], axis=1), np.linalg.norm(q[1:] + q[:-1], axis=1)
+    )
     assert np.allclose(chord, 2 * np.sin(angle / 4), atol=1e-13)
 
 
-# ---- means ---------------------------------------------------------------------------------------------
+# ---- means ---------------------------------------------------------------------------------------
 
 
 def spread(scale, count=20, seed=6):
@@ -141,7 +153,10 @@ def test_mean_by_entries_is_the_mean_of_the_quaternions_and_scipys(weights):
     share = np.ones(20) if weights is None else weights
     vector = np.linalg.eigh(np.einsum("k,ki,kj->ij", share, q, q))[1][:, -1]
     assert abs(dcm_from_quaternion(vector) - ours).max() < 1e-13
-    assert abs(dcm_from_scipy_rotation(scipy_rotation_from_dcm(dcms).mean(weights)) - ours).max() < 1e-12
+    assert (
+        abs(dcm_from_scipy_rotation(scipy_rotation_from_dcm(dcms).mean(weights)) - ours).max()
+        < 1e-12
+    )
 
 
 @pytest.mark.parametrize("metric", ("entries", "angle"))
@@ -166,7 +181,9 @@ def test_three_headings_have_no_mean_and_it_is_told_by_metric():
     with pytest.raises(ValueError, match="no unique mean by angle.*two are 120 degrees apart"):
         mean_orientation(three, metric="angle")
     # By angle 0 is better than 60: 28,800 against 39,600 square degrees.
-    costs = [sum(np.degrees(angle_between(three, simple_dcm("z", np.radians(a)))) ** 2) for a in (0, 60)]
+    costs = [
+        sum(np.degrees(angle_between(three, simple_dcm("z", np.radians(a)))) ** 2) for a in (0, 60)
+    ]
     assert np.allclose(costs, [28_800, 39_600])
     # Weights break the tie, whichever is listed first.
     for order in ([0, 1, 2], [2, 0, 1]):
@@ -187,7 +204,8 @@ def test_a_mean_does_not_depend_on_the_order_nor_on_one_far_away():
 
 
 @pytest.mark.parametrize(
-    "weights, words", [([1, 2], "one for each"), ([1, -1, 1], "none may be negative"), ([0, 0, 0], "nor all zero")]
+    "weights, words",
+    [([1, 2], "one for each"), ([1, -1, 1], "none may be negative"), ([0, 0, 0], "nor all zero")],
 )
 def test_bad_weights_are_refused(weights, words):
     with pytest.raises(ValueError, match=words):
@@ -203,11 +221,13 @@ def test_means_refuse_what_they_cannot_read():
         mean_orientation(np.stack([np.eye(3), 2 * np.eye(3)]))
 
 
-# ---- chance --------------------------------------------------------------------------------------------
+# ---- chance --------------------------------------------------------------------------------------
 
 
 def test_random_orientations_are_uniform():
-    """The density of the angle is (1 - cos)/pi; unit vectors are even on the sphere; the mean matrix vanishes."""
+    """The density of the angle is (1 - cos)/pi; unit vectors are even on the sphere; the mean
+    matrix vanishes.
+    """
     dcms = random_orientations(20_000, 9)
     check_dcm(dcms)
     angles = np.sort(angle_between(dcms, np.eye(3)))

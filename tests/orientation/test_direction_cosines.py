@@ -39,7 +39,9 @@ def test_simple_orientation_is_that_of_a_reference_frame(axis):
 
 def test_matrix_takes_components_along_n_to_components_along_a():
     # A is turned a little about z, so a vector along n_x is seen from A as turned the other way.
-    np.testing.assert_allclose(simple_dcm("z", 0.1) @ (1, 0, 0), (np.cos(0.1), -np.sin(0.1), 0), atol=1e-16)
+    np.testing.assert_allclose(
+        simple_dcm("z", 0.1) @ (1, 0, 0), (np.cos(0.1), -np.sin(0.1), 0), atol=1e-16
+    )
 
 
 def test_quarter_turn_about_z_takes_a_x_to_n_y():
@@ -62,7 +64,11 @@ def test_valid_matrices_pass():
     check_dcm(BY_HAND["x"] * BY_HAND["z"])
     check_dcm(
         sm.ImmutableMatrix(
-            [[sm.Rational(3, 5), sm.Rational(4, 5), 0], [sm.Rational(-4, 5), sm.Rational(3, 5), 0], [0, 0, 1]]
+            [
+                [sm.Rational(3, 5), sm.Rational(4, 5), 0],
+                [sm.Rational(-4, 5), sm.Rational(3, 5), 0],
+                [0, 0, 1],
+            ]
         )
     )
     check_dcm(np.zeros((0, 3, 3)))
@@ -122,14 +128,24 @@ def test_rows_that_are_not_perpendicular_are_named_with_their_dot_product():
     ):
         rows = np.eye(3)
         rows[2] = (0, share, np.sqrt(1 - share**2))
-        with pytest.raises(ValueError, match=f"rows y and z have dot product {share}, not 0. {said}"):
+        with pytest.raises(
+            ValueError, match=f"rows y and z have dot product {share}, not 0. {said}"
+        ):
             check_dcm(rows)
 
 
 def test_every_kind_of_reflection_is_found():
     for dcm in random_dcms(20, 3):
-        for mirror in (dcm * [1, 1, -1], dcm * [[-1], [1], [1]], -dcm, dcm[[1, 0, 2]], dcm[:, [0, 2, 1]]):
-            with pytest.raises(ValueError, match="orthogonal but left-handed: its determinant is -1, not"):
+        for mirror in (
+            dcm * [1, 1, -1],
+            dcm * [[-1], [1], [1]],
+            -dcm,
+            dcm[[1, 0, 2]],
+            dcm[:, [0, 2, 1]],
+        ):
+            with pytest.raises(
+                ValueError, match="orthogonal but left-handed: its determinant is -1, not"
+            ):
                 check_dcm(mirror)
 
 
@@ -140,7 +156,7 @@ def test_check_repairs_and_returns_nothing():
     assert (dcm == before).all()
 
 
-# --- the nearest valid matrix -----------------------------------------------------------------------
+# --- the nearest valid matrix ---------------------------------------------------------------------
 
 
 def test_nearest_is_nearer_than_any_other():
@@ -148,11 +164,18 @@ def test_nearest_is_nearer_than_any_other():
     measured = random_dcms(50, 6) + source.normal(scale=0.1, size=(50, 3, 3))
     nearest, distance = nearest_dcm(measured)
     check_dcm(nearest)
-    np.testing.assert_allclose(distance, np.sqrt(((nearest - measured) ** 2).sum(axis=(1, 2))), rtol=1e-12)
+    np.testing.assert_allclose(
+        distance, np.sqrt(((nearest - measured) ** 2).sum(axis=(1, 2))), rtol=1e-12
+    )
     for size in (1e-3, 1e-2, 0.3, 3):
         axes = source.normal(size=(50, 3))
         for sign in (1, -1):
-            others = np.array([unit_vectors_after_turn(axis, sign * size, one.T).T for axis, one in zip(axes, nearest)])
+            others = np.array(
+                [
+                    unit_vectors_after_turn(axis, sign * size, one.T).T
+                    for axis, one in zip(axes, nearest)
+                ]
+            )
             assert (np.sqrt(((others - measured) ** 2).sum(axis=(1, 2))) > distance).all()
 
 
@@ -177,7 +200,14 @@ def test_a_scaled_matrix_gives_its_orientation():
 
 
 @pytest.mark.parametrize(
-    "matrix", [np.diag((1.0, 1.0, -1.0)), -np.eye(3), np.zeros((3, 3)), np.ones((3, 3)), np.diag((1.0, 0.0, 0.0))]
+    "matrix",
+    [
+        np.diag((1.0, 1.0, -1.0)),
+        -np.eye(3),
+        np.zeros((3, 3)),
+        np.ones((3, 3)),
+        np.diag((1.0, 0.0, 0.0)),
+    ],
 )
 def test_no_unique_nearest_matrix_is_an_error(matrix):
     with pytest.raises(ValueError, match="equally near to matrix: its singular values"):

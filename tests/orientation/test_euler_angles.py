@@ -31,7 +31,7 @@ def test_the_twelve_sequences():
     assert set(TAIT_BRYAN) == allowed - set(PROPER_EULER)
 
 
-# --- from angles to a matrix ------------------------------------------------------------------------
+# --- from angles to a matrix ----------------------------------------------------------------------
 
 
 def test_zxy_is_the_matrix_derived_by_hand():
@@ -50,7 +50,9 @@ def test_zxy_is_the_matrix_derived_by_hand():
 def test_body_fixed_is_the_product_of_simple_orientations(sequence):
     first, second, third = (simple_dcm(axis, angle) for axis, angle in zip(sequence, SYMBOLS))
     assert (dcm_from_body_fixed(SYMBOLS, sequence) - third * second * first).expand() == sm.zeros(3)
-    assert (dcm_from_space_fixed(SYMBOLS, sequence) - first * second * third).expand() == sm.zeros(3)
+    assert (dcm_from_space_fixed(SYMBOLS, sequence) - first * second * third).expand() == sm.zeros(
+        3
+    )
 
 
 @all_sequences
@@ -71,7 +73,7 @@ def test_numbers_agree_with_scipy(sequence):
     assert rotation_error(dcm_from_space_fixed(angles, sequence), scipy_space) < 1e-14
 
 
-# --- and back ---------------------------------------------------------------------------------------
+# --- and back -------------------------------------------------------------------------------------
 
 
 def demand_way_back(dcms, sequence, largest=1e-14):
@@ -96,14 +98,18 @@ def test_way_back_gives_the_angles_themselves_away_from_lock(sequence):
     middle = np.pi / 2 if sequence in PROPER_EULER else 0.0
     angles = angles_near(middle, 2000, 11) * [0.999, 1, 0.999]
     angles[:, 1] += np.random.default_rng(12).uniform(-1.4, 1.4, 2000)
-    np.testing.assert_allclose(body_fixed_from_dcm(dcm_from_body_fixed(angles, sequence), sequence), angles, atol=2e-14)
+    np.testing.assert_allclose(
+        body_fixed_from_dcm(dcm_from_body_fixed(angles, sequence), sequence), angles, atol=2e-14
+    )
     np.testing.assert_allclose(
         space_fixed_from_dcm(dcm_from_space_fixed(angles, sequence), sequence), angles, atol=2e-14
     )
 
 
 @all_sequences
-@pytest.mark.parametrize("offset", [0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1e-1])
+@pytest.mark.parametrize(
+    "offset", [0, 1e-16, 1e-15, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2, 1e-1]
+)
 def test_way_back_at_and_near_lock(sequence, offset):
     source = np.random.default_rng(13)
     for lock in lock_angles(sequence):
@@ -133,7 +139,9 @@ def test_way_back_at_exact_lock_with_either_zero(sequence, zero):
 @all_sequences
 def test_way_back_among_the_24_ways_a_cube_fits_its_box(sequence):
     cube = np.unique(
-        dcm_from_body_fixed(np.stack(np.meshgrid(*3 * [np.arange(4) * np.pi / 2]), -1).reshape(-1, 3), sequence).round()
+        dcm_from_body_fixed(
+            np.stack(np.meshgrid(*3 * [np.arange(4) * np.pi / 2]), -1).reshape(-1, 3), sequence
+        ).round()
         + 0.0,
         axis=0,
     )
@@ -142,7 +150,7 @@ def test_way_back_among_the_24_ways_a_cube_fits_its_box(sequence):
     demand_way_back(np.where(cube == 0, -0.0, cube), sequence, largest=1e-15)
 
 
-# --- gimbal lock as a quantity ------------------------------------------------------------------------
+# --- gimbal lock as a quantity --------------------------------------------------------------------
 
 
 @all_sequences
@@ -162,10 +170,12 @@ def test_margin_is_the_angle_between_the_first_and_the_last_axis(sequence):
 def test_margin_near_lock(sequence, offset):
     for lock in lock_angles(sequence):
         for turn in (0, 2 * np.pi):
-            assert gimbal_lock_margin((1, lock + turn + offset, 2), sequence) == pytest.approx(offset, abs=2e-15)
+            assert gimbal_lock_margin((1, lock + turn + offset, 2), sequence) == pytest.approx(
+                offset, abs=2e-15
+            )
 
 
-# --- what needs numbers ----------------------------------------------------------------------------------
+# --- what needs numbers ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("function", [body_fixed_from_dcm, space_fixed_from_dcm])
@@ -182,4 +192,6 @@ def test_margin_of_symbols_is_refused():
 def test_sympy_numbers_are_numbers_on_the_way_back():
     exact = dcm_from_body_fixed((sm.pi / 6, sm.pi / 4, sm.pi / 3), "zxy")
     assert isinstance(exact, sm.MatrixBase)
-    np.testing.assert_allclose(body_fixed_from_dcm(exact, "zxy"), np.pi / np.array((6, 4, 3)), atol=1e-15)
+    np.testing.assert_allclose(
+        body_fixed_from_dcm(exact, "zxy"), np.pi / np.array((6, 4, 3)), atol=1e-15
+    )

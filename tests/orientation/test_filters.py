@@ -1,17 +1,25 @@
-"""The filter of an orientation tells the truth about itself: its errors are as large as its covariance says."""
+"""The filter of an orientation tells the truth about itself: its errors are as large as its
+covariance says.
+"""
 
 import numpy as np
 from orientations import random_dcms
 from scipy.stats import chi2
 
-from orientation import MultiplicativeKalmanFilter, dcm_from_rotation_vector, rotation_vector_from_dcm
+from orientation import (
+    MultiplicativeKalmanFilter,
+    dcm_from_rotation_vector,
+    rotation_vector_from_dcm,
+)
 
 GYROSCOPE_NOISE, BIAS_NOISE, STEP = 0.01, 0.002, 0.02
 REFERENCES = {"up": ((0, 0, 1.0), 0.03), "north": ((0.6, 0, -0.8), 0.08)}
 
 
 def flight(runs, seconds, seed):
-    """True orientations and biases of many flights, and what their instruments say, step by step."""
+    """True orientations and biases of many flights, and what their instruments say, step by
+    step.
+    """
     source = np.random.default_rng(seed)
     dcm = random_dcms(runs, seed)
     bias = 0.05 * source.normal(size=(runs, 3))
@@ -24,7 +32,9 @@ def flight(runs, seconds, seed):
         directions = {}
         if number % 5 == 4:
             for name, (reference, deviation) in REFERENCES.items():
-                directions[name] = dcm @ np.array(reference) + deviation * source.normal(size=(runs, 3))
+                directions[name] = dcm @ np.array(reference) + deviation * source.normal(
+                    size=(runs, 3)
+                )
         yield dcm, bias, measured, directions
 
 
@@ -53,7 +63,9 @@ def follow(runs=200, seconds=20, seed=1, claimed=1.0):
         estimate.turn(measured, STEP)
         for name, direction in directions.items():
             reference, deviation = REFERENCES[name]
-            estimate.observe(direction, np.broadcast_to(reference, direction.shape), claimed * deviation)
+            estimate.observe(
+                direction, np.broadcast_to(reference, direction.shape), claimed * deviation
+            )
         if number % 100 == 99:
             squares.append(normalised_errors(estimate, dcm, bias))
     return np.array(squares), estimate
@@ -63,11 +75,15 @@ def test_errors_are_as_large_as_the_filter_says():
     squares, _ = follow()
     low, high = chi2.ppf([1e-5, 1 - 1e-5], 6 * squares.shape[1]) / squares.shape[1]
     means = squares.mean(axis=1)
-    assert np.all((low < means) & (means < high)), f"means {means} outside {low:.2f} to {high:.2f}, 6 expected"
+    assert np.all((low < means) & (means < high)), (
+        f"means {means} outside {low:.2f} to {high:.2f}, 6 expected"
+    )
 
 
 def test_a_filter_that_claims_too_much_is_found_out():
-    """The same test fails for a filter that believes its instruments to be three times as good as they are."""
+    """The same test fails for a filter that believes its instruments to be three times as good as
+    they are.
+    """
     squares, _ = follow(claimed=1 / 3)
     assert squares.mean() > 9
 
@@ -84,4 +100,6 @@ def test_one_orientation_is_a_batch_of_one():
     for estimate, wrap in ((single, np.array), (batch, lambda value: np.array([value]))):
         estimate.turn(wrap([0.3, -0.2, 1.0]), 0.1)
         estimate.observe(wrap([0.1, 0, 1.0]), wrap([0, 0, 1.0]), 0.05)
-    assert np.allclose(single.dcm, batch.dcm[0]) and np.allclose(single.covariance, batch.covariance[0])
+    assert np.allclose(single.dcm, batch.dcm[0]) and np.allclose(
+        single.covariance, batch.covariance[0]
+    )

@@ -22,10 +22,15 @@ psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 
 @pytest.fixture
 def gimbal():
-    return Frames().orient_axis("B", "A", "z", psi).orient_axis("C", "B", "x", theta).orient_axis("D", "C", "y", phi)
+    return (
+        Frames()
+        .orient_axis("B", "A", "z", psi)
+        .orient_axis("C", "B", "x", theta)
+        .orient_axis("D", "C", "y", phi)
+    )
 
 
-# --- products over paths --------------------------------------------------------------------------------
+# --- products over paths --------------------------------------------------------------------------
 
 
 def test_camera_in_handgrip(gimbal):
@@ -40,7 +45,9 @@ def test_camera_in_handgrip(gimbal):
 
 
 def random_tree(seed, count=6):
-    """Edges of a random tree: joined in random order, each given from either end, in every way there is."""
+    """Edges of a random tree: joined in random order, each given from either end, in every way
+    there is.
+    """
     source = np.random.default_rng(seed)
     names = [f"F{k}" for k in range(count)]
     edges = [(names[k], names[source.integers(k)]) for k in range(1, count)]
@@ -51,16 +58,28 @@ def random_tree(seed, count=6):
         angle, kind = float(source.uniform(-3, 3)), (seed + k) % 5
         if kind == 0:
             axis = "xyz"[source.integers(3)]
-            frames, dcm = frames.orient_axis(frame, reference, axis, angle), composed((angle,), axis)
+            frames, dcm = (
+                frames.orient_axis(frame, reference, axis, angle),
+                composed((angle,), axis),
+            )
         elif kind == 1:
             axis = source.normal(size=3)
-            frames, dcm = frames.orient_axis(frame, reference, axis, angle), dcm_from_axis_angle(axis, angle)
+            frames, dcm = (
+                frames.orient_axis(frame, reference, axis, angle),
+                dcm_from_axis_angle(axis, angle),
+            )
         elif kind == 2:
             angles = source.uniform(-3, 3, 3)
-            frames, dcm = frames.orient_body_fixed(frame, reference, angles, "xzx"), composed(angles, "xzx")
+            frames, dcm = (
+                frames.orient_body_fixed(frame, reference, angles, "xzx"),
+                composed(angles, "xzx"),
+            )
         elif kind == 3:
             quaternion = random_unit_vectors(1, seed + k, size=4)[0]
-            frames, dcm = frames.orient_quaternion(frame, reference, quaternion), dcm_from_quaternion(quaternion)
+            frames, dcm = (
+                frames.orient_quaternion(frame, reference, quaternion),
+                dcm_from_quaternion(quaternion),
+            )
         else:
             dcm = random_dcms(1, seed + k)[0]
             frames = frames.orient_dcm(frame, reference, dcm)
@@ -92,7 +111,12 @@ def test_trees_of_every_shape_both_ways_and_as_reference_frames(seed):
 
 
 def test_frames_given_from_either_end_and_trees_joined_later():
-    frames = Frames().orient_axis("A", "B", "z", psi).orient_axis("C", "D", "x", theta).orient_axis("B", "C", "y", phi)
+    frames = (
+        Frames()
+        .orient_axis("A", "B", "z", psi)
+        .orient_axis("C", "D", "x", theta)
+        .orient_axis("B", "C", "y", phi)
+    )
     assert frames.path("A", "D") == "A - B - C - D"
     expected = simple_dcm("z", psi) * simple_dcm("y", phi) * simple_dcm("x", theta)
     assert (frames.dcm("A", "D") - expected).expand() == sm.zeros(3)
@@ -124,7 +148,9 @@ def test_symbols_and_numbers_mix(gimbal):
     )
     expected = (
         simple_dcm("y", psi)
-        * sm.Matrix(simple_dcm("x", 0.1) @ dcm_from_quaternion((0.6, 0, 0.8, 0)) @ simple_dcm("z", 0.3))
+        * sm.Matrix(
+            simple_dcm("x", 0.1) @ dcm_from_quaternion((0.6, 0, 0.8, 0)) @ simple_dcm("z", 0.3)
+        )
         * composed(SYMBOLS, "zxy")
     )
     assert same_orientation(mixed.dcm("H", "A"), expected)
@@ -138,7 +164,7 @@ def test_body_fixed_angles_of_which_some_are_numbers():
     assert same_orientation(frames.dcm("D", "A"), composed((psi, 0, 0.5), "zxy"))
 
 
-# --- batches -----------------------------------------------------------------------------------------------
+# --- batches --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("kind", [np.array, list, tuple])
@@ -156,19 +182,35 @@ def test_batches(kind):
     assert rotation_error(frames.dcm("E", "A"), expected) < 1e-14
     assert rotation_error(frames.dcm("A", "E"), expected.swapaxes(1, 2)) < 1e-14
     angles = np.random.default_rng(1).normal(size=(2, 7, 3))
-    frames = frames.orient_body_fixed("G", "E", angles, "zxz").orient_dcm("H", "G", random_dcms(7, 2))
+    frames = frames.orient_body_fixed("G", "E", angles, "zxz").orient_dcm(
+        "H", "G", random_dcms(7, 2)
+    )
     assert frames.dcm("H", "A").shape == (2, 7, 3, 3)
     assert (
-        rotation_error(frames.dcm("H", "A"), random_dcms(7, 2) @ dcm_from_body_fixed(angles, "zxz") @ expected) < 1e-14
+        rotation_error(
+            frames.dcm("H", "A"), random_dcms(7, 2) @ dcm_from_body_fixed(angles, "zxz") @ expected
+        )
+        < 1e-14
     )
     axes = random_unit_vectors(7, 3).tolist()
-    assert rotation_error(Frames().orient_axis("B", "A", axes, 0.3).dcm("B", "A"), dcm_from_axis_angle(axes, 0.3)) == 0
+    assert (
+        rotation_error(
+            Frames().orient_axis("B", "A", axes, 0.3).dcm("B", "A"), dcm_from_axis_angle(axes, 0.3)
+        )
+        == 0
+    )
 
 
 def test_batches_that_do_not_fit_are_refused():
     for axis in "zx":
-        frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, np.zeros(3))
-        with pytest.raises(ValueError, match=r"batches along this path do not fit .* \(2,\) and \(3,\)"):
+        frames = (
+            Frames()
+            .orient_axis("B", "A", "z", np.zeros(2))
+            .orient_axis("C", "B", axis, np.zeros(3))
+        )
+        with pytest.raises(
+            ValueError, match=r"batches along this path do not fit .* \(2,\) and \(3,\)"
+        ):
             frames.dcm("C", "A")
         frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, psi)
         with pytest.raises(ValueError, match="this path holds symbols and a batch"):
@@ -184,11 +226,13 @@ def test_batches_that_do_not_fit_are_refused():
     ],
 )
 def test_a_batch_is_no_reference_frame(frames):
-    with pytest.raises(ValueError, match=r"B in A is a batch of shape \(2,\); a ReferenceFrame holds one"):
+    with pytest.raises(
+        ValueError, match=r"B in A is a batch of shape \(2,\); a ReferenceFrame holds one"
+    ):
         frames.reference_frames()
 
 
-# --- successive turns about one axis are joined ---------------------------------------------------------------
+# --- successive turns about one axis are joined ---------------------------------------------------
 
 
 def test_chain_of_twelve_turns_about_z_stays_small():
@@ -210,13 +254,18 @@ def test_turns_are_joined_within_and_across_orientations():
 
 
 def test_turns_about_other_axes_are_not_joined():
-    frames = Frames().orient_axis("B", "A", "z", psi).orient_axis("C", "B", "x", theta).orient_axis("D", "C", "z", -psi)
+    frames = (
+        Frames()
+        .orient_axis("B", "A", "z", psi)
+        .orient_axis("C", "B", "x", theta)
+        .orient_axis("D", "C", "z", -psi)
+    )
     assert not same_orientation(frames.dcm("D", "A"), simple_dcm("x", theta))
     frames = Frames().orient_axis("B", "A", "z", 0.1).orient_axis("C", "B", (0, 0, 1), 0.2)
     assert rotation_error(frames.dcm("C", "A"), simple_dcm("z", 0.3)) < 1e-15
 
 
-# --- nothing goes stale ---------------------------------------------------------------------------------------
+# --- nothing goes stale ---------------------------------------------------------------------------
 
 
 def test_orienting_leaves_the_frames_as_they_were():
@@ -224,7 +273,11 @@ def test_orienting_leaves_the_frames_as_they_were():
     one = empty.orient_axis("A", "N", "z", psi)
     two = one.orient_axis("B", "A", "x", theta)
     other = one.orient_axis("B", "A", "y", theta)
-    assert repr(empty) == "Frames()" and repr(one) == "Frames(A in N)" and repr(two) == "Frames(A in N, B in A)"
+    assert (
+        repr(empty) == "Frames()"
+        and repr(one) == "Frames(A in N)"
+        and repr(two) == "Frames(A in N, B in A)"
+    )
     with pytest.raises(ValueError, match="no frame 'A' here; there are none"):
         empty.dcm("A", "N")
     with pytest.raises(ValueError, match="no frame 'B' here; there are A, N"):
@@ -238,7 +291,9 @@ ORIENTATIONS = {
     "body fixed": lambda frames, x: frames.orient_body_fixed("D", "A", (x, 0.2, 0.3), "zxy"),
     "matrix": lambda frames, x: frames.orient_dcm("D", "A", simple_dcm("z", x)),
     "quaternion": lambda frames, x: frames.orient_quaternion(
-        "D", "A", (np.cos(x), 0, 0, np.sin(x)) if isinstance(x, float) else (sm.cos(x), 0, 0, sm.sin(x))
+        "D",
+        "A",
+        (np.cos(x), 0, 0, np.sin(x)) if isinstance(x, float) else (sm.cos(x), 0, 0, sm.sin(x)),
     ),
 }
 
@@ -248,8 +303,12 @@ ORIENTATIONS = {
 def test_a_cell_can_be_run_again_but_not_with_another_answer(orientation, angle, changed):
     frames = orientation(Frames().orient_axis("A", "N", "x", phi), angle)
     assert orientation(frames, angle) is frames
-    assert frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames  # the same, from the other end
-    with pytest.raises(ValueError, match="D and A are already connected, by D - A: a second path could contradict"):
+    assert (
+        frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames
+    )  # the same, from the other end
+    with pytest.raises(
+        ValueError, match="D and A are already connected, by D - A: a second path could contradict"
+    ):
         orientation(frames, changed)
 
 
@@ -260,8 +319,14 @@ def test_a_cell_can_be_run_again_with_another_form_of_the_same_orientation(gimba
 
 
 def test_a_second_path_is_refused_and_the_first_is_named(gimbal):
-    for frame, reference, path in (("D", "A", "D - C - B - A"), ("A", "D", "A - B - C - D"), ("C", "A", "C - B - A")):
-        with pytest.raises(ValueError, match=f"{frame} and {reference} are already connected, by {path}:"):
+    for frame, reference, path in (
+        ("D", "A", "D - C - B - A"),
+        ("A", "D", "A - B - C - D"),
+        ("C", "A", "C - B - A"),
+    ):
+        with pytest.raises(
+            ValueError, match=f"{frame} and {reference} are already connected, by {path}:"
+        ):
             gimbal.orient_axis(frame, reference, "z", 1)
     with pytest.raises(ValueError, match="already connected"):
         gimbal.orient_dcm("D", "A", gimbal.dcm("D", "A"))
@@ -315,7 +380,7 @@ def test_every_kind_of_number_turns_back_and_joins(kind):
     assert rotation_error(sm.Matrix(frames.dcm("A", "B")).evalf(), simple_dcm("z", -100.0)) < 1e-14
 
 
-# --- the equation ------------------------------------------------------------------------------------------------
+# --- the equation ---------------------------------------------------------------------------------
 
 
 def test_equation(gimbal):
@@ -355,7 +420,7 @@ def test_equation_tells_what_each_factor_is():
     assert r"E\_1" in str(frames.equation("E_1", "D"))  # an underscore of a name is no subscript
 
 
-# --- errors --------------------------------------------------------------------------------------------------------
+# --- errors ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["", "A B", 3, None, "A-B"])
@@ -376,12 +441,24 @@ def test_a_frame_in_itself():
         (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis is 'q'"),
         (lambda frames: frames.orient_axis("B", "A", "z", np.nan), "angle is nan"),
         (lambda frames: frames.orient_axis("B", "A", (0, 0, 0), 1), "a zero vector points nowhere"),
-        (lambda frames: frames.orient_axis("B", "A", (0, 0, 0), psi), "a zero vector points nowhere"),
+        (
+            lambda frames: frames.orient_axis("B", "A", (0, 0, 0), psi),
+            "a zero vector points nowhere",
+        ),
         (lambda frames: frames.orient_axis("B", "A", 3, 1), r"axis has shape \(\)"),
-        (lambda frames: frames.orient_body_fixed("B", "A", (1, 2, 3), "zzx"), "'zzx' is not a sequence"),
-        (lambda frames: frames.orient_body_fixed("B", "A", (1, 2), "zxy"), r"angles has shape \(2,\)"),
+        (
+            lambda frames: frames.orient_body_fixed("B", "A", (1, 2, 3), "zzx"),
+            "'zzx' is not a sequence",
+        ),
+        (
+            lambda frames: frames.orient_body_fixed("B", "A", (1, 2), "zxy"),
+            r"angles has shape \(2,\)",
+        ),
         (lambda frames: frames.orient_dcm("B", "A", np.diag((1, 1, -1))), "left-handed"),
-        (lambda frames: frames.orient_dcm("B", "A", 2 * simple_dcm("x", psi)), "not orthogonal: row x has length 2"),
+        (
+            lambda frames: frames.orient_dcm("B", "A", 2 * simple_dcm("x", psi)),
+            "not orthogonal: row x has length 2",
+        ),
         (lambda frames: frames.orient_quaternion("B", "A", (1, 1, 0, 0)), "length 1.414"),
     ],
 )

@@ -89,21 +89,38 @@ NUMBERS_ONLY = {
 }
 ALL = CONVERSIONS | NUMBERS_ONLY
 every = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.values()], ids=ALL)
-symbolic = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS)
+symbolic = pytest.mark.parametrize(
+    "function, batches", [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS
+)
 
 
 def test_no_conversion_is_forgotten():
-    public = {name for name in orientation.__all__ if callable(getattr(orientation, name)) and name[0].islower()}
+    public = {
+        name
+        for name in orientation.__all__
+        if callable(getattr(orientation, name)) and name[0].islower()
+    }
     tested = {name.split(" ")[-1] if " of " in name else name.split(" ")[0] for name in ALL}
-    elsewhere = {"check_dcm", "diagnose", "same_orientation", "dcm_from_scipy_rotation", "scipy_rotation_from_dcm"}
+    elsewhere = {
+        "check_dcm",
+        "diagnose",
+        "same_orientation",
+        "dcm_from_scipy_rotation",
+        "scipy_rotation_from_dcm",
+    }
     # Not conversions of one orientation: they have tests of their own.
     elsewhere |= {"dcm_from_directions", "dcm_from_two_directions", "directions_covariance"}
-    elsewhere |= {"turns_from_angular_velocity", "dcms_after_turns", "mean_orientation", "random_orientations"}
+    elsewhere |= {
+        "turns_from_angular_velocity",
+        "dcms_after_turns",
+        "mean_orientation",
+        "random_orientations",
+    }
     drawing = {name for name in public if "drawing" in getattr(orientation, name).__module__}
     assert public - elsewhere - drawing == tested
 
 
-# --- batches -------------------------------------------------------------------------------------------------
+# --- batches --------------------------------------------------------------------------------------
 
 
 @every
@@ -122,7 +139,10 @@ def test_batches_of_more_dimensions_and_of_none(function, batches):
         assert shaped.shape == shape + flat.shape[1:]
         assert (shaped.reshape(flat.shape) == flat).all()
     for shape in ((0,), (3, 0)):
-        assert function(*(np.zeros(shape + batch.shape[1:]) for batch in batches)).shape == shape + flat.shape[1:]
+        assert (
+            function(*(np.zeros(shape + batch.shape[1:]) for batch in batches)).shape
+            == shape + flat.shape[1:]
+        )
 
 
 @pytest.mark.parametrize("count", [8191, 8192, 8193, 20000])
@@ -137,13 +157,19 @@ def test_large_batches_have_no_seams(function, batches, count):
 def test_arguments_are_broadcast(function, batches):
     for place in range(len(batches)):
         one = [batch[0] if k == place else batch for k, batch in enumerate(batches)]
-        many = [np.stack(COUNT * [batch[0]]) if k == place else batch for k, batch in enumerate(batches)]
+        many = [
+            np.stack(COUNT * [batch[0]]) if k == place else batch for k, batch in enumerate(batches)
+        ]
         assert (function(*one) == function(*many)).all()
     first, *rest = batches
     grid = function(first[:, None], *(batch[None, :5] for batch in rest))
     assert grid.shape[:2] == (COUNT, 5)
-    np.testing.assert_allclose(grid[3, 2], function(first[3], *(batch[2] for batch in rest)), atol=2e-15)
-    with pytest.raises(ValueError, match=r"the batches do not fit each other: .* \(12.* and .* \(11"):
+    np.testing.assert_allclose(
+        grid[3, 2], function(first[3], *(batch[2] for batch in rest)), atol=2e-15
+    )
+    with pytest.raises(
+        ValueError, match=r"the batches do not fit each other: .* \(12.* and .* \(11"
+    ):
         function(first, *(batch[:11] for batch in rest))
 
 
@@ -186,13 +212,18 @@ def test_lists_tuples_and_objects(function, batches):
         lambda batch: batch.astype(np.longdouble),
     ):
         assert (function(*map(form, batches)) == expected).all()
-        assert np.all(function(*(form(batch[0]) if batch[0].ndim else batch[0] for batch in batches)) == single)
+        assert np.all(
+            function(*(form(batch[0]) if batch[0].ndim else batch[0] for batch in batches))
+            == single
+        )
 
 
-# --- kinds of numbers -------------------------------------------------------------------------------------------
+# --- kinds of numbers -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", [int, np.int8, np.uint8, np.int64, np.float16, np.float32, np.longdouble, Fraction])
+@pytest.mark.parametrize(
+    "kind", [int, np.int8, np.uint8, np.int64, np.float16, np.float32, np.longdouble, Fraction]
+)
 def test_kinds_of_numbers(kind):
     angles = [kind(1), kind(2), kind(3)]
     expected = dcm_from_body_fixed((1.0, 2.0, 3.0), "zxy")
@@ -200,8 +231,14 @@ def test_kinds_of_numbers(kind):
         result = dcm_from_body_fixed(form, "zxy")
         assert result.dtype == float and (result == expected).all()
     assert (simple_dcm("x", kind(3)) == simple_dcm("x", 3.0)).all()
-    assert (dcm_from_axis_angle((kind(0), kind(2), kind(1)), kind(1)) == dcm_from_axis_angle((0, 2, 1), 1)).all()
-    assert (quaternion_from_dcm(np.array([[kind(1), 0, 0], [0, kind(1), 0], [0, 0, kind(1)]])) == (1, 0, 0, 0)).all()
+    assert (
+        dcm_from_axis_angle((kind(0), kind(2), kind(1)), kind(1))
+        == dcm_from_axis_angle((0, 2, 1), 1)
+    ).all()
+    assert (
+        quaternion_from_dcm(np.array([[kind(1), 0, 0], [0, kind(1), 0], [0, 0, kind(1)]]))
+        == (1, 0, 0, 0)
+    ).all()
 
 
 def test_numbers_of_any_size():
@@ -218,7 +255,7 @@ def test_missing_samples_are_not_passed_over():
         dcm_from_body_fixed(masked, "zxy")
 
 
-# --- symbols ------------------------------------------------------------------------------------------------------
+# --- symbols --------------------------------------------------------------------------------------
 
 
 @symbolic
@@ -229,21 +266,36 @@ def test_symbols_give_the_numbers_that_numbers_give(function, batches):
     for point in points:
         symbols = [next(names) for _ in range(point.size)]
         values |= dict(zip(symbols, point.ravel()))
-        held.append(symbols[0] if point.ndim == 0 else sm.Matrix(3, 3, symbols) if point.ndim == 2 else symbols)
+        held.append(
+            symbols[0]
+            if point.ndim == 0
+            else sm.Matrix(3, 3, symbols)
+            if point.ndim == 2
+            else symbols
+        )
     result = function(*held)
     assert isinstance(result, sm.MatrixBase)
     expected = function(*points)
     assert result.shape == (*expected.shape, 1)[:2]
-    np.testing.assert_allclose(np.array(result.subs(values), dtype=float).reshape(expected.shape), expected, atol=2e-15)
+    np.testing.assert_allclose(
+        np.array(result.subs(values), dtype=float).reshape(expected.shape), expected, atol=2e-15
+    )
 
 
 @symbolic
 def test_exact_numbers_stay_exact(function, batches):
-    exact = {(): sm.pi / 6, (3,): [1, sm.Rational(1, 2), sm.pi], (4,): [sm.Rational(1, 2)] * 4, (3, 3): sm.eye(3)}
+    exact = {
+        (): sm.pi / 6,
+        (3,): [1, sm.Rational(1, 2), sm.pi],
+        (4,): [sm.Rational(1, 2)] * 4,
+        (3, 3): sm.eye(3),
+    }
     result = function(*(exact[batch.shape[1:]] for batch in batches))
     assert isinstance(result, sm.MatrixBase) and not result.atoms(sm.Float)
     expected = function(*(np.array(exact[batch.shape[1:]], dtype=float) for batch in batches))
-    np.testing.assert_allclose(np.array(result.evalf(), dtype=float).reshape(expected.shape), expected, atol=1e-15)
+    np.testing.assert_allclose(
+        np.array(result.evalf(), dtype=float).reshape(expected.shape), expected, atol=1e-15
+    )
 
 
 def test_every_way_to_hold_symbols():
@@ -260,7 +312,9 @@ def test_every_way_to_hold_symbols():
         np.array([SYMBOLS]).T,
     ):
         assert (dcm_from_body_fixed(form, "zxy") - expected).expand() == sm.zeros(3)
-        assert (dcm_from_space_fixed(form, "zxy") - composed(SYMBOLS[::-1], "yxz")).expand() == sm.zeros(3)
+        assert (
+            dcm_from_space_fixed(form, "zxy") - composed(SYMBOLS[::-1], "yxz")
+        ).expand() == sm.zeros(3)
     for form in (
         expected,
         expected.as_immutable(),
@@ -280,21 +334,34 @@ def test_functions_of_time():
 
 def test_symbols_among_numbers():
     expected = composed((psi, 0.5, 2), "zxy")
-    for form in ((psi, 0.5, 2), (psi, np.float64(0.5), np.int64(2)), np.array((psi, 0.5, 2)), [psi, sm.Float(0.5), 2]):
-        difference = np.array((dcm_from_body_fixed(form, "zxy") - expected).subs(psi, 0.3), dtype=float)
+    for form in (
+        (psi, 0.5, 2),
+        (psi, np.float64(0.5), np.int64(2)),
+        np.array((psi, 0.5, 2)),
+        [psi, sm.Float(0.5), 2],
+    ):
+        difference = np.array(
+            (dcm_from_body_fixed(form, "zxy") - expected).subs(psi, 0.3), dtype=float
+        )
         assert abs(difference).max() < 1e-15
     assert dcm_from_axis_angle(np.array((0, 0, 1)), theta) == simple_dcm("z", theta)
 
 
-@pytest.mark.parametrize("function, batches", [(f, b) for f, *b in NUMBERS_ONLY.values()], ids=NUMBERS_ONLY)
+@pytest.mark.parametrize(
+    "function, batches", [(f, b) for f, *b in NUMBERS_ONLY.values()], ids=NUMBERS_ONLY
+)
 def test_what_needs_numbers_says_so(function, batches):
     symbols = sm.symbols("s:9")
-    first = {(3,): list(symbols[:3]), (4,): list(symbols[:4]), (3, 3): sm.Matrix(3, 3, symbols)}[batches[0].shape[1:]]
-    with pytest.raises(SymbolsNotPossible, match="holds .*s0.*, and this conversion needs numbers.*subs"):
+    first = {(3,): list(symbols[:3]), (4,): list(symbols[:4]), (3, 3): sm.Matrix(3, 3, symbols)}[
+        batches[0].shape[1:]
+    ]
+    with pytest.raises(
+        SymbolsNotPossible, match="holds .*s0.*, and this conversion needs numbers.*subs"
+    ):
         function(first, *(batch[0] for batch in batches[1:]))
 
 
-# --- bad input ------------------------------------------------------------------------------------------------------
+# --- bad input ------------------------------------------------------------------------------------
 
 
 @every
@@ -303,9 +370,13 @@ def test_missing_numbers_are_found(function, batches):
         for bad in (np.nan, np.inf, -np.inf):
             spoilt = [batch.copy() for batch in batches]
             spoilt[place].reshape(COUNT, -1)[7, -1] = bad
-            with pytest.raises(ValueError, match=r"\[7.*\] is (nan|inf|-inf): a number is missing or a division"):
+            with pytest.raises(
+                ValueError, match=r"\[7.*\] is (nan|inf|-inf): a number is missing or a division"
+            ):
                 function(*spoilt)
-            with pytest.raises(ValueError, match=r"is (nan|inf|-inf): a number is missing or a division"):
+            with pytest.raises(
+                ValueError, match=r"is (nan|inf|-inf): a number is missing or a division"
+            ):
                 function(*(batch[7] for batch in spoilt))
 
 
@@ -315,16 +386,38 @@ def test_wrong_shapes_are_told(function, batches):
         item = batches[place].shape[1:]
         if item == ():
             continue
-        for wrong in (np.zeros(item[:-1] + (2,)), np.zeros((5, 5)), 1.0, np.float64(1), np.array(1.0), [], [[]]):
+        for wrong in (
+            np.zeros(item[:-1] + (2,)),
+            np.zeros((5, 5)),
+            1.0,
+            np.float64(1),
+            np.array(1.0),
+            [],
+            [[]],
+        ):
             bad = [wrong if k == place else batch[0] for k, batch in enumerate(batches)]
-            with pytest.raises(ValueError, match=rf"has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., "):
+            with pytest.raises(
+                ValueError, match=rf"has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., "
+            ):
                 function(*bad)
 
 
 @every
 def test_what_is_no_number_is_told(function, batches):
-    for wrong in ("abc", None, True, 1j, [1, [2, 3]], {"angle": 1}, ["a", "b", "c"], [None, 1, 2], object()):
-        with pytest.raises(TypeError, match="must hold real numbers or SymPy expressions in a regular shape, not"):
+    for wrong in (
+        "abc",
+        None,
+        True,
+        1j,
+        [1, [2, 3]],
+        {"angle": 1},
+        ["a", "b", "c"],
+        [None, 1, 2],
+        object(),
+    ):
+        with pytest.raises(
+            TypeError, match="must hold real numbers or SymPy expressions in a regular shape, not"
+        ):
             function(wrong, *(batch[0] for batch in batches[1:]))
 
 
@@ -337,13 +430,20 @@ def test_what_is_no_expression_is_told(function, batches):
         entries = [psi] * (count - 1) + [wrong]
         if item:
             with pytest.raises(TypeError, match="holds .* neither a number nor a SymPy expression"):
-                function(entries if len(item) == 1 else [entries[:3], entries[3:6], entries[6:]], *rest)
+                function(
+                    entries if len(item) == 1 else [entries[:3], entries[3:6], entries[6:]], *rest
+                )
     for wrong in (sm.nan, sm.oo, -sm.oo, sm.zoo, psi + sm.oo):
         entries = [psi] * (count - 1) + [wrong]
         with pytest.raises(ValueError, match="a division by zero happened before"):
-            function(wrong if item == () else entries if len(item) == 1 else sm.Matrix(3, 3, entries), *rest)
+            function(
+                wrong if item == () else entries if len(item) == 1 else sm.Matrix(3, 3, entries),
+                *rest,
+            )
     for wrong in ([psi, psi], sm.Matrix([psi, psi]), [[psi], [psi]]):
-        with pytest.raises(ValueError, match="has shape .*, where .* expected .*one item at a time"):
+        with pytest.raises(
+            ValueError, match="has shape .*, where .* expected .*one item at a time"
+        ):
             function(wrong, *rest)
     with pytest.raises(TypeError, match="is the vector N.x: give its components along one frame"):
         function(me.ReferenceFrame("N").x, *rest)
@@ -363,19 +463,30 @@ def test_what_is_no_expression_is_told(function, batches):
 )
 def test_sequences_that_are_none(call):
     for sequence in ("zzx", "xyy", "xxx"):
-        with pytest.raises(ValueError, match=f"'{sequence}' is not a sequence .*: two turns in a row about one axis"):
+        with pytest.raises(
+            ValueError,
+            match=f"'{sequence}' is not a sequence .*: two turns in a row about one axis",
+        ):
             call(sequence)
     for sequence in ("ZXY", "Zxz"):
-        with pytest.raises(ValueError, match=f"'{sequence}' is not .*: write '{sequence.lower()}': .*body fixed"):
+        with pytest.raises(
+            ValueError, match=f"'{sequence}' is not .*: write '{sequence.lower()}': .*body fixed"
+        ):
             call(sequence)
     for sequence in ("zx", "", "zxyz", "abc", "313", 313, None, ("z", "x", "y"), ["z", "x", "y"]):
-        with pytest.raises(ValueError, match="is not a sequence of Euler angles: the twelve are zxz, "):
+        with pytest.raises(
+            ValueError, match="is not a sequence of Euler angles: the twelve are zxz, "
+        ):
             call(sequence)
 
 
-@pytest.mark.parametrize("axis", ["X", "w", "", "xy", "-y", 3, None, (0, 0, 1), np.eye(3)[2], me.ReferenceFrame("N").z])
+@pytest.mark.parametrize(
+    "axis", ["X", "w", "", "xy", "-y", 3, None, (0, 0, 1), np.eye(3)[2], me.ReferenceFrame("N").z]
+)
 def test_axes_that_are_none(axis):
-    with pytest.raises(ValueError, match="axis is .*, where 'x', 'y' or 'z' was expected; .*dcm_from_axis_angle"):
+    with pytest.raises(
+        ValueError, match="axis is .*, where 'x', 'y' or 'z' was expected; .*dcm_from_axis_angle"
+    ):
         simple_dcm(axis, 0.1)
 
 
@@ -391,7 +502,9 @@ def test_axes_without_a_direction(function, angle):
         with pytest.raises(ValueError, match=rf"axis.* is \(.*\): {said}"):
             function(axis, angle)
     if angle is not theta:
-        with pytest.raises(ValueError, match=r"axis \(item \[1\]\) is \(0\.0, 0\.0, 0\.0\): a zero vector"):
+        with pytest.raises(
+            ValueError, match=r"axis \(item \[1\]\) is \(0\.0, 0\.0, 0\.0\): a zero vector"
+        ):
             function([(1, 0, 0), (0, 0, 0)], angle)
 
 
@@ -412,9 +525,15 @@ def test_matrices_that_are_no_orientation(function):
     swapped, typo = dcm[[1, 0, 2]], dcm.copy()
     typo[1, 2] = 2
     for bad, said in (
-        (swapped, "is orthogonal but left-handed: its determinant is -1, not .1. One row or column"),
+        (
+            swapped,
+            "is orthogonal but left-handed: its determinant is -1, not .1. One row or column",
+        ),
         (-dcm, "is orthogonal but left-handed"),
-        (dcm.round(4), r"is not orthogonal: row.* Were its entries rounded or measured\? nearest_dcm"),
+        (
+            dcm.round(4),
+            r"is not orthogonal: row.* Were its entries rounded or measured\? nearest_dcm",
+        ),
         (2 * dcm, "is not orthogonal: row . has length 2, not 1. The whole matrix is 2 times an"),
         (typo, r"is not orthogonal: row y has length 2\..*An entry or a sign is wrong"),
         (np.zeros((3, 3)), "is not orthogonal: row x has length 0, not 1. Every entry is zero"),
@@ -437,7 +556,9 @@ def test_single_precision_is_rounding_and_is_told_as_such():
 def test_symbolic_matrices_that_are_no_orientation():
     with pytest.raises(ValueError, match="dcm at random values of its symbols is not orthogonal"):
         check_dcm(composed(SYMBOLS, "zxy") + sm.eye(3))
-    with pytest.raises(ValueError, match="dcm at random values of its symbols is orthogonal but left-handed"):
+    with pytest.raises(
+        ValueError, match="dcm at random values of its symbols is orthogonal but left-handed"
+    ):
         check_dcm(-composed(SYMBOLS, "zxy"))
     with pytest.raises(ValueError, match="is not real: an entry has an imaginary part of 1"):
         check_dcm(composed(SYMBOLS, "zxy") + sm.I * sm.ones(3))
@@ -448,7 +569,9 @@ def test_symbolic_matrices_that_are_no_orientation():
 
 
 def test_components_in_separate_arrays_are_not_guessed_at():
-    with pytest.raises(ValueError, match="a sequence of 3 arrays, which can be read in two ways.*axis=-1"):
+    with pytest.raises(
+        ValueError, match="a sequence of 3 arrays, which can be read in two ways.*axis=-1"
+    ):
         dcm_from_body_fixed(tuple(ANGLES.T), "zxy")
     with pytest.raises(ValueError, match="a sequence of 4 arrays"):
         dcm_from_quaternion(list(QUATERNIONS.T))
@@ -460,7 +583,7 @@ def test_degrees_are_not_guessed_at():
     np.testing.assert_allclose(simple_dcm("z", 90)[0, 0], np.cos(90.0))
 
 
-# --- what the package loads -------------------------------------------------------------------------------------------
+# --- what the package loads -----------------------------------------------------------------------
 
 
 def python(code):
@@ -470,17 +593,31 @@ def python(code):
 
 
 def test_import_loads_almost_nothing():
-    loaded = python('import sys, orientation; print(*sorted({name.split(".")[0] for name in sys.modules}))').split()
-    assert not {"numpy", "scipy", "sympy", "mpmath", "matplotlib", "ipywidgets", "anywidget", "IPython"} & set(loaded)
+    loaded = python(
+        'import sys, orientation; print(*sorted({name.split(".")[0] for name in sys.modules}))'
+    ).split()
+    assert not {
+        "numpy",
+        "scipy",
+        "sympy",
+        "mpmath",
+        "matplotlib",
+        "ipywidgets",
+        "anywidget",
+        "IPython",
+    } & set(loaded)
 
 
 def test_numbers_load_no_sympy():
     loaded = python(
         "import sys, orientation as o\n"
         'dcm = o.dcm_from_body_fixed((1, 2, 3), "zxy")\n'
-        'o.body_fixed_from_dcm(dcm, "zxy"), o.axis_angle_from_dcm(dcm), o.quaternion_from_dcm([dcm, dcm])\n'
-        'o.same_orientation(dcm, dcm), o.diagnose(dcm.T, dcm, (1, 2, 3), "zxy"), o.nearest_dcm(dcm)\n'
-        'frames = o.Frames().orient_body_fixed("D", "A", (1, 2, 3), "zxy").orient_axis("E", "D", "x", 1)\n'
+        'o.body_fixed_from_dcm(dcm, "zxy"), o.axis_angle_from_dcm(dcm), '
+        "o.quaternion_from_dcm([dcm, dcm])\n"
+        'o.same_orientation(dcm, dcm), o.diagnose(dcm.T, dcm, (1, 2, 3), "zxy"), '
+        "o.nearest_dcm(dcm)\n"
+        'frames = o.Frames().orient_body_fixed("D", "A", (1, 2, 3), "zxy").orient_axis("E", "D", '
+        '"x", 1)\n'
         'frames.dcm("A", "E"), frames.equation("A", "E")\n'
         "print(*sys.modules)"
     ).split()

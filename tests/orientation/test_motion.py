@@ -66,7 +66,9 @@ def test_all_rates_belong_to_one_motion(sequence):
     step = 1e-5
     for angles, rates in zip(RANDOM.uniform(-3, 3, (10, 3)), RANDOM.uniform(-2, 2, (10, 3))):
         omega = angular_velocity_matrix(angles, sequence) @ rates
-        before, now, after = (dcm_from_body_fixed(angles + s * step * rates, sequence) for s in (-1, 0, 1))
+        before, now, after = (
+            dcm_from_body_fixed(angles + s * step * rates, sequence) for s in (-1, 0, 1)
+        )
         assert np.allclose(dcm_rate(now, omega), (after - before) / (2 * step), atol=1e-8)
         q = quaternion_from_dcm(now)
         ahead, behind = (np.sign(p @ q) * p for p in map(quaternion_from_dcm, (after, before)))
@@ -85,7 +87,13 @@ def test_rates_of_symbols_and_batches():
 @pytest.mark.parametrize("scale", [1, 1e-3, 1e-7, 1e-12, 1e-200])
 def test_exponential_against_scipy_and_back(scale):
     axes = RANDOM.normal(size=(500, 3))
-    vectors = scale * np.pi * RANDOM.uniform(0, 1, (500, 1)) * axes / np.linalg.norm(axes, axis=1)[:, None]
+    vectors = (
+        scale
+        * np.pi
+        * RANDOM.uniform(0, 1, (500, 1))
+        * axes
+        / np.linalg.norm(axes, axis=1)[:, None]
+    )
     dcm = dcm_from_rotation_vector(vectors)
     assert abs(dcm - dcm_from_scipy_rotation(Rotation.from_rotvec(vectors))).max() < 1e-14
     assert np.allclose(rotation_vector_from_dcm(dcm), vectors, rtol=1e-9, atol=1e-15)
@@ -145,17 +153,23 @@ def test_the_rate_of_the_matrix_defines_the_angular_velocity(sequence):
 def test_angular_velocity_undoes_the_rate_of_the_matrix():
     dcms = dcm_from_quaternion(random_quaternions(50))
     omegas = RANDOM.normal(size=(50, 3))
-    assert np.allclose(angular_velocity_from_dcm_rate(dcms, dcm_rate(dcms, omegas)), omegas, atol=1e-14)
+    assert np.allclose(
+        angular_velocity_from_dcm_rate(dcms, dcm_rate(dcms, omegas)), omegas, atol=1e-14
+    )
     # What is symmetric in the product is no turning: the skew part is taken.
     stretch = np.diag([0.1, 0.2, 0.3]) @ dcms[0]
-    assert np.allclose(angular_velocity_from_dcm_rate(dcms[0], dcm_rate(dcms[0], omegas[0]) + stretch), omegas[0])
+    assert np.allclose(
+        angular_velocity_from_dcm_rate(dcms[0], dcm_rate(dcms[0], omegas[0]) + stretch), omegas[0]
+    )
     with pytest.raises(ValueError, match="not orthogonal"):
         angular_velocity_from_dcm_rate(2 * np.eye(3), np.zeros((3, 3)))
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-6, 1e-3, 0.05, 1, 3, 4.5, 6.2])
 def test_rotation_vector_rate_against_differences(size):
-    """The matrix of r + h dr/dt must move as the angular velocity says, beyond half a turn as well."""
+    """The matrix of r + h dr/dt must move as the angular velocity says, beyond half a turn as
+    well.
+    """
     h = 1e-6
     for _ in range(20):
         vector = RANDOM.normal(size=3)
@@ -163,9 +177,13 @@ def test_rotation_vector_rate_against_differences(size):
         omega = RANDOM.normal(size=3)
         rate = rotation_vector_rate(vector, omega)
         h_here = h / max(1, np.linalg.norm(rate))
-        ahead, behind = (dcm_from_rotation_vector(vector + sign * h_here * rate) for sign in (1, -1))
+        ahead, behind = (
+            dcm_from_rotation_vector(vector + sign * h_here * rate) for sign in (1, -1)
+        )
         assert np.allclose(
-            (ahead - behind) / (2 * h_here), dcm_rate(dcm_from_rotation_vector(vector), omega), atol=2e-9
+            (ahead - behind) / (2 * h_here),
+            dcm_rate(dcm_from_rotation_vector(vector), omega),
+            atol=2e-9,
         )
 
 
@@ -173,8 +191,12 @@ def test_rotation_vector_rate_at_rest_of_symbols_and_at_a_whole_turn():
     assert (rotation_vector_rate((0.0, 0, 0), (1.0, 2, 3)) == [1, 2, 3]).all()
     assert rotation_vector_rate(np.zeros((4, 3)), (1.0, 2, 3)).shape == (4, 3)
     symbols = sm.symbols("r_x:z, omega_x:z")
-    ours = rotation_vector_rate(symbols[:3], symbols[3:]).subs(dict(zip(symbols, (0.1, 0.7, -0.4, 1, 2, 3))))
-    assert np.allclose(np.array(ours, dtype=float).ravel(), rotation_vector_rate((0.1, 0.7, -0.4), (1, 2, 3)))
+    ours = rotation_vector_rate(symbols[:3], symbols[3:]).subs(
+        dict(zip(symbols, (0.1, 0.7, -0.4, 1, 2, 3)))
+    )
+    assert np.allclose(
+        np.array(ours, dtype=float).ravel(), rotation_vector_rate((0.1, 0.7, -0.4), (1, 2, 3))
+    )
     near = rotation_vector_rate((0, 0, 2 * np.pi - 1e-4), (1.0, 0, 0))
     assert np.linalg.norm(near) > 1e4, "it grows without bound"
     with pytest.raises(ValueError, match="whole turn"):
@@ -204,7 +226,9 @@ def tumbled():
 def test_exponential_steps_have_their_order_and_stay_valid(order, tumbled):
     errors = []
     for count in (100, 200):
-        dcms = dcms_after_turns(np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, count + 1), order))
+        dcms = dcms_after_turns(
+            np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, count + 1), order)
+        )
         assert dcms.shape == (count + 1, 3, 3)
         assert abs(dcms[-1] @ dcms[-1].T - np.eye(3)).max() < 1e-13
         excess = dcms[-1] - tumbled
@@ -247,7 +271,9 @@ def test_steps_refuse_what_they_cannot_read():
 
 
 def test_restoring_the_matrix_leaves_the_error_of_the_orientation_as_it_is():
-    """The nearest valid matrix of a Runge-Kutta run is as wrong as that of a run restored at every step."""
+    """The nearest valid matrix of a Runge-Kutta run is as wrong as that of a run restored at every
+    step.
+    """
     from orientation import nearest_dcm
 
     h, count = 0.02, 200
@@ -262,6 +288,8 @@ def test_restoring_the_matrix_leaves_the_error_of_the_orientation_as_it_is():
             return c + h / 6 * (a + 2 * b + 2 * d + dcm_rate(c + h * d, tumbling(t + h)))
 
         plain, restored = step(plain), nearest_dcm(step(restored)).dcm
-    truth = dcms_after_turns(np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, 4001)))[-1]
+    truth = dcms_after_turns(
+        np.eye(3), turns_from_angular_velocity(tumbling, np.linspace(0, 4, 4001))
+    )[-1]
     errors = [angle_between(nearest_dcm(plain).dcm, truth), angle_between(restored, truth)]
     assert errors[0] > 1e-8 and abs(errors[0] / errors[1] - 1) < 1e-4

@@ -20,12 +20,20 @@ def seen(dcm, directions):
 
 
 def davenport(observed, reference, weights):
-    """Davenport's q-method, as a second way: the eigenvector of the largest eigenvalue of a 4 by 4 matrix."""
+    """Davenport's q-method, as a second way: the eigenvector of the largest eigenvalue of a 4 by 4
+    matrix.
+    """
     profile = np.einsum("k,ki,kj->ij", weights, observed, reference)
     z = sum(w * np.cross(b, n) for w, b, n in zip(weights, observed, reference, strict=True))
-    K = np.block([[profile + profile.T - np.trace(profile) * np.eye(3), z[:, None]], [z[None, :], np.trace(profile)]])
+    K = np.block(
+        [
+            [profile + profile.T - np.trace(profile) * np.eye(3), z[:, None]],
+            [z[None, :], np.trace(profile)],
+        ]
+    )
     x, y, z, w = np.linalg.eigh(K)[1][:, -1]
-    # The eigenvector is the quaternion in the convention of the attitude matrix: its matrix is Shuster's (1993) A(q).
+    # The eigenvector is the quaternion in the convention of the attitude matrix: its matrix is
+    # Shuster's (1993) A(q).
     return Rotation.from_quat([x, y, z, w]).as_matrix().T
 
 
@@ -63,11 +71,15 @@ def test_batches_are_single_ones_together():
     dcms, reference = random_dcms(20, 5), random_unit_vectors(4, 6)
     observed = seen(dcms, reference) + 0.05 * np.random.default_rng(7).normal(size=(20, 4, 3))
     together = dcm_from_directions(observed, reference)
-    assert np.allclose(together, [dcm_from_directions(one, reference) for one in observed], atol=1e-14)
+    assert np.allclose(
+        together, [dcm_from_directions(one, reference) for one in observed], atol=1e-14
+    )
 
 
 def test_covariance_is_what_many_noisy_measurements_show():
-    """10,000 noisy sightings: the covariance of their errors is the one that is promised, within 5 per cent."""
+    """10,000 noisy sightings: the covariance of their errors is the one that is promised, within 5
+    per cent.
+    """
     source = np.random.default_rng(11)
     dcm = dcm_from_rotation_vector((0.4, -0.9, 1.3))
     reference = np.array([[1, 0, 0], [0.9, 0.3, 0.2], [0.7, -0.5, 0.5]])
@@ -75,7 +87,9 @@ def test_covariance_is_what_many_noisy_measurements_show():
     deviations = np.array([0.002, 0.004, 0.003])
     exact = seen(dcm, reference)
     noisy = exact + deviations[:, None] * source.normal(size=(10_000, 3, 3))
-    errors = rotation_vector_from_dcm(dcm @ dcm_from_directions(noisy, reference, deviations).swapaxes(-1, -2))
+    errors = rotation_vector_from_dcm(
+        dcm @ dcm_from_directions(noisy, reference, deviations).swapaxes(-1, -2)
+    )
     promised = directions_covariance(exact, deviations)
     scale = np.sqrt(np.outer(np.diag(promised), np.diag(promised)))
     assert np.abs(np.cov(errors.T) / scale - promised / scale).max() < 0.05

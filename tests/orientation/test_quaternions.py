@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
-from orientations import COORDINATE_AXES, random_dcms, random_unit_vectors, rotation_error, unit_vectors_after_turn
+from orientations import (
+    COORDINATE_AXES,
+    random_dcms,
+    random_unit_vectors,
+    rotation_error,
+    unit_vectors_after_turn,
+)
 from scipy.spatial.transform import Rotation
 
 from orientation import (
@@ -22,10 +28,12 @@ ONE, I, J, K = np.eye(4)
 
 def up_to_sign(quaternions, others):
     quaternions, others = np.atleast_2d(quaternions), np.atleast_2d(others)
-    return np.minimum(abs(quaternions - others).max(axis=1), abs(quaternions + others).max(axis=1)).max()
+    return np.minimum(
+        abs(quaternions - others).max(axis=1), abs(quaternions + others).max(axis=1)
+    ).max()
 
 
-# --- to a matrix --------------------------------------------------------------------------------------
+# --- to a matrix ----------------------------------------------------------------------------------
 
 
 def test_symbols_agree_with_reference_frames():
@@ -38,13 +46,20 @@ def test_rows_are_the_turned_unit_vectors():
     for axis in [*COORDINATE_AXES, *random_unit_vectors(5, 1)]:
         for angle in (-3, 0.2, 2, 4):
             quaternion = np.array([np.cos(angle / 2), *np.sin(angle / 2) * axis])
-            assert rotation_error(dcm_from_quaternion(quaternion), unit_vectors_after_turn(axis, angle)) < 1e-12
+            assert (
+                rotation_error(
+                    dcm_from_quaternion(quaternion), unit_vectors_after_turn(axis, angle)
+                )
+                < 1e-12
+            )
 
 
 def test_numbers_agree_with_scipy():
     quaternions = random_unit_vectors(2000, 2, size=4)
     scipy = Rotation.from_quat(quaternions, scalar_first=True)
-    assert rotation_error(dcm_from_quaternion(quaternions), scipy.as_matrix().swapaxes(1, 2)) < 1e-14
+    assert (
+        rotation_error(dcm_from_quaternion(quaternions), scipy.as_matrix().swapaxes(1, 2)) < 1e-14
+    )
     assert up_to_sign(quaternion_from_dcm(scipy.as_matrix().swapaxes(1, 2)), quaternions) < 5e-15
 
 
@@ -55,13 +70,20 @@ def test_a_quaternion_and_its_negative_are_one_orientation():
 
 @pytest.mark.parametrize("digits", (4, 6, 9))
 def test_a_printed_quaternion_is_refused_with_what_to_do_and_taken_when_it_is_done(digits):
-    """Nine digits are few enough to be refused: a tolerance that lets print through would let faults through."""
+    """Nine digits are few enough to be refused: a tolerance that lets print through would let
+    faults through.
+    """
     exact = random_unit_vectors(200, 9, size=4)
     printed = np.array([[float(f"{number:.{digits}f}") for number in row] for row in exact])
-    with pytest.raises(ValueError, match="rounded when an instrument.*divide by the length: q / numpy.linalg.norm"):
+    with pytest.raises(
+        ValueError, match="rounded when an instrument.*divide by the length: q / numpy.linalg.norm"
+    ):
         dcm_from_quaternion(printed)
     restored = printed / np.linalg.norm(printed, axis=-1, keepdims=True)  # as the error says
-    assert rotation_error(dcm_from_quaternion(restored), dcm_from_quaternion(exact)) < 6 * 10.0**-digits
+    assert (
+        rotation_error(dcm_from_quaternion(restored), dcm_from_quaternion(exact))
+        < 6 * 10.0**-digits
+    )
 
 
 def test_what_is_taken_as_unit_makes_a_matrix_that_is_taken_as_valid():
@@ -79,7 +101,7 @@ def test_what_is_taken_as_unit_makes_a_matrix_that_is_taken_as_valid():
     assert 0 < refused < 41 * 50
 
 
-# --- and back -------------------------------------------------------------------------------------------
+# --- and back -------------------------------------------------------------------------------------
 
 NEAR_ZERO = [0.0, 1e-300, 1e-17, 1e-16, 1e-12, 1e-8, 1e-4]
 
@@ -98,9 +120,13 @@ def test_there_and_back_with_any_component_near_zero(place, value):
     assert up_to_sign(quaternion_from_dcm(dcm_from_quaternion(quaternions)), quaternions) < 5e-15
 
 
-@pytest.mark.parametrize("angle", [np.pi - 1e-3, np.pi - 1e-8, np.pi - 1e-15, np.pi, np.pi + 1e-8, 2 * np.pi, 0, 1e-12])
+@pytest.mark.parametrize(
+    "angle", [np.pi - 1e-3, np.pi - 1e-8, np.pi - 1e-15, np.pi, np.pi + 1e-8, 2 * np.pi, 0, 1e-12]
+)
 def test_there_and_back_near_half_and_full_turns(angle):
-    quaternions = quaternion_from_axis_angle(np.array([*COORDINATE_AXES, *random_unit_vectors(200, 7)]), angle)
+    quaternions = quaternion_from_axis_angle(
+        np.array([*COORDINATE_AXES, *random_unit_vectors(200, 7)]), angle
+    )
     dcms = dcm_from_quaternion(quaternions)
     assert up_to_sign(quaternion_from_dcm(dcms), quaternions) < 5e-15
     for dcm, quaternion in zip(dcms[:10], quaternions):
@@ -122,7 +148,7 @@ def test_from_a_noisy_matrix():
     assert up_to_sign(quaternion_from_dcm(noisy), quaternion_from_dcm(dcms)) < 3e-10
 
 
-# --- the product ------------------------------------------------------------------------------------------
+# --- the product ----------------------------------------------------------------------------------
 
 
 def test_hamiltons_rules():
@@ -132,13 +158,17 @@ def test_hamiltons_rules():
     assert (multiply_quaternions(I, J) == K).all() and (multiply_quaternions(J, I) == -K).all()
     assert (multiply_quaternions(J, K) == I).all() and (multiply_quaternions(K, I) == J).all()
     for unit in (ONE, I, J, K):
-        assert (multiply_quaternions(ONE, unit) == unit).all() and (multiply_quaternions(unit, ONE) == unit).all()
+        assert (multiply_quaternions(ONE, unit) == unit).all() and (
+            multiply_quaternions(unit, ONE) == unit
+        ).all()
 
 
 def test_product_of_symbols_agrees_with_sympy():
     others = sm.symbols("p_0, p_i, p_j, p_k")
     product = sm.Quaternion(*SYMBOLS) * sm.Quaternion(*others)
-    assert (multiply_quaternions(SYMBOLS, others) - sm.Matrix(product.args)).expand() == sm.zeros(4, 1)
+    assert (multiply_quaternions(SYMBOLS, others) - sm.Matrix(product.args)).expand() == sm.zeros(
+        4, 1
+    )
 
 
 def test_quaternions_stand_in_the_order_of_the_turns_and_matrices_in_the_other():
@@ -154,7 +184,9 @@ def test_quaternions_stand_in_the_order_of_the_turns_and_matrices_in_the_other()
 
 def test_product_agrees_with_scipy():
     first, second = random_unit_vectors(500, 13, size=4), random_unit_vectors(500, 14, size=4)
-    scipy = Rotation.from_quat(first, scalar_first=True) * Rotation.from_quat(second, scalar_first=True)
+    scipy = Rotation.from_quat(first, scalar_first=True) * Rotation.from_quat(
+        second, scalar_first=True
+    )
     assert up_to_sign(multiply_quaternions(first, second), scipy.as_quat(scalar_first=True)) < 1e-15
 
 
@@ -162,7 +194,7 @@ def test_lengths_multiply_and_are_not_restored():
     np.testing.assert_allclose(multiply_quaternions((2, 0, 0, 0), (0, 0, 3, 4)), (0, 0, 6, 8))
 
 
-# --- errors -------------------------------------------------------------------------------------------------
+# --- errors ---------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -188,6 +220,10 @@ def test_symbols_cannot_be_taken_back():
 def test_exact_numbers_stay_exact():
     dcm = dcm_from_quaternion((sm.Rational(3, 5), 0, 0, sm.Rational(4, 5)))
     assert dcm == sm.Matrix(
-        [[sm.Rational(-7, 25), sm.Rational(24, 25), 0], [sm.Rational(-24, 25), sm.Rational(-7, 25), 0], [0, 0, 1]]
+        [
+            [sm.Rational(-7, 25), sm.Rational(24, 25), 0],
+            [sm.Rational(-24, 25), sm.Rational(-7, 25), 0],
+            [0, 0, 1],
+        ]
     )
     check_dcm(dcm)

@@ -1,4 +1,6 @@
-"""Changes of the mathematics that no other test had noticed: each is noticed here. `make mutants` looks for more."""
+"""Changes of the mathematics that no other test had noticed: each is noticed here. `make mutants`
+looks for more.
+"""
 
 import mpmath
 import numpy as np
@@ -23,7 +25,9 @@ from orientation import (
 def test_slerp_keeps_all_digits_however_near_the_two_are(exponent):
     for mantissa in (1.0, 3.7, 9.9):
         half = mantissa * 10.0**exponent / 10
-        found = interpolate_quaternions((1, 0, 0, 0), (float(mpmath.cos(half)), 0, float(mpmath.sin(half)), 0), 0.3)
+        found = interpolate_quaternions(
+            (1, 0, 0, 0), (float(mpmath.cos(half)), 0, float(mpmath.sin(half)), 0), 0.3
+        )
         with mpmath.workdps(40):
             right = float(mpmath.sin(mpmath.mpf("0.3") * half))
         assert found[2] == pytest.approx(right, rel=2e-15 if exponent > -300 else 1e-12)
@@ -39,7 +43,9 @@ def test_no_way_is_shorter_between_orientations_half_a_turn_apart(scalar):
 @pytest.mark.parametrize("scalar", [1e-10, -1e-10, 1e-6])
 def test_one_way_is_shorter_as_soon_as_they_are_nearer(scalar):
     found = interpolate_quaternions((1, 0, 0, 0), (scalar, 0.6, 0.8, 0), 0.5)
-    assert np.allclose(found, np.array([1, *np.sign(scalar) * np.array([0.6, 0.8, 0])]) / np.sqrt(2), atol=1e-5)
+    assert np.allclose(
+        found, np.array([1, *np.sign(scalar) * np.array([0.6, 0.8, 0])]) / np.sqrt(2), atol=1e-5
+    )
 
 
 # ---- very small turns --------------------------------------------------------------------------
@@ -63,7 +69,9 @@ def cost(vector, dcms, weights):
 
 @pytest.mark.parametrize("seed", [16, 21, 29, 41])
 def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
-    """Beyond a quarter turn the place that averaging leads to from the first guess need not be the best."""
+    """Beyond a quarter turn the place that averaging leads to from the first guess need not be the
+    best.
+    """
     dcms, weights = random_orientations(4, seed), np.full(4, 0.25)
     found = mean_orientation(dcms, metric="angle")
     starts = Rotation.random(12, random_state=seed).as_rotvec()
@@ -71,11 +79,15 @@ def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
     assert weights @ angle_between(dcms, found) ** 2 <= best + 1e-6
 
 
-@pytest.mark.parametrize(("size", "words"), [(1e-155, "too short"), (1e-160, "too short"), (1e152, "too long")])
+@pytest.mark.parametrize(
+    ("size", "words"), [(1e-155, "too short"), (1e-160, "too short"), (1e152, "too long")]
+)
 def test_an_axis_whose_square_loses_digits_is_refused(size, words):
     """Its square is a number still, or infinite: a matrix would come out, and be no rotation."""
     axis = size * np.array([0.6, 0, 0.8])
     for one in (axis.tolist(), np.stack([axis] * 3)):
         with pytest.raises(ValueError, match=words):
             dcm_from_axis_angle(one, 0.3)
-    assert same_orientation(dcm_from_axis_angle(axis / size * 1e100, 0.3), dcm_from_axis_angle((0.6, 0, 0.8), 0.3))
+    assert same_orientation(
+        dcm_from_axis_angle(axis / size * 1e100, 0.3), dcm_from_axis_angle((0.6, 0, 0.8), 0.3)
+    )

@@ -1,6 +1,8 @@
-"""The traps that the book warns of are real in the versions it runs with, and the package has none of them.
+"""The traps that the book warns of are real in the versions it runs with, and the package has none
+of them.
 
-If one of these tests fails after an update, a library has changed, and so must the page that says so.
+If one of these tests fails after an update, a library has changed, and so must the page that says
+so.
 """
 
 import warnings
@@ -34,7 +36,7 @@ def frames_of_sympy(names):
     return (me.ReferenceFrame(name) for name in names)
 
 
-# --- SymPy -------------------------------------------------------------------------------------------------
+# --- SymPy ----------------------------------------------------------------------------------------
 
 
 def test_reference_frames_keep_the_old_matrix_when_a_cell_is_run_again():
@@ -131,7 +133,7 @@ def test_simplify_does_not_see_that_two_forms_are_equal():
     assert same_orientation(other, ours)
 
 
-# --- SciPy -------------------------------------------------------------------------------------------------
+# --- SciPy ----------------------------------------------------------------------------------------
 
 ANGLES = (0.1, 0.2, 0.3)
 
@@ -152,7 +154,9 @@ def test_scipy_returns_the_transpose():
     rotation = Rotation.from_euler("ZXY", ANGLES)
     assert rotation_error(rotation.as_matrix().T, D_C_A) < 1e-15
     assert rotation_error(rotation.as_matrix(), D_C_A) > 0.1
-    assert diagnose(rotation.as_matrix(), D_C_A).causes == ("it is the transpose, the orientation the other way round",)
+    assert diagnose(rotation.as_matrix(), D_C_A).causes == (
+        "it is the transpose, the orientation the other way round",
+    )
 
 
 def test_scipy_has_the_scalar_last():
@@ -167,7 +171,11 @@ def test_scipy_1_17_wants_one_angle_for_each_axis_in_the_last_dimension():
     assert Rotation.from_euler("z", [0.3]).as_matrix().shape == (3, 3)
     with pytest.raises(ValueError, match="last dimension of `angles`"):
         Rotation.from_euler("z", [0.3, 0.4])
-    assert simple_dcm("z", [0.3]).shape == (1, 3, 3) and simple_dcm("z", [0.3, 0.4]).shape == (2, 3, 3)
+    assert simple_dcm("z", [0.3]).shape == (1, 3, 3) and simple_dcm("z", [0.3, 0.4]).shape == (
+        2,
+        3,
+        3,
+    )
 
 
 def test_scipy_repairs_without_a_word():
@@ -193,7 +201,7 @@ def test_scipy_snaps_to_gimbal_lock_near_it(sequence, lock):
     assert rotation_error(composed(ours, sequence), dcm) < 1e-14
 
 
-# --- formulas -------------------------------------------------------------------------------------------------
+# --- formulas -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("angle", [1e-7, np.pi - 1e-7])
@@ -214,7 +222,7 @@ def test_division_by_the_scalar_part_loses_the_axis_near_half_a_turn():
     assert abs(axis_angle_from_dcm(dcm)[0][0] - exact) < 1e-15
 
 
-# --- the two slips of the source chapter ---------------------------------------------------------------------------
+# --- the two slips of the source chapter ----------------------------------------------------------
 
 
 def test_third_line_of_the_dot_product_block_is_about_a_z():
@@ -234,7 +242,9 @@ def test_answer_of_the_exercise_on_orient_explicit_is_the_transpose_of_what_is_a
     D.orient_axis(F, F.y, beta)
     asked = D.dcm(F)
     # Shown: a matrix called F_C_D, and F.orient_explicit(D, F_C_D.transpose()), then F.dcm(D).
-    shown = sm.Matrix([[sm.cos(beta), 0, -sm.sin(beta)], [0, 1, 0], [sm.sin(beta), 0, sm.cos(beta)]])
+    shown = sm.Matrix(
+        [[sm.cos(beta), 0, -sm.sin(beta)], [0, 1, 0], [sm.sin(beta), 0, sm.cos(beta)]]
+    )
     D, F = frames_of_sympy("DF")
     F.orient_explicit(D, shown.transpose())
     assert F.dcm(D) == shown

@@ -1,4 +1,6 @@
-"""What editors and type checkers are told of a result: an array for numbers, a matrix of SymPy for symbols."""
+"""What editors and type checkers are told of a result: an array for numbers, a matrix of SymPy for
+symbols.
+"""
 
 import subprocess
 import sys
@@ -39,9 +41,19 @@ simple_dcm(0.3, "z")
 def test_the_kind_of_a_result_follows_from_that_of_the_arguments(tmp_path):
     file = tmp_path / "program.py"
     file.write_text(PROGRAM)
-    command = [sys.executable, "-m", "mypy", "--ignore-missing-imports", "--follow-imports", "silent"]
+    command = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--ignore-missing-imports",
+        "--follow-imports",
+        "silent",
+    ]
     done = subprocess.run(
-        [*command, "--cache-dir", tmp_path / "cache", file], cwd=tmp_path, capture_output=True, text=True
+        [*command, "--cache-dir", tmp_path / "cache", file],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
     )
     last = f'program.py:{PROGRAM.count(chr(10))}: error: No overload variant of "simple_dcm"'
     errors = [line for line in done.stdout.splitlines() if " error: " in line]

@@ -71,19 +71,27 @@ json.dump(told, sys.stdout)
 def run(calls, how):
     command = [sys.executable, "-c", PROGRAM, how]
     return json.loads(
-        subprocess.run(command, input=json.dumps(calls), capture_output=True, text=True, check=True).stdout
+        subprocess.run(
+            command, input=json.dumps(calls), capture_output=True, text=True, check=True
+        ).stdout
     )
 
 
 def test_answers_and_their_looks_are_the_same():
     """Also the errors: a reader who has no NumPy is told the same thing."""
-    for call, without, with_numpy in zip(CALLS, run(CALLS, "without"), run(CALLS, "with"), strict=True):
+    for call, without, with_numpy in zip(
+        CALLS, run(CALLS, "without"), run(CALLS, "with"), strict=True
+    ):
         assert without == with_numpy, call
 
 
 def test_what_needs_numpy_says_so():
     """The page fetches it then: the error names the module."""
-    calls = ["simple_dcm('z', [0.1, 0.2])", "simple_dcm('z', 0.1).trace()", "simple_dcm('z', 0.1)[0, 0].round(2)"]
+    calls = [
+        "simple_dcm('z', [0.1, 0.2])",
+        "simple_dcm('z', 0.1).trace()",
+        "simple_dcm('z', 0.1)[0, 0].round(2)",
+    ]
     assert {kind for kind, _ in run(calls, "without")} == {"ModuleNotFoundError"}
     assert "numpy" in run(calls, "without")[0][1]
 
@@ -102,8 +110,14 @@ def test_shown_as_numpy_shows_it(shape):
 def test_arithmetic_is_that_of_numpy():
     random = np.random.default_rng(5)
     for _ in range(50):
-        one, two, vector = random.normal(size=(3, 3)), random.normal(size=(3, 3)), random.normal(size=3)
-        plain, other, row = (PlainArray.of(array.ravel().tolist(), array.shape) for array in (one, two, vector))
+        one, two, vector = (
+            random.normal(size=(3, 3)),
+            random.normal(size=(3, 3)),
+            random.normal(size=3),
+        )
+        plain, other, row = (
+            PlainArray.of(array.ravel().tolist(), array.shape) for array in (one, two, vector)
+        )
         for work in (
             lambda a, b, v: a + b,
             lambda a, b, v: a - v,
@@ -119,6 +133,8 @@ def test_arithmetic_is_that_of_numpy():
         ):
             assert work(plain, other, row).tolist() == work(one, two, vector).tolist()
         for work in (lambda a, b, v: a @ b, lambda a, b, v: a @ v, lambda a, b, v: v @ a):
-            assert np.allclose(work(plain, other, row).tolist(), work(one, two, vector), rtol=0, atol=1e-14)
+            assert np.allclose(
+                work(plain, other, row).tolist(), work(one, two, vector), rtol=0, atol=1e-14
+            )
         assert abs(row @ row - vector @ vector) < 1e-14
         assert np.allclose(np.array(plain) @ plain, one @ one, rtol=0, atol=1e-14)

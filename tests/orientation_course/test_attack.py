@@ -68,22 +68,55 @@ def test_an_answer_that_can_be_guessed_is_found():
 
 
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
-    """None of these is a turn about an axis through a special angle; each is one to three calls with what is given."""
+    """None of these is a turn about an axis through a special angle; each is one to three calls
+    with what is given.
+    """
     force, field, whole = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2], [4, -2, 5, 1]
     away = np.cross(force, np.cross(field, force))
     unit = np.array(whole) / np.linalg.norm(whole)
     vectors, quaternion = {"force": force, "field": field}, {"whole": whole, "field": field}
     angles = {"psi": 0.3, "theta": 0.8, "phi": -0.5, "field": field}
     rates = np.linalg.solve(angular_velocity_matrix([0.3, 0.8, -0.5], "zxy"), field)
-    turned, sky = dcm_from_rotation_vector(force).tolist(), r"It is $-\tfrac{3}{5}\hat{n}_x + \tfrac{4}{5}\hat{n}_z$."
+    turned, sky = (
+        dcm_from_rotation_vector(force).tolist(),
+        r"It is $-\tfrac{3}{5}\hat{n}_x + \tfrac{4}{5}\hat{n}_z$.",
+    )
     tried = {
         "a cross product": ("vector", np.cross(field, force).tolist(), {}, vectors, "", 300),
-        "its length": ("expression", float(np.linalg.norm(np.cross(field, force))), {}, vectors, "", 3000),
-        "a rotation vector": ("direction cosine matrix", dcm_from_rotation_vector(force), FRAMES, vectors, "", 3000),
+        "its length": (
+            "expression",
+            float(np.linalg.norm(np.cross(field, force))),
+            {},
+            vectors,
+            "",
+            3000,
+        ),
+        "a rotation vector": (
+            "direction cosine matrix",
+            dcm_from_rotation_vector(force),
+            FRAMES,
+            vectors,
+            "",
+            3000,
+        ),
         "two directions": ("vector", (away / np.linalg.norm(away)).tolist(), {}, vectors, "", 6000),
-        "turned": ("vector", (np.asarray(dcm_from_quaternion(unit)).T @ field).tolist(), {}, quaternion, "", 6000),
+        "turned": (
+            "vector",
+            (np.asarray(dcm_from_quaternion(unit)).T @ field).tolist(),
+            {},
+            quaternion,
+            "",
+            6000,
+        ),
         "of a gimbal": ("vector", rates.tolist(), {}, angles, "The gimbal is z-x-y.", 6000),
-        "angles with the axes": ("vector", np.degrees(np.arccos(unit[:3])).tolist(), {}, {"row": whole}, "", 20000),
+        "angles with the axes": (
+            "vector",
+            np.degrees(np.arccos(unit[:3])).tolist(),
+            {},
+            {"row": whole},
+            "",
+            20000,
+        ),
         "a matrix and a row": ("matrix", [*turned, field], {"shape": (4, 3)}, vectors, "", 20000),
         "a sum in the text": (
             "direction cosine matrix",
@@ -95,7 +128,9 @@ def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
         ),
     }
     for name, (kind, answer, about, data, text, most) in tried.items():
-        found = attack(question("trial/data", kind, answer, variant=Variant(0, 2, data), **about), text)
+        found = attack(
+            question("trial/data", kind, answer, variant=Variant(0, 2, data), **about), text
+        )
         assert found.way and found.tries < most, (name, found)
 
 
@@ -103,13 +138,17 @@ def test_turns_are_composed_of_which_one_begins_at_a_quarter_turn():
     """As where an angle is counted from the horizon, and the frame begins upright."""
     about = {"frames": ("T", "N"), "symbols": "alpha theta"}
     answer = simple_dcm("z", -alpha) * simple_dcm("y", theta - sm.pi / 2)
-    found = attack(question("trial/shifted", "direction cosine matrix", answer, **about), budget=4000)
+    found = attack(
+        question("trial/shifted", "direction cosine matrix", answer, **about), budget=4000
+    )
     assert "from a quarter turn on" in found.way
 
 
 @pytest.mark.long
 def test_a_function_of_turns_is_attacked_by_some_of_them():
-    """A question whose answer is a loop over the turns has candidates, and is found where one turn is enough."""
+    """A question whose answer is a loop over the turns has candidates, and is found where one turn
+    is enough.
+    """
 
     def first(turns):
         (_, angle), *_ = turns
@@ -119,7 +158,9 @@ def test_a_function_of_turns_is_attacked_by_some_of_them():
     about = {"result": "quaternion", "calls": calls, "tolerance": 1e-9}
     found = attack(question("trial/first", "function", first, **about), budget=2000)
     assert found.way.startswith("some of the turns") and found.tries < 100
-    found = attack(question("trial/none", "function", lambda turns: [0.6, 0, 0.48, 0.64], **about), budget=2000)
+    found = attack(
+        question("trial/none", "function", lambda turns: [0.6, 0, 0.48, 0.64], **about), budget=2000
+    )
     assert not found.way and found.tries > 30
 
 
@@ -127,7 +168,10 @@ def test_a_list_of_pairs_of_numbers_is_not_taken_for_turns():
     """The attack once stopped with an error at a function that is given points of a plane."""
     calls = [[[[0.3, 0.5], [1.0, 2.0]]], [[[-1.1, 0.2]]]]
     about = {"result": "quaternion", "calls": calls, "tolerance": 1e-9}
-    found = attack(question("trial/plane", "function", lambda points: [0.6, 0, 0.48, 0.64], **about), budget=100)
+    found = attack(
+        question("trial/plane", "function", lambda points: [0.6, 0, 0.48, 0.64], **about),
+        budget=100,
+    )
     assert not found.way
 
 
@@ -141,7 +185,11 @@ def test_fingerprints_in_double_precision_are_those_of_the_check():
     chance = random.Random(SEED)
     for one in (GIMBAL, NUMBER, ABOUT_X):
         for _ in range(20):
-            form = random_form(one.public, one.answer, chance) if one is not NUMBER else chance.uniform(-3, 3)
+            form = (
+                random_form(one.public, one.answer, chance)
+                if one is not NUMBER
+                else chance.uniform(-3, 3)
+            )
             reading = read(one.public, to_plain(form))
             numbers = np.array([[float(number) for number in canonical(one.public, reading)]])
             assert fingerprints_of(one.public, numbers) == [fingerprint(one.public, reading)]
@@ -168,17 +216,29 @@ def with_formulas(names):
 
 
 def differs(one, answer):
-    """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of its own."""
-    first, second = ([in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer))
+    """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of
+    its own.
+    """
+    first, second = (
+        [in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer)
+    )
     chance = random.Random(one.name)
     limits = one.public.symbols
     for _ in range(25):
-        point = {sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()}
-        point |= {symbol: point[sm.Symbol(symbol.name)] for symbol in unknown(first) if symbol not in point}
+        point = {
+            sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()
+        }
+        point |= {
+            symbol: point[sm.Symbol(symbol.name)]
+            for symbol in unknown(first)
+            if symbol not in point
+        }
         for group in one.public.unit:
             length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
             point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
-        values = [[sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)]
+        values = [
+            [sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)
+        ]
         signs = (1, -1) if one.public.either_sign else (1,)
         if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
             return True
@@ -186,10 +246,14 @@ def differs(one, answer):
 
 
 def in_symbols(entry):
-    """An expression with its functions of time, and their derivatives, as the symbols that stand for them."""
+    """An expression with its functions of time, and their derivatives, as the symbols that stand
+    for them.
+    """
     rates = {rate: sm.Symbol(f"{rate.expr.func.__name__}'") for rate in entry.atoms(sm.Derivative)}
     entry = entry.xreplace(rates)
-    return entry.xreplace({part: sm.Symbol(part.func.__name__) for part in entry.atoms(AppliedUndef)})
+    return entry.xreplace(
+        {part: sm.Symbol(part.func.__name__) for part in entry.atoms(AppliedUndef)}
+    )
 
 
 def unknown(entries):
@@ -220,7 +284,9 @@ def try_roots(names):
 
 
 def test_no_root_passes_for_a_cosine():
-    """Found in the first edition: these agree where the cosine is positive, and the points were there only."""
+    """Found in the first edition: these agree where the cosine is positive, and the points were
+    there only.
+    """
     assert try_roots(["cases-from-practice", "orientation-in-motion"]) >= 10
 
 
@@ -252,7 +318,9 @@ def test_no_mutant_of_any_answer_passes():
 
 
 def try_forms(names, number):
-    """Check right answers in many forms, and mark them at the points of a secret too; gives how many were tried."""
+    """Check right answers in many forms, and mark them at the points of a secret too; gives how
+    many were tried.
+    """
     tried, secretly = 0, 0
     for name in names:
         for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
@@ -267,7 +335,9 @@ def try_forms(names, number):
                 said = Answer("recorded", json.loads(json.dumps(plain)))
                 if known.secret and known.secret.calls:
                     calls = calls_for(known.secret.of(one.public))
-                    said = replace(said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest})
+                    said = replace(
+                        said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest}
+                    )
                 found = marking.mark(one.name, Asked(known), said)
                 assert found.points == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
                 tried += 1

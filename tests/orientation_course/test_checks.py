@@ -57,23 +57,47 @@ def make(name="trial/gimbal", kind="direction cosine matrix", answer=GIMBAL, **a
 KINDS = {
     "symbols in a matrix": make(),
     "numbers in a matrix": make(
-        "trial/n", answer=dcm_from_body_fixed((sm.pi / 3, sm.pi / 5, -sm.pi / 7), "zxy"), frames=("D", "A")
+        "trial/n",
+        answer=dcm_from_body_fixed((sm.pi / 3, sm.pi / 5, -sm.pi / 7), "zxy"),
+        frames=("D", "A"),
     ),
     "a quaternion": make(
-        "trial/q", "quaternion", quaternion_from_axis_angle((1, 0, 0), theta), symbols="theta", turns=[("x", theta)]
+        "trial/q",
+        "quaternion",
+        quaternion_from_axis_angle((1, 0, 0), theta),
+        symbols="theta",
+        turns=[("x", theta)],
     ),
-    "numbers in a quaternion": make("trial/qn", "quaternion", sm.Matrix([sm.sqrt(2) / 2, 0, -sm.sqrt(2) / 2, 0])),
-    "a vector": make("trial/v", "vector", TWO * sm.Matrix([1, 2, 0]), symbols="theta alpha", turned=(TWO, [1, 2, 0])),
-    "another matrix": make("trial/m", "matrix", TWO.diff(theta)[:2, :], symbols="theta alpha", shape=(2, 3)),
-    "an expression": make("trial/e", "expression", sm.acos(sm.sin(theta) * sm.cos(alpha)), symbols="theta alpha"),
+    "numbers in a quaternion": make(
+        "trial/qn", "quaternion", sm.Matrix([sm.sqrt(2) / 2, 0, -sm.sqrt(2) / 2, 0])
+    ),
+    "a vector": make(
+        "trial/v",
+        "vector",
+        TWO * sm.Matrix([1, 2, 0]),
+        symbols="theta alpha",
+        turned=(TWO, [1, 2, 0]),
+    ),
+    "another matrix": make(
+        "trial/m", "matrix", TWO.diff(theta)[:2, :], symbols="theta alpha", shape=(2, 3)
+    ),
+    "an expression": make(
+        "trial/e", "expression", sm.acos(sm.sin(theta) * sm.cos(alpha)), symbols="theta alpha"
+    ),
     "a number": make("trial/en", "expression", sm.pi / 7, quantity="angle"),
     "Euler angles": make("trial/a", "Euler angles", [0.3, 0.5, -0.7], sequence="zxz"),
     "axis and angle": make(
-        "trial/aa", "axis and angle", [[sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)], sm.pi / 4]
+        "trial/aa",
+        "axis and angle",
+        [[sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)], sm.pi / 4],
     ),
     "a sequence": make("trial/s", "sequence", "zxy"),
-    "truth values": make("trial/t", "truth values", [True, False, True, True, False, False, True, False], length=8),
-    "words": make("trial/w", "words", ["first", "last", "first"], options=["first", "last"], length=3),
+    "truth values": make(
+        "trial/t", "truth values", [True, False, True, True, False, False, True, False], length=8
+    ),
+    "words": make(
+        "trial/w", "words", ["first", "last", "first"], options=["first", "last"], length=3
+    ),
     "a function": make(
         "trial/f",
         "function",
@@ -114,7 +138,9 @@ def passes(one, answer):
 
 
 def try_forms(one, number):
-    """Draw forms of the right answer by this run's lot; there are few where algebra has nothing to change."""
+    """Draw forms of the right answer by this run's lot; there are few where algebra has nothing to
+    change.
+    """
     chance = random.Random(f"{SEED} {one.name}")
     if one.public.kind in ("sequence", "truth values", "words", "function"):
         number = min(number, 20)
@@ -175,15 +201,31 @@ def reply_to(one, answer):
     [
         (GIMBAL.T, "transposed", "A_C_D, the transpose of D_C_A"),
         (dcm_from_space_fixed((theta, alpha, phi), "zxy"), "other order", "space fixed"),
-        (simple_dcm("z", theta) * simple_dcm("x", alpha) * simple_dcm("y", phi), "other order", "right"),
+        (
+            simple_dcm("z", theta) * simple_dcm("x", alpha) * simple_dcm("y", phi),
+            "other order",
+            "right",
+        ),
         (GIMBAL.subs(alpha, -alpha), "sign of one turn", "second turn has the wrong sign"),
-        (dcm_from_body_fixed((phi, alpha, theta), "zxy"), "angles interchanged", "first turn and of the third"),
+        (
+            dcm_from_body_fixed((phi, alpha, theta), "zxy"),
+            "angles interchanged",
+            "first turn and of the third",
+        ),
         (dcm_from_body_fixed((theta, alpha, phi), "zxz"), "another sequence", "zxz"),
         (dcm_from_body_fixed((theta, alpha, phi), "xyz"), "another sequence", "xyz"),
         (simple_dcm("y", phi) * simple_dcm("z", theta), "turn missing", "second turn is missing"),
-        (GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}), "sign of every turn", "wrong sign"),
+        (
+            GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}),
+            "sign of every turn",
+            "wrong sign",
+        ),
         (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2 at"),
-        (GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)), "not orthogonal", "row"),
+        (
+            GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)),
+            "not orthogonal",
+            "row",
+        ),
         (sm.diag(1, -1, 1) * GIMBAL, "left-handed", "determinant is −1"),
         (
             GIMBAL.subs(theta, sm.Symbol("w")),
@@ -200,7 +242,11 @@ def reply_to(one, answer):
         (ReferenceFrame("E").x + ReferenceFrame("F").y, "unreadable", "not connected"),
         (ReferenceFrame("E"), "frame", "This is the frame E"),
         (ReferenceFrame("E").x, "shape", "a vector"),
-        (simple_dcm("x", sm.Rational(1, 3)), "", "a direction cosine matrix, but not the right one"),
+        (
+            simple_dcm("x", sm.Rational(1, 3)),
+            "",
+            "a direction cosine matrix, but not the right one",
+        ),
         (..., "", "in place of"),
         (None, "", "in place of"),
     ],
@@ -231,7 +277,11 @@ def test_the_reply_names_what_is_wrong(answer, note, words):
         ("a sequence", "zzx", "impossible sequence"),
         ("a sequence", "abc", "shape"),
         ("axis and angle", ([2, 1, -2], sm.pi / 4), "not unit length"),
-        ("axis and angle", ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4), "axis reversed"),
+        (
+            "axis and angle",
+            ([sm.Rational(-2, 3), sm.Rational(-1, 3), sm.Rational(-2, 3)], sm.pi / 4),
+            "axis reversed",
+        ),
         ("a function", lambda q: dcm_from_quaternion(q).T, "transposed"),
         ("a function", lambda q: 1 / 0, "raised an error"),
         ("a function", dcm_from_quaternion([1, 0, 0, 0]), "unreadable"),
@@ -245,8 +295,12 @@ def test_other_kinds_name_what_is_wrong(kind, answer, note):
     assert reply.messages and reply.outcome in ("wrong", "invalid")
 
 
-SIGNS = make("trial/r", "words", ["-i", "1", "k"], options=["1", "-1", "i", "-i", "k", "-k"], length=3)
-AXES = make("trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z", "-z", "none"], length=3)
+SIGNS = make(
+    "trial/r", "words", ["-i", "1", "k"], options=["1", "-1", "i", "-i", "k", "-k"], length=3
+)
+AXES = make(
+    "trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z", "-z", "none"], length=3
+)
 
 
 @pytest.mark.parametrize(
@@ -261,7 +315,10 @@ AXES = make("trial/up", "words", ["+x", "-z", "none"], options=["+x", "-x", "+z"
         (KINDS["a sequence"], "\uff3a\u2013\uff38\u2013\uff39"),
         (KINDS["a sequence"], "3-1-2"),
         (KINDS["a number"], 180 * units.degree / 7),
-        (KINDS["Euler angles"], [degrees * units.degree for degrees in (17.18873, 28.64789, -40.10705)]),
+        (
+            KINDS["Euler angles"],
+            [degrees * units.degree for degrees in (17.18873, 28.64789, -40.10705)],
+        ),
         (KINDS["truth values"], ["True", "False", "true", True, 0, sm.false, np.True_, "False"]),
         (KINDS["a number"], sm.pi / 7 + 0 * sm.Symbol("x")),
         (KINDS["a vector"], TWO * sm.Matrix([1, 2, 0]) * units.radian),
@@ -271,27 +328,62 @@ def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
     assert passes(one, answer)
 
 
-THREE, MATRIX = "The question wants a list of 3 components; this is ", "The question wants a matrix of 3 × 3; this is "
+THREE, MATRIX = (
+    "The question wants a list of 3 components; this is ",
+    "The question wants a matrix of 3 × 3; this is ",
+)
 
 
 @pytest.mark.parametrize(
     ("kind", "answer", "words"),
     [
-        ("a vector", ["1", "2", "0"], THREE + "a list that holds a text: numbers stand without quotation marks."),
+        (
+            "a vector",
+            ["1", "2", "0"],
+            THREE + "a list that holds a text: numbers stand without quotation marks.",
+        ),
         ("a vector", "[1, 2, 0]", THREE + "a text: write it without quotation marks."),
         ("a number", "0,5", "this is a text: write it without quotation marks."),
         ("a vector", [theta, ..., ...], THREE + "a list that is still blank in part."),
-        ("a vector", [theta, 1, [1, 2]], THREE + "a list with 3 entries, one of which is a list with 2 entries."),
+        (
+            "a vector",
+            [theta, 1, [1, 2]],
+            THREE + "a list with 3 entries, one of which is a list with 2 entries.",
+        ),
         ("a vector", sm.Matrix([1, 2, 0]) * units.meter, "the unit `meter`. Give numbers alone"),
-        ("numbers in a matrix", [["1", "0", "0"]] * 3, MATRIX + "a list that holds a text: numbers"),
-        ("numbers in a matrix", [[1, 0, 0], [0, 1], [0, 0, 1]], "a list of rows, one of which has 2 entries."),
-        ("numbers in a matrix", [[1, 0], [0, 1], [0, 0]], MATRIX + "a list of 3 rows with 2 entries each."),
-        ("numbers in a matrix", (GIMBAL, GIMBAL, GIMBAL), "3 entries, one of which is a matrix of 3 × 3."),
+        (
+            "numbers in a matrix",
+            [["1", "0", "0"]] * 3,
+            MATRIX + "a list that holds a text: numbers",
+        ),
+        (
+            "numbers in a matrix",
+            [[1, 0, 0], [0, 1], [0, 0, 1]],
+            "a list of rows, one of which has 2 entries.",
+        ),
+        (
+            "numbers in a matrix",
+            [[1, 0], [0, 1], [0, 0]],
+            MATRIX + "a list of 3 rows with 2 entries each.",
+        ),
+        (
+            "numbers in a matrix",
+            (GIMBAL, GIMBAL, GIMBAL),
+            "3 entries, one of which is a matrix of 3 × 3.",
+        ),
         ("words", ["first", None, "first"], "this is a list that is still blank in part."),
         ("truth values", [True] * 7 + [None], "this is a list that is still blank in part."),
-        ("truth values", [True] * 7 + [3], "a list with 8 entries, one of which is a single expression."),
+        (
+            "truth values",
+            [True] * 7 + [3],
+            "a list with 8 entries, one of which is a single expression.",
+        ),
         ("a number", sm.zoo, "The answer has no finite value"),
-        ("a number", 1 / (sm.zoo + sm.pi) + sm.Mul(sm.nan, 2, evaluate=False), "The answer has no finite value"),
+        (
+            "a number",
+            1 / (sm.zoo + sm.pi) + sm.Mul(sm.nan, 2, evaluate=False),
+            "The answer has no finite value",
+        ),
         ("numbers in a matrix", sm.eye(3) * sm.oo, "The answer has no finite value"),
     ],
 )
@@ -304,7 +396,9 @@ def test_the_reply_says_which_part_of_a_list_is_not_as_asked_for(kind, answer, w
 
 
 def test_a_function_that_ends_python_ends_nothing_but_its_own_answer():
-    reply = KINDS["a function"].reply_to(KINDS["a function"].to_plain(lambda quaternion: sys.exit()))
+    reply = KINDS["a function"].reply_to(
+        KINDS["a function"].to_plain(lambda quaternion: sys.exit())
+    )
     assert (reply.outcome, reply.note) == ("invalid", "raised an error")
 
 
@@ -319,14 +413,22 @@ def test_a_frame_is_not_said_to_be_connected_with_itself():
 
 @pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
 def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
-    """Of a matrix and of an axis: the remark on rounding comes before the fault of geometry, and only where it may."""
+    """Of a matrix and of an axis: the remark on rounding comes before the fault of geometry, and
+    only where it may.
+    """
     matrix = sm.Matrix([[8, 1, 4], [-4, 4, 7], [-1, -8, 4]]) / 9
     axis = [sm.Rational(2, 7), sm.Rational(3, 7), sm.Rational(6, 7)]
     for kind, answer, given in (
         ("direction cosine matrix", matrix, np.array(matrix, dtype=float).round(digits)),
-        ("axis and angle", [axis, sm.pi / 4], ([round(float(part), digits) for part in axis], 0.79)),
+        (
+            "axis and angle",
+            [axis, sm.pi / 4],
+            ([round(float(part), digits) for part in axis], 0.79),
+        ),
     ):
-        one = make("trial/round", kind, answer, **({"frames": ("S", "B")} if kind[0] == "d" else {}))
+        one = make(
+            "trial/round", kind, answer, **({"frames": ("S", "B")} if kind[0] == "d" else {})
+        )
         reply = one.reply_to(to_plain(given))
         assert reply.outcome == "invalid"
         assert ("rounded too far" in reply.messages[0]) == rounded, reply.messages
@@ -335,10 +437,16 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
 @pytest.mark.parametrize("digits", [1, 2])
 @pytest.mark.parametrize(
     ("kind", "answer"),
-    [("expression", 0.7391), ("vector", [1.2345, -0.6789, 0.4321]), ("matrix", [[0.1234, 1.4321], [2.3456, -0.7654]])],
+    [
+        ("expression", 0.7391),
+        ("vector", [1.2345, -0.6789, 0.4321]),
+        ("matrix", [[0.1234, 1.4321], [2.3456, -0.7654]]),
+    ],
 )
 def test_whoever_has_rounded_right_work_hears_of_the_rounding_first(kind, answer, digits):
-    """And not that the value is wrong, which is the most discouraging thing to hear of one's own right work."""
+    """And not that the value is wrong, which is the most discouraging thing to hear of one's own
+    right work.
+    """
     one = make("trial/rounded", kind, answer, **({"shape": (2, 2)} if kind == "matrix" else {}))
     reply = one.reply_to(to_plain(np.array(answer).round(digits).tolist()))
     said = reply.messages[0]
@@ -352,7 +460,10 @@ def test_no_turn_at_all_is_not_called_twice_half_a_turn():
     axis = [sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)]
     for half_turn in (sm.pi, np.pi, -3 * sm.pi):
         one = make("trial/half", "axis and angle", [axis, half_turn])
-        assert one.reply_to(to_plain((axis, 0))).note == "" and one.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
+        assert (
+            one.reply_to(to_plain((axis, 0))).note == ""
+            and one.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
+        )
     reply = KINDS["axis and angle"].reply_to(to_plain((axis, sm.pi / 2)))
     assert reply.note == "double" and reply.messages[0].startswith("The angle is twice")
 
@@ -360,7 +471,9 @@ def test_no_turn_at_all_is_not_called_twice_half_a_turn():
 @pytest.mark.parametrize("kind", ["numbers in a matrix", "numbers in a quaternion"])
 @pytest.mark.parametrize("off", [4, 6, 8])
 def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
-    """The transpose of what is nearly right is in the cell of the mistake "transposed"; but that is no mistake here."""
+    """The transpose of what is nearly right is in the cell of the mistake "transposed"; but that is
+    no mistake here.
+    """
     one = KINDS[kind]
     turned = np.array(
         dcm_from_body_fixed((np.pi / 3, np.pi / 5, -np.pi / 7), "zxy")
@@ -391,22 +504,32 @@ def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequenc
     )
     for mistake in one.mistakes:
         text = one.fingerprint_of(one.to_plain(mistake.answer))
-        assert (mistake.note, mistake.details) in one.entries[text].notes or passes(one, mistake.answer)
+        assert (mistake.note, mistake.details) in one.entries[text].notes or passes(
+            one, mistake.answer
+        )
 
 
 def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
     one, chance = KINDS["symbols in a matrix"], random.Random(4)
     for _ in range(300):
         axes = "".join(chance.choice("xyz") for _ in range(3))
-        angles = [chance.choice([-1, 1]) * chance.choice([theta, alpha, phi, theta / 2, alpha + phi]) for _ in range(3)]
+        angles = [
+            chance.choice([-1, 1]) * chance.choice([theta, alpha, phi, theta / 2, alpha + phi])
+            for _ in range(3)
+        ]
         answer = sm.eye(3)
         for axis, angle in zip(axes, angles):
             answer = simple_dcm(axis, angle) * answer
         entry = one.entries.get(one.fingerprint_of(one.to_plain(answer)))
         if entry and entry.outcome == "mistake":
-            said = [mistake for mistake in one.mistakes if (mistake.note, mistake.details) in entry.notes]
+            said = [
+                mistake
+                for mistake in one.mistakes
+                if (mistake.note, mistake.details) in entry.notes
+            ]
             assert said and all(
-                (mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12 for mistake in said
+                (mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12
+                for mistake in said
             )
 
 
@@ -425,15 +548,23 @@ def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkey
     right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
     one = make("trial/decimals", answer=right, frames=("B", "N"), symbols="theta", turns=turns)
     hidden, hashed = sealed(one), []
-    monkeypatch.setattr(sealing, "slow_key", lambda *known, slow=sealing.slow_key: hashed.append(known) or slow(*known))
+    monkeypatch.setattr(
+        sealing,
+        "slow_key",
+        lambda *known, slow=sealing.slow_key: hashed.append(known) or slow(*known),
+    )
     reply = questions.judge(one.name, hidden, one.to_plain(change(right).evalf(digits)))
     assert reply.note == note and ("decimal fractions" in repr(reply) or digits == 15)
     assert len(hashed) <= 2
 
 
 @pytest.mark.parametrize("threads", [True, False])
-def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(threads, monkeypatch):
-    """All digits that are no simple fraction's: rounded far, or with a slip? Both cost a slow hash."""
+def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(
+    threads, monkeypatch
+):
+    """All digits that are no simple fraction's: rounded far, or with a slip? Both cost a slow
+    hash.
+    """
     right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
     one = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
     both, looked = threading.Barrier(2), []
@@ -448,7 +579,9 @@ def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(
 
     if not threads:
         monkeypatch.setattr(threading.Thread, "start", refuse)
-    reply = questions.compare(one.name, one.public, one.to_plain((simple_dcm("y", 0.3) * right).evalf()), find)
+    reply = questions.compare(
+        one.name, one.public, one.to_plain((simple_dcm("y", 0.3) * right).evalf()), find
+    )
     assert reply.outcome == "wrong" and len(looked) == len(set(looked)) == 3
 
 
@@ -469,14 +602,18 @@ TOLERANT = {
 
 @pytest.mark.parametrize("one", TOLERANT.values(), ids=TOLERANT)
 def test_the_tolerance_is_exact_on_both_sides(one):
-    """An answer within `tolerance + relative * |right|` passes, one just beyond does not: whatever cell it is in."""
+    """An answer within `tolerance + relative * |right|` passes, one just beyond does not: whatever
+    cell it is in.
+    """
     entries, put = flat(one.answer)
     absolute, relative = one.public.tolerance, one.public.relative or 0
     sealed, chance = one.sealed(), random.Random(2)
     for place in range(len(entries)):
         for share, right in ((-0.9999, True), (0.9999, True), (-1.0001, False), (1.0001, False)):
             answer = [float(entry) for entry in entries]
-            answer = [x + chance.uniform(-1, 1) * 0.99 * (absolute + relative * abs(x)) for x in answer]
+            answer = [
+                x + chance.uniform(-1, 1) * 0.99 * (absolute + relative * abs(x)) for x in answer
+            ]
             exact = float(entries[place])
             answer[place] = exact + share * (absolute + relative * abs(exact))
             reply = questions.judge(one.name, sealed, one.to_plain(put(answer)))
@@ -516,7 +653,8 @@ def test_what_a_student_wrote_is_shown_and_not_obeyed(student):
 def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_not(student):
     check = student(
         make(
-            hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]}, ladder=["Begin with one turn."]
+            hints={"transposed": ["Look at the rows.", "Whose unit vectors are they?"]},
+            ladder=["Begin with one turn."],
         )
     )
 
@@ -534,7 +672,11 @@ def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_n
 
 
 def test_no_hint_that_is_not_yet_earned_stands_in_clear_on_the_disk(student, tmp_path):
-    one = make(hints={"transposed": ["Look at the rows."]}, ladder=["Begin with one turn."], solution="By hand.")
+    one = make(
+        hints={"transposed": ["Look at the rows."]},
+        ladder=["Begin with one turn."],
+        solution="By hand.",
+    )
     check = student(one)
     check("trial/gimbal", GIMBAL.T)
     text = json.dumps(one.sealed("CODE").as_json()) + "".join(
@@ -622,9 +764,17 @@ def test_formulas_are_mathml_where_nobody_typesets_tex(monkeypatch, sign):
 
 
 def test_the_slow_hash_is_the_standard_one_without_openssl_too():
-    for password, salt, rounds in ((b"", b"", 1), (b"p" * 70, b"s", 5), (b"password", b"salt", 1000)):
+    for password, salt, rounds in (
+        (b"", b"", 1),
+        (b"p" * 70, b"s", 5),
+        (b"password", b"salt", 1000),
+    ):
         expected = hashlib.pbkdf2_hmac("sha256", password, salt, rounds)
-        assert sealing.portable_pbkdf2(password, salt, rounds) == sealing.pbkdf2(password, salt, rounds) == expected
+        assert (
+            sealing.portable_pbkdf2(password, salt, rounds)
+            == sealing.pbkdf2(password, salt, rounds)
+            == expected
+        )
 
 
 def test_a_lock_opens_with_its_key_only_and_notices_a_change():
@@ -640,7 +790,9 @@ def test_a_lock_opens_with_its_key_only_and_notices_a_change():
 
 def test_a_locker_opens_with_its_key_only_and_notices_a_change():
     keys = [sealing.slow_key("00", str(number)) for number in range(3)]
-    lockers = sealing.pack([sealing.locker(keys[0], 0, [b"name"]), sealing.locker(keys[1], 1, [], 4, b"12345678")])
+    lockers = sealing.pack(
+        [sealing.locker(keys[0], 0, [b"name"]), sealing.locker(keys[1], 1, [], 4, b"12345678")]
+    )
     assert sealing.open_locker(lockers, keys[0]) == (0, None, b"name\0\0\0\0")
     assert sealing.open_locker(lockers, keys[1]) == (1, 4, b"12345678")
     assert sealing.open_locker(lockers, keys[2]) is None
@@ -649,14 +801,19 @@ def test_a_locker_opens_with_its_key_only_and_notices_a_change():
         changed = base64.b85encode(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         for key in keys[:2]:
             try:
-                assert sealing.open_locker(changed, key) in (None, sealing.open_locker(lockers, key))
+                assert sealing.open_locker(changed, key) in (
+                    None,
+                    sealing.open_locker(lockers, key),
+                )
             except ValueError as error:
                 assert "changed" in str(error)
 
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_no_page_can_be_tried_without_the_slow_hash(one):
-    """What a page says can often be known beforehand: so its key must cost as much as that of a locker."""
+    """What a page says can often be known beforehand: so its key must cost as much as that of a
+    locker.
+    """
     sealed, text = one.sealed(), one.fingerprint_of(one.plain)
     secrets = [hashlib.sha256(text.encode()).digest(), text.encode()[:64], b""]
     for content, _ in one.pages.contents.values():
@@ -673,7 +830,9 @@ def test_no_page_can_be_tried_without_the_slow_hash(one):
 def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
     sealed = one.sealed()
     data = base64.b85decode(sealed.lockers)
-    lockers = [data[start : start + sealing.LOCKER] for start in range(0, len(data), sealing.LOCKER)]
+    lockers = [
+        data[start : start + sealing.LOCKER] for start in range(0, len(data), sealing.LOCKER)
+    ]
     assert lockers == sorted(lockers) and len(lockers) == len(one.entries) + len(one.near)
     assert len(sealed.lockers) == 20 * len(lockers)
     assert one.sealed() == sealed
@@ -683,7 +842,10 @@ def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
 def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
     """The keys of the ladder follow from what is public, so its steps are general words."""
     general = {words for kind in plugins.kinds().values() for words in [kind.begin]}
-    general |= {f"It is built of {turns} turns, one after another. Check each of them alone." for turns in range(2, 9)}
+    general |= {
+        f"It is built of {turns} turns, one after another. Check each of them alone."
+        for turns in range(2, 9)
+    }
     opened = 0
     for folder in plugins.sealed_folders():
         for file in sorted(folder.iterdir()):
@@ -692,14 +854,23 @@ def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
                     one = questions.notebook_questions(name.partition("/")[0], number)[name]
                     for order, step in enumerate(one.ladder):
                         opened += 1
-                        assert sealing.unseal(step, questions.rung_key(one.question, order)) in general, (name, number)
+                        assert (
+                            sealing.unseal(step, questions.rung_key(one.question, order)) in general
+                        ), (name, number)
     assert opened > 500
-    about = {"solution": "It is 7. And this is a long way of saying so, longer than the first sentence by far."}
-    assert make("trial/said", "expression", 7, **about).ladder == [plugins.kinds()["expression"].begin]
+    about = {
+        "solution": "It is 7. And this is a long way of saying so, longer than the first "
+        "sentence by far."
+    }
+    assert make("trial/said", "expression", 7, **about).ladder == [
+        plugins.kinds()["expression"].begin
+    ]
 
 
 def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
-    """Nothing public but the seed of the points follows from the answer: no bit of a number, no order of lockers."""
+    """Nothing public but the seed of the points follows from the answer: no bit of a number, no
+    order of lockers.
+    """
     for one in KINDS.values():
         assert set(one.sealed().as_json()) <= {
             "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options", "tolerance", "relative",
@@ -707,7 +878,8 @@ def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
             "salt", "lockers", "pages", "ladder", "worth", "answer",
         }  # fmt: skip
         assert one.public.salt in [
-            hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16] for attempt in range(50)
+            hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16]
+            for attempt in range(50)
         ]
 
 
@@ -753,9 +925,16 @@ def test_a_form_fault_is_found_only_where_there_is_one():
 def test_products_of_quaternions_in_the_other_order_are_named():
     turns = [("x", theta), ("y", alpha)]
     first, second = (
-        quaternion_from_axis_angle(axis, angle) for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
+        quaternion_from_axis_angle(axis, angle)
+        for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
     )
-    one = make("trial/qq", "quaternion", multiply_quaternions(first, second), symbols="theta alpha", turns=turns)
+    one = make(
+        "trial/qq",
+        "quaternion",
+        multiply_quaternions(first, second),
+        symbols="theta alpha",
+        turns=turns,
+    )
     reply = reply_to(one, multiply_quaternions(second, first))
     assert reply.note == "other order"
     # The rule for matrices is another one, and this answer already follows it.
@@ -763,9 +942,13 @@ def test_products_of_quaternions_in_the_other_order_are_named():
 
 
 @pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
-@pytest.mark.parametrize("count", [3, pytest.param(2, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "count", [3, pytest.param(2, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)]
+)
 def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
-    """And not as the transpose with all the other signs, which is the same and which nobody has done."""
+    """And not as the transpose with all the other signs, which is the same and which nobody has
+    done.
+    """
     turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
     build = plugins.kinds()[kind].build
     one = make(
@@ -777,34 +960,51 @@ def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
         turns=turns,
     )
     for place in range(count):
-        slipped = [(axis, -angle if order == place else angle) for order, (axis, angle) in enumerate(turns)]
+        slipped = [
+            (axis, -angle if order == place else angle) for order, (axis, angle) in enumerate(turns)
+        ]
         reply = reply_to(one, build(slipped[::-1]))
         assert (reply.note, reply.details) == ("other order, sign of one turn", {"turn": place})
         assert "wrong order, and the angle of" in reply.messages[0] and len(reply.messages) == 1
 
 
 def test_messages_speak_of_what_was_asked_for():
-    """Quaternions, angles and sequences are no factors of a product of matrices, and have no columns."""
+    """Quaternions, angles and sequences are no factors of a product of matrices, and have no
+    columns.
+    """
     turns = [("x", theta), ("y", alpha)]
     product = make(
-        "trial/qq", "quaternion", plugins.kinds()["quaternion"].build(turns), symbols="theta alpha", turns=turns
+        "trial/qq",
+        "quaternion",
+        plugins.kinds()["quaternion"].build(turns),
+        symbols="theta alpha",
+        turns=turns,
     )
-    tried = [product, *(one for one in KINDS.values() if one.public.kind in ("quaternion", "axis and angle"))]
+    tried = [
+        product,
+        *(one for one in KINDS.values() if one.public.kind in ("quaternion", "axis and angle")),
+    ]
     for one in tried:
         for mistake in one.mistakes:
             if mistake.note != "authored":
-                assert "matrix" not in message(one.public, mistake.note, mistake.details).replace("with matrices", "")
+                assert "matrix" not in message(one.public, mistake.note, mistake.details).replace(
+                    "with matrices", ""
+                )
 
 
 def test_one_answer_gets_one_diagnosis():
-    """Where two mistakes lead to one answer, both are true of it; being told two things helps nobody."""
+    """Where two mistakes lead to one answer, both are true of it; being told two things helps
+    nobody.
+    """
     one = KINDS["symbols in a matrix"]
     for entry in one.entries.values():
         if entry.outcome == "mistake":
             assert len(one.reply_to(entry.plain).messages) == 1
 
 
-@pytest.mark.parametrize(("answer", "rounded"), [("0.87", True), ("0.9", True), ("0.8660254", False), ("0.5", False)])
+@pytest.mark.parametrize(
+    ("answer", "rounded"), [("0.87", True), ("0.9", True), ("0.8660254", False), ("0.5", False)]
+)
 def test_numbers_with_fewer_places_than_the_tolerance_are_called_rounded(answer, rounded):
     one = make("trial/few", "vector", [0.8660254, 0.31], length=2)
     reply = reply_to(one, [sm.Float(answer), 0.4711])
@@ -830,7 +1030,9 @@ def test_what_sympy_has_put_off_and_what_mechanics_makes_is_read():
         3 * sm.sin(dynamicsymbols("phi")),
     ):
         assert passes(one, answer), answer
-    rate = make("trial/rate", "expression", 2 * dynamicsymbols("varphi").diff(time), symbols="varphi'")
+    rate = make(
+        "trial/rate", "expression", 2 * dynamicsymbols("varphi").diff(time), symbols="varphi'"
+    )
     assert passes(rate, 2 * dynamicsymbols("phi").diff(time))
     assert passes(rate, 2 * sm.Symbol("phidot"))
     frames = [ReferenceFrame(name) for name in ("N", "A")]

@@ -1,6 +1,8 @@
-"""The container that the instructors' page shows: what it allows is tried from inside, with the very same options.
+"""The container that the instructors' page shows: what it allows is tried from inside, with the
+very same options.
 
-The image is not built here, which needs a registry: the files of this machine are laid out in its place.
+The image is not built here, which needs a registry: the files of this machine are laid out in its
+place.
 """
 
 import io
@@ -38,7 +40,9 @@ print(json.dumps(found))
 
 
 def shown():
-    """The options of ``podman run`` on the instructors' page, without the volumes and the command."""
+    """The options of ``podman run`` on the instructors' page, without the volumes and the
+    command.
+    """
     (command,) = re.findall(r"podman run (.*?) coursework grade", MANUAL, re.S)
     words = shlex.split(command.replace("\\\n", " "))
     volumes = [number for number, word in enumerate(words) if word == "--volume"]
@@ -46,11 +50,22 @@ def shown():
 
 
 def podman(place, *command, given=None):
-    """Run a command in a container with these options, and the files of this machine in place of an image's."""
+    """Run a command in a container with these options, and the files of this machine in place of an
+    image's.
+    """
     layout = place / "layout"
     for name in ("proc", "sys", "dev", "tmp", "etc", "run"):
         (layout / name).mkdir(parents=True, exist_ok=True)
-    paths = {*readable_paths(), "/usr", "/bin", "/lib", "/lib64", str(ROOT), sys.prefix, sys.base_prefix}
+    paths = {
+        *readable_paths(),
+        "/usr",
+        "/bin",
+        "/lib",
+        "/lib64",
+        str(ROOT),
+        sys.prefix,
+        sys.base_prefix,
+    }
     volumes = [
         argument
         for path in sorted(path for path in paths if os.path.exists(path))
@@ -58,15 +73,44 @@ def podman(place, *command, given=None):
         for argument in ("--volume", f"{path}:{path}:ro")
     ]
     volumes += ["--volume", f"{given}:/class"] if given else []
-    own = ["--root", place / "root", "--runroot", place / "run", "--tmpdir", place / "state", "--storage-driver", "vfs"]
-    options = [option for option in shown() if option != "--userns=keep-id"] + ["--user", "65534:65534"]
-    limits = ["--ulimit", "nofile=4096:4096", "--ulimit", "nproc=4096:4096"]  # a container may not raise its own
-    words = ["podman", *own, "--cgroup-manager", "cgroupfs", "run", "--cgroups=disabled", *limits, *options, *volumes]
+    own = [
+        "--root",
+        place / "root",
+        "--runroot",
+        place / "run",
+        "--tmpdir",
+        place / "state",
+        "--storage-driver",
+        "vfs",
+    ]
+    options = [option for option in shown() if option != "--userns=keep-id"] + [
+        "--user",
+        "65534:65534",
+    ]
+    limits = [
+        "--ulimit",
+        "nofile=4096:4096",
+        "--ulimit",
+        "nproc=4096:4096",
+    ]  # a container may not raise its own
+    words = [
+        "podman",
+        *own,
+        "--cgroup-manager",
+        "cgroupfs",
+        "run",
+        "--cgroups=disabled",
+        *limits,
+        *options,
+        *volumes,
+    ]
     line = shlex.join(map(str, [*words, "--rootfs", layout, *command]))
     if os.path.ismount("/sys/fs/cgroup/unified"):
         # Two kinds of control groups at once are too much for it: one is hidden, from nobody else.
         line = f"mount --make-rprivate / && umount /sys/fs/cgroup/unified && exec {line}"
-        return subprocess.run(["unshare", "--mount", "bash", "-c", line], capture_output=True, text=True)
+        return subprocess.run(
+            ["unshare", "--mount", "bash", "-c", line], capture_output=True, text=True
+        )
     return subprocess.run(["bash", "-c", line], capture_output=True, text=True)
 
 
@@ -83,25 +127,55 @@ def place(tmp_path_factory):
 
 def test_the_page_shows_a_container_without_a_network_that_nothing_can_be_written_in():
     options = shown()
-    assert {"--network=none", "--read-only", "--cap-drop=all", "--security-opt=no-new-privileges"} <= set(options)
+    assert {
+        "--network=none",
+        "--read-only",
+        "--cap-drop=all",
+        "--security-opt=no-new-privileges",
+    } <= set(options)
     recipe = (ROOT / "Containerfile").read_text("utf8")
     assert "USER 65534" in recipe and "coursework wheels" in recipe and "bubblewrap" in recipe
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf8"))["project"]
     copied = set(re.search(r"COPY (pyproject.toml .*) /book/", recipe)[1].split())
-    assert {"pyproject.toml", "constraints.txt", project["readme"], *project["license-files"]} == copied
+    assert {
+        "pyproject.toml",
+        "constraints.txt",
+        project["readme"],
+        *project["license-files"],
+    } == copied
     folders = set(re.findall(r"COPY (\w+) /book/\1", recipe))
-    assert folders == {"src", "coursework"} and all((ROOT / name).exists() for name in copied | folders)
+    assert folders == {"src", "coursework"} and all(
+        (ROOT / name).exists() for name in copied | folders
+    )
 
 
-#: What Docker's own filter of system calls denies to whoever has no privileges, of what keeping apart could use: as in
-#: profiles/seccomp/default.json of moby/moby. Podman's allows it.
+#: What Docker's own filter of system calls denies to whoever has no privileges, of what keeping
+#: apart could use: as in profiles/seccomp/default.json of moby/moby. Podman's allows it.
 NAMESPACE_OF_USERS = 0x10000000
 OF_DOCKER = {
     "defaultAction": "SCMP_ACT_ALLOW",
     "syscalls": [
         {
-            "names": ["unshare", "setns", "mount", "umount", "umount2", "mount_setattr", "move_mount", "open_tree"]
-            + ["fsopen", "fsmount", "fsconfig", "fspick", "pivot_root", "chroot", "sethostname", "bpf"],
+            "names": [
+                "unshare",
+                "setns",
+                "mount",
+                "umount",
+                "umount2",
+                "mount_setattr",
+                "move_mount",
+                "open_tree",
+            ]
+            + [
+                "fsopen",
+                "fsmount",
+                "fsconfig",
+                "fspick",
+                "pivot_root",
+                "chroot",
+                "sethostname",
+                "bpf",
+            ],
             "action": "SCMP_ACT_ERRNO",
             "errnoRet": 1,
         },
@@ -136,7 +210,9 @@ def test_isolation_holds_inside(place, engine, monkeypatch):
     assert found["user"] == 65534 and set(found["capabilities"]) == {"0"}
     assert found["interfaces"] in ([], ["lo"]) and found["writable"] == []
     assert found["lacking"] == [], found
-    assert ("namespaces" in found["layers"]) == (engine == "podman") and "landlock" in found["layers"]
+    assert ("namespaces" in found["layers"]) == (engine == "podman") and "landlock" in found[
+        "layers"
+    ]
 
 
 @pytest.mark.long
@@ -163,5 +239,10 @@ def test_a_class_is_graded_inside(place):
     )
     for found in (inside, outside):
         del found["run.log"], found["lock"]
-    assert {"report.html", "grades.csv", "feedback/right/turns.html", "records/right/turns.json"} <= set(inside)
+    assert {
+        "report.html",
+        "grades.csv",
+        "feedback/right/turns.html",
+        "records/right/turns.json",
+    } <= set(inside)
     assert inside == outside

@@ -1,4 +1,6 @@
-"""What one door takes, all take: an answer on a laptop, on a page, in JupyterLite and before the grader."""
+"""What one door takes, all take: an answer on a laptop, on a page, in JupyterLite and before the
+grader.
+"""
 
 import ast
 import inspect
@@ -23,9 +25,12 @@ from coursework.grading.judging.marking import asked_of_sandbox, mark, questions
 from coursework.grading.record import Answer
 
 SOURCES = sorted(find_course().sources.glob("*.ipynb"))
-LIMITS = Limits(cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, notebook_wall_seconds=900)
-#: Stands before a notebook with solutions, some of which look at parameters that students do not get: gives those of
-#: variant 0, with no package of ours, since the grader shows none of them to a notebook.
+LIMITS = Limits(
+    cell_seconds=120, cell_wall_seconds=400, notebook_seconds=600, notebook_wall_seconds=900
+)
+#: Stands before a notebook with solutions, some of which look at parameters that students do not
+#: get: gives those of variant 0, with no package of ours, since the grader shows none of them to a
+#: notebook.
 DRAW = "\n".join(
     [
         "import hashlib, html, random, re",
@@ -52,14 +57,17 @@ def cells_of(path):
     return [DRAW, *codes]
 
 
-#: What becomes of the author's own solution: right; taken down, in an exam; or put before a person, who alone can say.
+#: What becomes of the author's own solution: right; taken down, in an exam; or put before a person,
+#: who alone can say.
 RIGHT = {"correct", "recorded", "undecided"}
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 @pytest.mark.sampled(4)
 def test_every_authors_solution_is_right_through_every_door(path):
-    """Where a cell needs the real NumPy, it says so, and the answer is right with it, whatever was made before."""
+    """Where a cell needs the real NumPy, it says so, and the answer is right with it, whatever was
+    made before.
+    """
     here, *others = (doors.through(door, [cells_of(path)])[0][0] for door in doors.DOORS)
     assert here and {outcome for outcome, _ in here.values()} <= RIGHT
     assert others == [here] * len(others)
@@ -87,7 +95,10 @@ def test_every_authors_solution_is_right_before_the_grader(path):
 @cache
 def plain_results(door):
     cells = [["from orientation import *", f"tell({call!r}, {call})"] for call in doors.RESULTS]
-    return {call: told[call] for call, (told, _) in zip(doors.RESULTS, doors.through(door, cells), strict=True)}
+    return {
+        call: told[call]
+        for call, (told, _) in zip(doors.RESULTS, doors.through(door, cells), strict=True)
+    }
 
 
 def numbers_of(plain):
@@ -108,7 +119,11 @@ def test_the_result_of_every_public_function_is_read_alike(door):
         assert numbers_of(there[call])[0] == pytest.approx(numbers, abs=1e-12), call
 
 
-PAGES = [path for folder in ("chapters", "exercises") for path in sorted((REPOSITORY / folder).glob("*.ipynb"))]
+PAGES = [
+    path
+    for folder in ("chapters", "exercises")
+    for path in sorted((REPOSITORY / folder).glob("*.ipynb"))
+]
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda path: f"{path.parent.name}-{path.stem}")
@@ -128,7 +143,8 @@ def test_the_symbols_of_a_question_are_defined_where_its_answer_is_typed(path):
                 modules |= {alias.name for alias in node.names}
         for name in re.findall(r"check\(['\"]([^'\"]+)", cell.source):
             symbols = {
-                symbol.rstrip("'") for symbol in notebook_questions(name.partition("/")[0])[name].question.symbols
+                symbol.rstrip("'")
+                for symbol in notebook_questions(name.partition("/")[0])[name].question.symbols
             }
             missing = {one for one in symbols if not {one, *spellings(one)} & named}
             assert not missing, f"{name}: {missing}"

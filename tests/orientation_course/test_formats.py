@@ -1,4 +1,6 @@
-"""What somebody holds already is read for ever: sealed files of an earlier edition, and what they say to an answer."""
+"""What somebody holds already is read for ever: sealed files of an earlier edition, and what they
+say to an answer.
+"""
 
 import itertools
 import json
@@ -23,8 +25,9 @@ from coursework.checking.question import Question
 from coursework.checking.questions import NOT_IN_THIS_CATALOGUE, judge, notebook_questions
 
 SECOND = Path(__file__).parent / "editions" / "second"
-#: Answers to sealed questions of the second edition, as plain data, with the outcome, the note and the details of the
-#: reply that they got then; for a variant its number follows the name of the question.
+#: Answers to sealed questions of the second edition, as plain data, with the outcome, the note and
+#: the details of the reply that they got then; for a variant its number follows the name of the
+#: question.
 ANSWERS = json.loads((SECOND / "answers.json").read_text("utf8"))
 
 
@@ -40,10 +43,15 @@ def beside(tmp_path, monkeypatch):
 
 @pytest.fixture
 def catalogue_in_another_order(monkeypatch):
-    """What a contributor may do: mistakes above others, and a new generic message before all of them."""
+    """What a contributor may do: mistakes above others, and a new generic message before all of
+    them.
+    """
 
     def turned_round(messages):
-        return {"entered above all others": lambda question: "New.", **dict(reversed(messages.items()))}
+        return {
+            "entered above all others": lambda question: "New.",
+            **dict(reversed(messages.items())),
+        }
 
     changed = {
         name: kind._replace(messages=turned_round(kind.messages) if kind.messages else {})
@@ -70,7 +78,14 @@ def test_a_sealed_file_of_the_second_edition_says_what_it_said(beside, catalogue
     found = list(replies_of_then())
     assert [(name, said) for name, said, expected in found if said != expected] == []
     notes = {expected[1] for _, _, expected in found}
-    assert {"scalar last", "another axis", "factor", "power of ten", "symbols interchanged", "authored"} <= notes
+    assert {
+        "scalar last",
+        "another axis",
+        "factor",
+        "power of ten",
+        "symbols interchanged",
+        "authored",
+    } <= notes
 
 
 def test_every_mistake_of_then_still_has_its_words():
@@ -104,7 +119,9 @@ def test_a_new_mistake_changes_nothing_of_what_is_sealed(tmp_path, monkeypatch, 
     request.getfixturevalue("catalogue_in_another_order")
     told = {}
     for mistake in question.mistakes:
-        reply = judge(question.name, questions.find_question(question.name, ""), to_plain(mistake.answer))
+        reply = judge(
+            question.name, questions.find_question(question.name, ""), to_plain(mistake.answer)
+        )
         told[mistake.note] = reply.note
     assert told["scalar last"] == "scalar last" and told["conjugate"] == "conjugate"
     assert len(set(told.values())) > 2
@@ -126,23 +143,37 @@ def test_a_mistake_that_this_version_has_no_words_for_is_still_one(tmp_path, mon
 def test_a_format_that_is_not_known_is_refused_in_words(beside, number):
     file = beside / "chapters.json"
     file.write_text(json.dumps({**json.loads(file.read_text("utf8")), "format": number}), "utf8")
-    with pytest.raises(RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"):
+    with pytest.raises(
+        RuntimeError, match=f"of chapters are of format {number}.*reads formats 3 and 4.*update"
+    ):
         questions.find_question("chapters/about-x", "")
 
 
 def test_a_question_that_has_another_name_says_so(beside):
-    about = {"format": questions.FORMAT, "moved": {"chapters/around-x": "chapters/about-x"}, "questions": {}}
+    about = {
+        "format": questions.FORMAT,
+        "moved": {"chapters/around-x": "chapters/about-x"},
+        "questions": {},
+    }
     (beside / questions.MOVED).write_text(json.dumps(about), "utf8")
-    with pytest.raises(questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"):
+    with pytest.raises(
+        questions.NoSuchQuestion, match="'chapters/around-x' is called 'chapters/about-x'"
+    ):
         questions.find_question("chapters/around-x", "")
     with pytest.raises(questions.NoSuchQuestion, match="Did you mean"):
         questions.find_question("chapters/abut-x", "")
 
 
 def test_a_release_tells_the_names_that_questions_had(tmp_path):
-    cells = [("code", SETUP), ("code", SOLUTION), ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}")]
+    cells = [
+        ("code", SETUP),
+        ("code", SOLUTION),
+        ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}"),
+    ]
     write_source(tmp_path / "sources", *cells)
-    (tmp_path / "course.toml").write_text('sources = "sources"\n[moved]\n"trial/x" = "trial/about-x"\n')
+    (tmp_path / "course.toml").write_text(
+        'sources = "sources"\n[moved]\n"trial/x" = "trial/about-x"\n'
+    )
     for _ in range(2):  # what was made is no stranger's file
         release(find_course(tmp_path), run=False)
     kept = json.loads((tmp_path / "exercises" / "sealed" / questions.MOVED).read_text("utf8"))
@@ -179,5 +210,10 @@ def test_two_mistakes_never_have_one_short_name(monkeypatch):
 
 def test_the_table_of_a_course_is_its_own(monkeypatch):
     assert set(orientation_course.FORMAT_3) == set(orientation_course.KINDS)
-    monkeypatch.setattr(plugins, "plugins", lambda: [])  # a course that has not frozen the order of its mistakes
-    assert plugins.catalogue_of_format_3("order") == [("turned round", {}), ("two interchanged", {})]
+    monkeypatch.setattr(
+        plugins, "plugins", lambda: []
+    )  # a course that has not frozen the order of its mistakes
+    assert plugins.catalogue_of_format_3("order") == [
+        ("turned round", {}),
+        ("two interchanged", {}),
+    ]

@@ -32,7 +32,8 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
     found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
     assert len(rows) == 4 and rows == found[:4]
-    # What waited is decided, and the gradebook filled, line for line as the page prints it; only places are others.
+    # What waited is decided, and the gradebook filled, line for line as the page prints it; only
+    # places are others.
     store, ledger = Store(tmp_path / "out"), Ledger(tmp_path / "out")
     waiting = [(record, name) for record in store.all() for name, mark in record["marks"].items()
                if mark["outcome"] == "undecided"]  # fmt: skip
@@ -41,11 +42,15 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     for one in regrade(tmp_path / "out", show=said):
         moved = f"{one.student!r}, {one.assignment}: {one.before:g} -> {one.after:g}"
         assert f"{moved}  ({', '.join(one.questions)})\n{len(waiting)} moved.\n" in manual
-    (printed,) = re.findall(r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S)
+    (printed,) = re.findall(
+        r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S
+    )
     told = gradebooks.fill(tmp_path / "class" / "gradebook.csv", gradebooks.Marks(store))
     feedback = gradebooks.write_feedback(tmp_path / "feedback.zip", gradebooks.Marks(store), store)
     told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
     assert told.replace(f"{tmp_path}/", "") == printed
     rules = tmp_path / "term.toml"
-    rules.write_text(re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', ""))
+    rules.write_text(
+        re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', "")
+    )
     assert list(term.read_rules(rules).assignments) == notebooks

@@ -14,17 +14,25 @@ NAMES = [path.stem for path in sorted(SOURCES.glob("*.ipynb")) if path.stem != "
 # Every day two variants of one notebook; at night all of all.
 @pytest.mark.parametrize(
     ("name", "last"),
-    [("simple-orientations", 2), *(pytest.param(name, None, marks=pytest.mark.long) for name in NAMES)],
+    [
+        ("simple-orientations", 2),
+        *(pytest.param(name, None, marks=pytest.mark.long) for name in NAMES),
+    ],
 )
 def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name, last):
     path = SOURCES / f"{name}.ipynb"
     rules = read_source(path).rules
     for number in range(1, max((rule.count for rule in rules.values()), default=1))[:last]:
         having = [question for question, rule in rules.items() if number < rule.count]
-        whole, part = read_source(path, number).questions, read_source(path, number, only=having).questions
+        whole, part = (
+            read_source(path, number).questions,
+            read_source(path, number, only=having).questions,
+        )
         assert list(whole) == list(part)
         for one, other in zip(whole.values(), part.values(), strict=True):
-            without_pictures = [{**question.public.as_json(), "picture": None} for question in (one, other)]
+            without_pictures = [
+                {**question.public.as_json(), "picture": None} for question in (one, other)
+            ]
             assert without_pictures[0] == without_pictures[1]
             assert (one.plain, one.entries, one.near, one.credit) == (
                 other.plain,

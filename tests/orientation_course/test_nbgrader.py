@@ -35,7 +35,9 @@ def test_the_metadata_is_of_schema_3():
             if "nbgrader" in cell.metadata:
                 MetadataValidatorV3().validate_cell(cell)
         points = [
-            cell.metadata.nbgrader.points for cell in notebook.cells if cell.metadata.get("nbgrader", {}).get("grade")
+            cell.metadata.nbgrader.points
+            for cell in notebook.cells
+            if cell.metadata.get("nbgrader", {}).get("grade")
         ]
         assert len(points) >= 4 and all(points)
 
@@ -52,14 +54,21 @@ def run(*command, folder):
         "HOME": str(folder),
     }
     done = subprocess.run(
-        [sys.executable, "-m", "nbgrader", *command], cwd=folder, env=environment, capture_output=True, text=True
+        [sys.executable, "-m", "nbgrader", *command],
+        cwd=folder,
+        env=environment,
+        capture_output=True,
+        text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout + done.stderr
 
 
 @pytest.mark.long
-@pytest.mark.skipif(not any(COURSE.sources.glob("*.ipynb")), reason="the solutions are kept elsewhere and are not here")
+@pytest.mark.skipif(
+    not any(COURSE.sources.glob("*.ipynb")),
+    reason="the solutions are kept elsewhere and are not here",
+)
 def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     """One question right, one wrong, the rest untouched: the points are those of the right one."""
     from nbgrader.api import Gradebook
@@ -71,7 +80,9 @@ def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
     right, wrong = (source.questions[name].variable for name in names[:2])
     for cell in notebook.cells:
         if cell.source.startswith(f"{right} = ..."):
-            solved = next(text for text in answers if "BEGIN SOLUTION" in text and f"{right} =" in text)
+            solved = next(
+                text for text in answers if "BEGIN SOLUTION" in text and f"{right} =" in text
+            )
             cell.source = solved
         elif cell.source.startswith(f"{wrong} = ..."):
             cell.source = f"{wrong} = sm.eye(3)"
@@ -81,7 +92,9 @@ def test_nbgrader_grades_a_submission_by_our_checks(tmp_path):
         shutil.copy(COURSE.exercises / f"{ASSIGNMENT}.ipynb", place)
         if content:
             nbformat.write(content, place / f"{ASSIGNMENT}.ipynb")
-    (tmp_path / "nbgrader_config.py").write_text("c = get_config()\nc.CourseDirectory.course_id = 'trial'\n")
+    (tmp_path / "nbgrader_config.py").write_text(
+        "c = get_config()\nc.CourseDirectory.course_id = 'trial'\n"
+    )
     run("generate_assignment", ASSIGNMENT, "--force", folder=tmp_path)
     run("autograde", ASSIGNMENT, "--force", folder=tmp_path)
     with Gradebook(f"sqlite:///{tmp_path}/gradebook.db") as book:

@@ -34,13 +34,16 @@ INSTRUCTORS = (COURSE.root / "appendix" / "instructors.md").read_text("utf8")
 
 
 HIDDEN = (
-    "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), "
-    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
+    "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', "
+    "frames=('A', 'N'), "
+    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, "
+    "which does not "
     "move.')\n"
     "### END HIDDEN TESTS"
 )
 FUNCTION = (
-    '### BEGIN SOLUTION\ndef conjugate(quaternion):\n    """Return the conjugate."""\n    "a quoted remark"\n'
+    '### BEGIN SOLUTION\ndef conjugate(quaternion):\n    """Return the conjugate."""\n'
+    '    "a quoted remark"\n'
     "    return [quaternion[0], *(-part for part in quaternion[1:])]\n### END SOLUTION"
 )
 HIDDEN_FUNCTION = (
@@ -74,10 +77,16 @@ def trial(tmp_path_factory):
 
 
 def test_the_exercise_has_blanks_where_the_solution_was(trial):
-    text = [cell.source for cell in nbformat.read(trial / "exercises" / "trial.ipynb", as_version=4).cells]
+    text = [
+        cell.source
+        for cell in nbformat.read(trial / "exercises" / "trial.ipynb", as_version=4).cells
+    ]
     assert text[3] == "A_C_N = ...  # your answer"
     assert text[4] == "check('trial/about-x', A_C_N)"
-    assert text[5] == 'def conjugate(quaternion):\n    """Return the conjugate."""\n    ...  # your code'
+    assert (
+        text[5]
+        == 'def conjugate(quaternion):\n    """Return the conjugate."""\n    ...  # your code'
+    )
 
 
 def test_a_figure_becomes_a_picture_with_its_text(trial):
@@ -96,19 +105,39 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "about", [{}, {"tolerance": 1e-6}, {"tolerance": 1e-6, "relative": 0.01}, {"tolerance": 5, "relative": 0.001}]
+    "about",
+    [
+        {},
+        {"tolerance": 1e-6},
+        {"tolerance": 1e-6, "relative": 0.01},
+        {"tolerance": 5, "relative": 0.001},
+    ],
 )
 def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
-    """The same on every processor: of numbers of all sizes, of simple fractions, and of what should be zero."""
+    """The same on every processor: of numbers of all sizes, of simple fractions, and of what should
+    be zero.
+    """
     random = np.random.default_rng(7)
     sizes = 10.0 ** random.uniform(-3, 5, 12)
-    for right in (*random.normal(size=12) * sizes, 0.5, -1 / 3, 1 / 4096, 0.00012345, 1000, np.pi / 4, 12345.678905):
+    for right in (
+        *random.normal(size=12) * sizes,
+        0.5,
+        -1 / 3,
+        1 / 4096,
+        0.00012345,
+        1000,
+        np.pi / 4,
+        12345.678905,
+    ):
         sealed = [
             author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
             for noise in (0, 3e-16, -3e-16, 2e-15)
         ]
         told = [
-            [one.public.as_json(), {text: [known.as_json() for known in e.answers] for text, e in one.entries.items()}]
+            [
+                one.public.as_json(),
+                {text: [known.as_json() for known in e.answers] for text, e in one.entries.items()},
+            ]
             for one in sealed
         ]
         assert len({json.dumps(one, sort_keys=True) for one in told}) == 1, right
@@ -119,7 +148,12 @@ def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
 def test_a_planted_secret_is_found(trial, tmp_path):
     source = release.read_source(trial / "sources" / "trial.ipynb")
     assert len(secrets_of(source)) > 5
-    assert leaks([source], released_texts(trial / "exercises", trial / "sealed", tmp_path / "none.zip")) == []
+    assert (
+        leaks(
+            [source], released_texts(trial / "exercises", trial / "sealed", tmp_path / "none.zip")
+        )
+        == []
+    )
     for planted in (
         "The shared axis is the first one,\nwhich does  not move.",
         "[0, -sin(theta), cos(theta)]]",
@@ -136,13 +170,18 @@ def test_a_planted_secret_is_found(trial, tmp_path):
         assert found or "turns" in planted
     with zipfile.ZipFile(tmp_path / "box.zip", "w") as box:
         box.writestr("inner.txt", source.questions["trial/about-x"].solution)
-    assert leaks([source], released_texts(trial / "exercises", trial / "sealed", tmp_path / "box.zip"))
+    assert leaks(
+        [source], released_texts(trial / "exercises", trial / "sealed", tmp_path / "box.zip")
+    )
 
 
 @pytest.mark.parametrize(
     ("cells", "words"),
     [
-        ([("code", SETUP), ("code", SOLUTION), ("code", "check('trial/about-x', A_C_N)")], "without a question"),
+        (
+            [("code", SETUP), ("code", SOLUTION), ("code", "check('trial/about-x', A_C_N)")],
+            "without a question",
+        ),
         ([("code", SETUP), ("code", f"A_C_N = 1\n{HIDDEN}")], "before its check"),
         (
             [
@@ -152,9 +191,20 @@ def test_a_planted_secret_is_found(trial, tmp_path):
             ],
             "named 'trial/...'",
         ),
-        ([("code", SETUP), ("code", SOLUTION), ("code", f"check('trial/about-x', A_C_N * 1)\n{HIDDEN}")], "plain name"),
         (
-            [("code", SETUP), ("code", SOLUTION), ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}\n{HIDDEN}")],
+            [
+                ("code", SETUP),
+                ("code", SOLUTION),
+                ("code", f"check('trial/about-x', A_C_N * 1)\n{HIDDEN}"),
+            ],
+            "plain name",
+        ),
+        (
+            [
+                ("code", SETUP),
+                ("code", SOLUTION),
+                ("code", f"check('trial/about-x', A_C_N)\n{HIDDEN}\n{HIDDEN}"),
+            ],
             "two questions",
         ),
         ([("code", SETUP), ("code", "undefined_name")], "cell 1: NameError"),
@@ -166,7 +216,9 @@ def test_an_author_is_told_what_is_wrong(tmp_path, cells, words):
 
 
 COMMITTED = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
-needs_solutions = pytest.mark.skipif(not COMMITTED, reason="the solutions are kept elsewhere and are not here")
+needs_solutions = pytest.mark.skipif(
+    not COMMITTED, reason="the solutions are kept elsewhere and are not here"
+)
 
 
 @pytest.mark.sampled(1)
@@ -182,22 +234,33 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
         if path.stem.removeprefix(f"{name}-") != str(one):
             shutil.copy(path, write_to[2] / "variants")
     release.release(made_in(tmp_path), variants=[one])
-    variants = [folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)]
+    variants = [
+        folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)
+    ]
     message = (
-        "Run `make release` and commit exercises/ and src/orientation_course/sealed/: they are not what this makes."
+        "Run `make release` and commit exercises/ and src/orientation_course/sealed/: they are not "
+        "what this makes."
     )
     made = COURSE.exercises / f"{name}.ipynb", COURSE.sealed / f"{name}.json"
     if name != release.CHAPTERS:
         assert (write_to[1] / made[0].name).read_bytes() == made[0].read_bytes(), message
-    here, there = (json.loads(file.read_text("utf8"))["questions"] for file in (write_to[2] / made[1].name, made[1]))
+    here, there = (
+        json.loads(file.read_text("utf8"))["questions"]
+        for file in (write_to[2] / made[1].name, made[1])
+    )
     others = {key: about.pop("others") for key, about in there.items() if "others" in about}
     assert {key for key, about in here.items() if about.pop("others", None)} == set(others), message
     assert here == there, message
     # What is right for others comes from all variants: here it is that of the two that were made.
     for number in (0, one):
-        for key, asked in release.read_source(COURSE.sources / f"{name}.ipynb", number).questions.items():
+        for key, asked in release.read_source(
+            COURSE.sources / f"{name}.ipynb", number
+        ).questions.items():
             data = base64.b85decode(others[key][1]) if key in others else b""
-            known = {data[start : start + sealing.NAME].hex() for start in range(0, len(data), sealing.NAME)}
+            known = {
+                data[start : start + sealing.NAME].hex()
+                for start in range(0, len(data), sealing.NAME)
+            }
             assert key not in others or set(asked.names_for_others()) <= known, message
     made, committed = (path.read_bytes() if path.is_file() else None for path in variants)
     assert made == committed, message
@@ -205,15 +268,21 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
 
 @needs_solutions
 def test_nothing_is_committed_that_has_no_source():
-    assert sorted({path.stem for path in COURSE.sealed.glob("*.json")} - {"moved"}) == COMMITTED  # and what moved
-    assert sorted(path.stem for path in COURSE.exercises.glob("*.ipynb")) == sorted({*COMMITTED} - {release.CHAPTERS})
+    assert (
+        sorted({path.stem for path in COURSE.sealed.glob("*.json")} - {"moved"}) == COMMITTED
+    )  # and what moved
+    assert sorted(path.stem for path in COURSE.exercises.glob("*.ipynb")) == sorted(
+        {*COMMITTED} - {release.CHAPTERS}
+    )
 
 
 def test_there_is_a_notebook_of_exercises_for_every_chapter():
     chapters = {path.stem for path in (COURSE.root / "chapters").glob("*.ipynb")}
     assert {path.stem for path in COURSE.exercises.glob("*.ipynb")} == chapters
     questions = [
-        name for path in COURSE.sealed.glob("*.json") for name in json.loads(path.read_text("utf8"))["questions"]
+        name
+        for path in COURSE.sealed.glob("*.json")
+        for name in json.loads(path.read_text("utf8"))["questions"]
     ]
     assert sum(not name.startswith("chapters/") for name in questions) >= 60
 
@@ -224,7 +293,9 @@ def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
     with zipfile.ZipFile(first) as box:
         names = {Path(name).name for name in box.namelist()}
         packages = {f"./{name}" for name in names if name.endswith(".whl")}
-        assert len(packages) == 3 and packages < set(box.read("exercises/requirements.txt").decode().splitlines())
+        assert len(packages) == 3 and packages < set(
+            box.read("exercises/requirements.txt").decode().splitlines()
+        )
     assert {path.name for path in COURSE.exercises.glob("*.ipynb")} < names
 
 
@@ -264,17 +335,24 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
     changed(work / "a.ipynb", "my answer")
     changed(work / "b.ipynb", "b", [nbformat.v4.new_output("stream", text="Not attempted")])
     changed(work / "d.ipynb", "my answer")
-    two = handed_out(tmp_path / "two.zip", a="a, mended", b="b, mended", c="c, mended", d="d", e="e")
+    two = handed_out(
+        tmp_path / "two.zip", a="a, mended", b="b, mended", c="c, mended", d="d", e="e"
+    )
     said = "\n".join(update(two, work))
     there = {
         "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended", "d": "my answer", "e": "e",
     }  # fmt: skip
     assert code_in(work) == there
-    assert "kept yours  a.ipynb; the new one is a-new-1.ipynb" in said and "replaced    c.ipynb" in said
+    assert (
+        "kept yours  a.ipynb; the new one is a-new-1.ipynb" in said
+        and "replaced    c.ipynb" in said
+    )
     update(two, work)
     assert code_in(work) == there
     # What was put beside is replaced, too, as long as nobody has written into it.
-    update(handed_out(tmp_path / "three.zip", a="a, mended twice", b="b", c="c", d="d", e="e"), work)
+    update(
+        handed_out(tmp_path / "three.zip", a="a, mended twice", b="b", c="c", d="d", e="e"), work
+    )
     assert code_in(work) == there | {"a-new-1": "a, mended twice", "b": "b", "c": "c"}
     changed(work / "a-new-1.ipynb", "my second answer")
     update(handed_out(tmp_path / "four.zip", a="a, mended thrice"), work)
@@ -284,7 +362,9 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
 
 
 def test_without_a_manifest_everything_is_the_student_s(tmp_path):
-    """As in a folder that was unpacked before there were manifests, or where somebody has spoilt it."""
+    """As in a folder that was unpacked before there were manifests, or where somebody has spoilt
+    it.
+    """
     for number, spoilt in enumerate((None, "", "[]", "{}", '{"format": 1, "files": 3}')):
         work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path / str(number))
         (work / MANIFEST).unlink() if spoilt is None else (work / MANIFEST).write_text(spoilt)
@@ -309,16 +389,24 @@ def fake_wheel(folder, version, digest, package="sealed_trial"):
     about = f"{package}-{version}.dist-info"
     with zipfile.ZipFile(folder / name, "w") as box:
         box.writestr(f"{package}.py", f"DIGEST = {digest!r}\n")
-        box.writestr(f"{about}/METADATA", f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
         box.writestr(
-            f"{about}/WHEEL", "Wheel-Version: 1.0\nGenerator: a test\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
+            f"{about}/METADATA", f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n"
         )
-        box.writestr(f"{about}/RECORD", f"{package}.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n")
+        box.writestr(
+            f"{about}/WHEEL",
+            "Wheel-Version: 1.0\nGenerator: a test\nRoot-Is-Purelib: true\nTag: py3-none-any\n",
+        )
+        box.writestr(
+            f"{about}/RECORD",
+            f"{package}.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n",
+        )
     return folder / name
 
 
 def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, monkeypatch):
-    """Followed to the letter, in an environment of its own: pip takes the new questions and nobody's work is lost."""
+    """Followed to the letter, in an environment of its own: pip takes the new questions and
+    nobody's work is lost.
+    """
     python = tmp_path / "venv" / "bin" / "python"
     venv.create(tmp_path / "venv", symlinks=True)
     work = tmp_path / "my work"
@@ -333,11 +421,25 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
         return tmp_path / f"{version}.zip"
 
     def install(said):
-        (line,) = [line.strip() for line in "\n".join(said).splitlines() if " -m pip install " in line]
+        (line,) = [
+            line.strip() for line in "\n".join(said).splitlines() if " -m pip install " in line
+        ]
         arguments = shlex.split(line)[3:]
-        pip = [sys.executable, "-m", "pip", "--python", python, *arguments, "--quiet", "--no-deps", "--no-index"]
+        pip = [
+            sys.executable,
+            "-m",
+            "pip",
+            "--python",
+            python,
+            *arguments,
+            "--quiet",
+            "--no-deps",
+            "--no-index",
+        ]
         subprocess.run([*pip, "--disable-pip-version-check"], check=True, cwd=tmp_path)
-        return subprocess.check_output([python, "-c", "import sealed_trial; print(sealed_trial.DIGEST)"], text=True)
+        return subprocess.check_output(
+            [python, "-c", "import sealed_trial; print(sealed_trial.DIGEST)"], text=True
+        )
 
     old, new = pack("1.1.0.post20261122093000", "first"), pack("1.1.0.post20261201080000", "second")
     assert install(update(old, work)) == "sealed in 1.1.0.post20261122093000\n"
@@ -354,8 +456,12 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
         "./sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
     ]  # fmt: skip
     # Nothing new: nothing to install. An older archive: refused before anything is written.
-    assert any("pip install" in line for line in update(new, work))  # not in the Python that runs this
-    monkeypatch.setattr("coursework.checking.update.version", lambda name: "1.1.0.post20261201080000")
+    assert any(
+        "pip install" in line for line in update(new, work)
+    )  # not in the Python that runs this
+    monkeypatch.setattr(
+        "coursework.checking.update.version", lambda name: "1.1.0.post20261201080000"
+    )
     assert not any("pip install" in line for line in update(new, work))
     before = {path: path.read_bytes() for path in work.iterdir()}
     with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
@@ -370,7 +476,9 @@ def in_bash(text, prompt):
 
 @pytest.mark.long
 def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
-    """To the letter: with a system's Python that takes no packages, and in a room without a network."""
+    """To the letter: with a system's Python that takes no packages, and in a room without a
+    network.
+    """
     work = unpacked(archive(COURSE, tmp_path / "exercises.zip"), tmp_path)
     index = tmp_path / "index"
     index.mkdir()
@@ -379,7 +487,12 @@ def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
     said = (work / "README.txt").read_text("utf8")
     first, second, third, windows, *_, offline, lab, _ = in_bash(said, " " * 7)
     assert (windows, lab) == ("py -m venv environment", "jupyter lab")
-    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+    environment = {
+        **os.environ,
+        "PIP_NO_INDEX": "1",
+        "PIP_NO_DEPS": "1",
+        "PIP_DISABLE_PIP_VERSION_CHECK": "1",
+    }
 
     python = shlex.quote(sys.executable)
     assert first.startswith("python3 ")
@@ -389,7 +502,11 @@ def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
     def run(*lines, **more):
         script = "\n".join(["set -eu", *lines, check])
         done = subprocess.run(
-            ["bash", "-c", script], cwd=work, env={**environment, **more}, capture_output=True, text=True
+            ["bash", "-c", script],
+            cwd=work,
+            env={**environment, **more},
+            capture_output=True,
+            text=True,
         )
         assert done.returncode == 0, done.stderr
         return Path(done.stdout.splitlines()[-1])
@@ -407,12 +524,21 @@ def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
 
 def test_a_version_follows_from_the_sources(tmp_path):
     def git(*arguments, when="2026-11-22T09:30:00Z"):
-        about = {"GIT_COMMITTER_DATE": when, "GIT_AUTHOR_DATE": when, "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
+        about = {
+            "GIT_COMMITTER_DATE": when,
+            "GIT_AUTHOR_DATE": when,
+            "HOME": str(tmp_path),
+            "PATH": os.environ["PATH"],
+        }
         name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
-        subprocess.run(["git", *name, *arguments], cwd=book, env=about, check=True, capture_output=True)
+        subprocess.run(
+            ["git", *name, *arguments], cwd=book, env=about, check=True, capture_output=True
+        )
 
     def version(book=tmp_path / "book"):
-        project = packing.Project("maths", ["src/orientation", "src/tools"], ["src/tools/grading"], repository=book)
+        project = packing.Project(
+            "maths", ["src/orientation", "src/tools"], ["src/tools/grading"], repository=book
+        )
         return project.version()
 
     def touch(name, text, moment):
@@ -427,9 +553,15 @@ def test_a_version_follows_from_the_sources(tmp_path):
     book = tmp_path / "book"
     for name in ("maths/README.md", "src/orientation/a.py", "src/tools/grading/grade.py"):
         touch(name, "", at(2026, 11, 1))
-    touch("maths/pyproject.toml", "[project]\nname = 'maths'\ndynamic = ['version']\n", at(2026, 11, 1))
+    touch(
+        "maths/pyproject.toml",
+        "[project]\nname = 'maths'\ndynamic = ['version']\n",
+        at(2026, 11, 1),
+    )
     touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
-    assert version() == "1.1.0.post20261101000000"  # no repository: when the newest file was written
+    assert (
+        version() == "1.1.0.post20261101000000"
+    )  # no repository: when the newest file was written
     git("init", "--quiet")
     git("add", ".")
     git("commit", "-m", "first")
@@ -448,14 +580,18 @@ def test_a_version_follows_from_the_sources(tmp_path):
     os.remove(book / "src/orientation/a.py")
     os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
     assert version() == "1.1.0.post20261203000000"
-    # Released, it is plain: as long as the sources are those of its tag, whatever else the repository gets.
+    # Released, it is plain: as long as the sources are those of its tag, whatever else the
+    # repository gets.
     git("checkout", ".")
     git("tag", "maths-1.1.0")
     touch("chapters/a.ipynb", "{ }", at(2026, 12, 4))
     assert version() == "1.1.0"
     for undo in (
         lambda: touch("src/orientation/b.py", "", at(2026, 12, 5)),
-        lambda: (os.remove(book / "src/orientation/b.py"), touch("src/orientation/a.py", "# again", at(2026, 12, 5))),
+        lambda: (
+            os.remove(book / "src/orientation/b.py"),
+            touch("src/orientation/a.py", "# again", at(2026, 12, 5)),
+        ),
     ):
         undo()
         assert version() == "1.1.0.post20261205000000"

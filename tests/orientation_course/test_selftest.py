@@ -41,7 +41,9 @@ def test_every_question_passes_and_names_its_mistakes(name):
 
 @needs_solutions
 def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
-    """It stands beside the sources, for the grader's report; a question that is gone is to go there, too."""
+    """It stands beside the sources, for the grader's report; a question that is gone is to go
+    there, too.
+    """
     measured = measured_strengths(COURSE.sources)
     asked = {name for path in SOURCES.values() for name in names_asked(path)}
     assert set(measured) <= asked and len(measured) > 100
@@ -50,9 +52,14 @@ def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
 
 @needs_solutions
 def test_a_question_of_a_chapter_is_attacked_with_its_text_in_the_chapter():
-    """Its source has no text: without the chapter's an attack would know none of the numbers that a student reads."""
+    """Its source has no text: without the chapter's an attack would know none of the numbers that a
+    student reads.
+    """
     source = release.read_source(SOURCES[release.CHAPTERS])
-    texts = [text_of(source, question, COURSE).partition(CODE)[0] for question in source.questions.values()]
+    texts = [
+        text_of(source, question, COURSE).partition(CODE)[0]
+        for question in source.questions.values()
+    ]
     assert all("{exercise}" in text or "Bind" in text for text in texts)
 
 
@@ -66,10 +73,20 @@ def test_nothing_leaks_into_the_archive(tmp_path):
 
 def test_nothing_to_try_is_not_a_pass(tmp_path):
     with pytest.raises(SystemExit, match="no notebook with solutions in .*empty"):
-        main(["selftest", "--sources", str(tmp_path / "empty"), "--page", str(tmp_path / "page.html")])
+        main(
+            [
+                "selftest",
+                "--sources",
+                str(tmp_path / "empty"),
+                "--page",
+                str(tmp_path / "page.html"),
+            ]
+        )
     write_source(tmp_path / "text", ("markdown", "# Nothing is asked here"))
     with pytest.raises(SystemExit, match="ask no question"):
-        main(["selftest", "--sources", str(tmp_path / "text"), "--page", str(tmp_path / "page.html")])
+        main(
+            ["selftest", "--sources", str(tmp_path / "text"), "--page", str(tmp_path / "page.html")]
+        )
     assert not (tmp_path / "page.html").exists()
 
 
@@ -92,13 +109,15 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
         ("code", "from coursework import check, student, variant\nstudent('')"),
         (
             "code",
-            "### BEGIN VARIANTS\nlever = draw('levers/arm', count=3, arm=[0.7391234, 1, 2])\n### END VARIANTS",
+            "### BEGIN VARIANTS\nlever = draw('levers/arm', count=3, arm=[0.7391234, 1, 2])\n"
+            "### END VARIANTS",
         ),
         ("markdown", "A square has sides of {{arm}} m. What is its area?"),
         ("code", "### BEGIN SOLUTION\narm = lever.arm**2\n### END SOLUTION"),
         (
             "code",
-            "check('levers/arm', arm)\n### BEGIN HIDDEN TESTS\nquestion('levers/arm', kind='expression')\n"
+            "check('levers/arm', arm)\n### BEGIN HIDDEN TESTS\n"
+            "question('levers/arm', kind='expression')\n"
             "### END HIDDEN TESTS",
         ),
         name="levers",
@@ -111,12 +130,16 @@ def test_a_variant_that_is_guessed_sooner_than_the_first_is_found(tmp_path):
     assert said_beyond(measured).startswith("33% of 1 point are")
 
 
-def test_what_was_measured_is_measured_again_only_where_something_has_changed(tmp_path, monkeypatch):
+def test_what_was_measured_is_measured_again_only_where_something_has_changed(
+    tmp_path, monkeypatch
+):
     made = made_in(tmp_path)
     write_source(made.sources, *CELLS)
     tried = []
     monkeypatch.setattr(
-        selftest_module, "attack", lambda question, *_: tried.append(question.name) or Found(7, "a way")
+        selftest_module,
+        "attack",
+        lambda question, *_: tried.append(question.name) or Found(7, "a way"),
     )
     source = release.read_source(made.sources / "trial.ipynb")
 
@@ -167,8 +190,10 @@ def test_a_step_of_the_ladder_that_holds_the_answer_is_refused_and_listed(tmp_pa
         ("markdown", "What is it? Call it `answer`."),
         (
             "code",
-            "### BEGIN SOLUTION\nanswer = 3 * sm.sin(x) * sm.cos(x)\n### END SOLUTION\ncheck('trial/one', answer)\n"
-            f"### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x', ladder=[{step!r}])\n"
+            "### BEGIN SOLUTION\nanswer = 3 * sm.sin(x) * sm.cos(x)\n### END SOLUTION\n"
+            "check('trial/one', answer)\n"
+            "### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x', "
+            f"ladder=[{step!r}])\n"
             "### END HIDDEN TESTS",
         ),
     )

@@ -24,7 +24,9 @@ def of_the_book():
 
 
 def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
-    """Of a question's variants all but one have as many as each other; without variants it is a multiple of eight."""
+    """Of a question's variants all but one have as many as each other; without variants it is a
+    multiple of eight.
+    """
     counts = collections.defaultdict(list)
     for path in COURSE.sealed.rglob("*.json"):
         for name, about in json.loads(path.read_text("utf8"))["questions"].items():
@@ -39,7 +41,9 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
 
 
 def test_how_many_pages_there_are_tells_nothing_of_the_answer():
-    """It told the variants of 18 questions apart; now all but the first have as many of their own."""
+    """It told the variants of 18 questions apart; now all but the first have as many of their
+    own.
+    """
     counts = collections.defaultdict(set)
     for path in (COURSE.sealed / "variants").glob("*.json"):
         for name, about in json.loads(path.read_text("utf8"))["questions"].items():
@@ -54,10 +58,16 @@ def test_the_book_has_variants_that_stay_small():
     files = list(COURSE.sealed.rglob("*.json"))
     assert sum(path.stat().st_size for path in files) < 1_700_000
     for path in (COURSE.sealed / "variants").glob("*.json"):
-        assert path.stat().st_size < 20_000, path  # all that a student's own variant needs beside the first
-        first = json.loads((COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8"))["questions"]
+        assert path.stat().st_size < 20_000, (
+            path
+        )  # all that a student's own variant needs beside the first
+        first = json.loads(
+            (COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8")
+        )["questions"]
         for name, about in json.loads(path.read_text("utf8"))["questions"].items():
-            assert about["salt"] != first[name]["salt"] and "kind" not in about and "text" not in about
+            assert (
+                about["salt"] != first[name]["salt"] and "kind" not in about and "text" not in about
+            )
 
 
 @needs_solutions
@@ -70,10 +80,14 @@ def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
     asked = {number: read_source(path, number).questions[name] for number in numbers}
     for number, question in asked.items():
         assert try_question(question, budget=0).faults == [], (name, number)
-        student = next(f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number)
+        student = next(
+            f"s{k}" for k in range(999) if variants.variant_of(f"s{k}", name, count) == number
+        )
         coursework.student(student)
         assert "{{" not in repr(coursework.variant(name))
         for other, theirs in asked.items():
-            outcome = questions.judge(name, questions.find_question(name, student), theirs.plain).outcome
+            outcome = questions.judge(
+                name, questions.find_question(name, student), theirs.plain
+            ).outcome
             assert (outcome == "correct") == (number == other), (name, number, other)
     coursework.student("")

@@ -16,13 +16,19 @@ FIGURES = {
     if issubclass(figure, moving.MovingFigure) and figure.kind
 }
 KINDS = sorted(FIGURES)
-#: What a test sets in each figure: the attribute, its value, and where the figure then shows it, if it has a field.
+#: What a test sets in each figure: the attribute, its value, and where the figure then shows it, if
+#: it has a field.
 CHANGES = {
     "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
     "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
     "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
     "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
-    "graph": ("edges", (("A", "N", "z", 0.5), ("B", "N", "z", 0.4), ("C", "B", "x", 0.3)), None, None),
+    "graph": (
+        "edges",
+        (("A", "N", "z", 0.5), ("B", "N", "z", 0.4), ("C", "B", "x", 0.3)),
+        None,
+        None,
+    ),
     "hands": ("quaternion", (0.6, 0.0, 0.8, 0.0), None, None),
     "motion": ("time", 3.0, "Time in seconds", 3),
     "nine_numbers": ("matrix", ((0, 1, 0), (-1, 0, 0), (0, 0, 1)), "row x, column y", 1),
@@ -47,7 +53,8 @@ html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212;
 body {{ max-width: 714px; margin: 0 auto; padding: 0 16px; }} figure {{ margin: 0; }}
 </style>{scripts}</head><body><main><h1>A figure</h1>{figures}
 <p id="after">The text goes on.</p></main></body></html>"""
-# Pictures are drawn before the next frame; a run that is still being computed goes on in those that follow.
+# Pictures are drawn before the next frame; a run that is still being computed goes on in those that
+# follow.
 SETTLED = """async () => {
   const picture = () => new Promise((done) => requestAnimationFrame(done));
   await picture();
@@ -68,7 +75,8 @@ def front_end(tmp_path_factory):
 
 @pytest.fixture
 def open_figure(browser, front_end):
-    """``open_figure(figure, ...)``: a page from disk with that figure, or with each of a list of them.
+    """``open_figure(figure, ...)``: a page from disk with that figure, or with each of a list of
+    them.
 
     A name stands for the figure as it is at first. Whatever goes wrong on a page fails the test.
     """
@@ -81,16 +89,23 @@ def open_figure(browser, front_end):
         file = front_end / f"page-{next(count)}.html"
         scripts = "".join(f'<script defer src="{name}.js"></script>' for name in kinds)
         stills = "".join(figure.still() for figure in figures)
-        file.write_text(PAGE.format(theme=theme, style=bundle.style(), scripts=scripts, figures=stills), "utf8")
+        file.write_text(
+            PAGE.format(theme=theme, style=bundle.style(), scripts=scripts, figures=stills), "utf8"
+        )
         context = browser.new_context(color_scheme=theme, viewport=viewport, **options)
         contexts.append(context)
         context.add_init_script(WATCH_SHIFTS)
         page = context.new_page()
         own = front_end.as_uri(), "data:"
-        page.on("console", lambda message: message.type in ("error", "warning") and faults.append(message.text))
+        page.on(
+            "console",
+            lambda message: message.type in ("error", "warning") and faults.append(message.text),
+        )
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("requestfailed", lambda request: faults.append(f"failed: {request.url}"))
-        page.on("request", lambda request: request.url.startswith(own) or faults.append(request.url))
+        page.on(
+            "request", lambda request: request.url.startswith(own) or faults.append(request.url)
+        )
         page.goto(file.as_uri())
         if options.get("java_script_enabled", True):
             for k in range(len(figures)):
@@ -113,8 +128,13 @@ def numbers(page, name):
     """The numbers of a table on the page, as they are written there; NaN for a dash."""
     settle(page)
     rows = page.locator(f'[aria-label="{name}"] .row:has(.number)')
-    texts = rows.evaluate_all("rows => rows.map(row => [...row.querySelectorAll('.number')].map(n => n.textContent))")
-    values = [[float(re.sub(r"[^\d.-]", "", text.replace("\u2212", "-")) or "nan") for text in row] for row in texts]
+    texts = rows.evaluate_all(
+        "rows => rows.map(row => [...row.querySelectorAll('.number')].map(n => n.textContent))"
+    )
+    values = [
+        [float(re.sub(r"[^\d.-]", "", text.replace("\u2212", "-")) or "nan") for text in row]
+        for row in texts
+    ]
     return np.array(values).squeeze()
 
 
@@ -149,10 +169,16 @@ def middle(locator):
 def drag_with_a_finger(page, start, end, steps=8):
     """Touches, as Chromium gets them from a screen."""
     session = page.context.new_cdp_session(page)
-    for kind, parts in (("touchStart", [0]), ("touchMove", [k / steps for k in range(1, steps + 1)])):
+    for kind, parts in (
+        ("touchStart", [0]),
+        ("touchMove", [k / steps for k in range(1, steps + 1)]),
+    ):
         for part in parts:
             x, y = (a + part * (b - a) for a, b in zip(start, end))
-            session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": float(x), "y": float(y)}]})
+            session.send(
+                "Input.dispatchTouchEvent",
+                {"type": kind, "touchPoints": [{"x": float(x), "y": float(y)}]},
+            )
     session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
     session.detach()
     settle(page)

@@ -1,4 +1,6 @@
-"""What an address of the book carries: the same in both languages, for ever, and in words where it cannot be read."""
+"""What an address of the book carries: the same in both languages, for ever, and in words where it
+cannot be read.
+"""
 
 import json
 import random
@@ -19,7 +21,8 @@ const functions = { fragmentOf, carriedBy };
 const tried = (name, parts) => { try { return [functions[name](...parts)]; } catch (error) { return error.message; } };
 console.log(JSON.stringify(JSON.parse(readFileSync(0)).map(([name, ...parts]) => tried(name, parts))));
 """
-#: Addresses that somebody may have kept, of each version that there ever was: never changed, only added to.
+#: Addresses that somebody may have kept, of each version that there ever was: never changed, only
+#: added to.
 KEPT = {
     "#fig-gimbal=1.eyJhbmdsZXMiOlswLjUsMCwwXX0": ("fig-gimbal", {"angles": [0.5, 0, 0]}),
     "#workbench=1.eyJhIjoiMSAwIDBcbjAgMSAwXG4wIDAgMSIsImIiOiLOuCA9IDMwwrAsIPCfp60ifQ": (
@@ -35,7 +38,9 @@ def in_browser_language(tmp_path_factory):
     script.write_text(bundle.body("address") + APPLY, "utf8")
 
     def run(*calls):
-        done = subprocess.run([NODE, script], input=json.dumps(calls), capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            [NODE, script], input=json.dumps(calls), capture_output=True, text=True, check=True
+        )
         return json.loads(done.stdout)
 
     return run
@@ -44,11 +49,18 @@ def in_browser_language(tmp_path_factory):
 def contents(chance, count):
     def text():
         return "".join(
-            chance.choice('aZ0 \n"\\<&%#=+/\u00e9\u03b8\u2028\U0001f9ed') for _ in range(chance.randrange(30))
+            chance.choice('aZ0 \n"\\<&%#=+/\u00e9\u03b8\u2028\U0001f9ed')
+            for _ in range(chance.randrange(30))
         )
 
     def value(depth=0):
-        kinds = [text, chance.random, lambda: chance.uniform(-1e9, 1e9), lambda: chance.randrange(-9, 9), lambda: None]
+        kinds = [
+            text,
+            chance.random,
+            lambda: chance.uniform(-1e9, 1e9),
+            lambda: chance.randrange(-9, 9),
+            lambda: None,
+        ]
         kinds += [lambda: chance.random() < 0.5]
         if depth < 3:
             kinds += [lambda: [value(depth + 1) for _ in range(chance.randrange(4))]]
@@ -62,36 +74,71 @@ def test_both_languages_carry_the_same(in_browser_language):
     chance = random.Random(20)
     given = contents(chance, 300)
     ours = [fragment_of("fig-one", content) for content in given]
-    theirs = [found for (found,) in in_browser_language(*(["fragmentOf", "fig-one", content] for content in given))]
+    theirs = [
+        found
+        for (found,) in in_browser_language(
+            *(["fragmentOf", "fig-one", content] for content in given)
+        )
+    ]
     for fragment in ours + theirs:
-        assert re.fullmatch(r"#[A-Za-z0-9.=_-]+", fragment), "a program that passes it on would change it"
-    assert [carried_by(fragment) for fragment in theirs] == [("fig-one", content) for content in given]
+        assert re.fullmatch(r"#[A-Za-z0-9.=_-]+", fragment), (
+            "a program that passes it on would change it"
+        )
+    assert [carried_by(fragment) for fragment in theirs] == [
+        ("fig-one", content) for content in given
+    ]
     read = in_browser_language(*(["carriedBy", fragment] for fragment in ours))
-    assert [found for (found,) in read] == [{"place": "fig-one", "content": content} for content in given]
+    assert [found for (found,) in read] == [
+        {"place": "fig-one", "content": content} for content in given
+    ]
 
 
 def test_what_was_kept_is_read_for_ever(in_browser_language):
     assert {carried_by(fragment)[0] for fragment in KEPT} == {place for place, _ in KEPT.values()}
     assert [carried_by(fragment) for fragment in KEPT] == list(KEPT.values())
-    assert {int(re.search(r"=(\d+)", fragment)[1]) for fragment in KEPT} == set(range(1, VERSION + 1))
+    assert {int(re.search(r"=(\d+)", fragment)[1]) for fragment in KEPT} == set(
+        range(1, VERSION + 1)
+    )
     read = in_browser_language(*(["carriedBy", fragment] for fragment in KEPT))
     assert [(found["place"], found["content"]) for (found,) in read] == list(KEPT.values())
 
 
 def test_a_plain_place_carries_nothing(in_browser_language):
-    plain = ["", "#", "#fig-gimbal", "#section-2", "#a=b", "#a=1", "#Fig=1.abc", "#:~:text=1.5", "fig-gimbal"]
+    plain = [
+        "",
+        "#",
+        "#fig-gimbal",
+        "#section-2",
+        "#a=b",
+        "#a=1",
+        "#Fig=1.abc",
+        "#:~:text=1.5",
+        "fig-gimbal",
+    ]
     assert [carried_by(fragment) for fragment in plain] == [None] * len(plain)
-    assert in_browser_language(*(["carriedBy", fragment] for fragment in plain)) == [[None]] * len(plain)
+    assert in_browser_language(*(["carriedBy", fragment] for fragment in plain)) == [[None]] * len(
+        plain
+    )
 
 
 def test_what_cannot_be_read_is_said_in_words(in_browser_language):
     whole = fragment_of("fig-one", {"angles": [0.5, 0.25, 1.125], "text": "\u03b8"})
     cut = [whole[:length] for length in range(len("#fig-one=1."), len(whole))]
-    no_data = ["#a=1.W10", "#a=1.MQ", "#a=1.bnVsbA", "#a=1.%%%", "#a=1._w", "#a=1." + "A" * (LARGEST + 4)]
+    no_data = [
+        "#a=1.W10",
+        "#a=1.MQ",
+        "#a=1.bnVsbA",
+        "#a=1.%%%",
+        "#a=1._w",
+        "#a=1." + "A" * (LARGEST + 4),
+    ]
     for fragment in cut + no_data:
         with pytest.raises(BadAddress, match="not whole"):
             carried_by(fragment)
-    assert all("not whole" in said for said in in_browser_language(*(["carriedBy", one] for one in cut + no_data)))
+    assert all(
+        "not whole" in said
+        for said in in_browser_language(*(["carriedBy", one] for one in cut + no_data))
+    )
     with pytest.raises(BadAddress, match="format 2.*reads 1"):
         carried_by("#fig-one=2.anything at all")
     assert "newer edition" in in_browser_language(["carriedBy", "#fig-one=2.anything at all"])[0]

@@ -1,4 +1,6 @@
-"""The converter: every program's numbers there and back, each line of code run by the library that it is for."""
+"""The converter: every program's numbers there and back, each line of code run by the library that
+it is for.
+"""
 
 import itertools
 from importlib import import_module
@@ -52,7 +54,9 @@ def test_each_line_makes_the_orientation_in_its_library(program):
 
 
 def test_what_one_side_writes_every_other_reads():
-    """There and back through text for every pair of programs, and each pair of forms at least once."""
+    """There and back through text for every pair of programs, and each pair of forms at least
+    once.
+    """
     random = np.random.default_rng(3)
     everything = {program: sides(program) for program in (*PROGRAMS, OTHER)}
     pairs = [
@@ -63,10 +67,18 @@ def test_what_one_side_writes_every_other_reads():
         for first, second in itertools.product(everything, repeat=2)
     ] + [(side, side) for found in everything.values() for side in found]
     dcms = random_dcms(len(pairs), 4)
-    texts = converted([{"side": first, "dcm": dcm.tolist()} for (first, _), dcm in zip(pairs, dcms)])
-    between = converted([{"side": first, "text": text["text"]} for (first, _), text in zip(pairs, texts)])
-    texts = converted([{"side": second, "dcm": one["dcm"]} for (_, second), one in zip(pairs, between)])
-    ends = converted([{"side": second, "text": text["text"]} for (_, second), text in zip(pairs, texts)])
+    texts = converted(
+        [{"side": first, "dcm": dcm.tolist()} for (first, _), dcm in zip(pairs, dcms)]
+    )
+    between = converted(
+        [{"side": first, "text": text["text"]} for (first, _), text in zip(pairs, texts)]
+    )
+    texts = converted(
+        [{"side": second, "dcm": one["dcm"]} for (_, second), one in zip(pairs, between)]
+    )
+    ends = converted(
+        [{"side": second, "text": text["text"]} for (_, second), text in zip(pairs, texts)]
+    )
     assert max(rotation_error(np.array(end["dcm"]), dcm) for end, dcm in zip(ends, dcms)) < 1e-7
 
 
@@ -81,9 +93,11 @@ def known(side):
 
 @pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_converter_and_workbench_mean_the_same_by_a_program(everything):
-    """What the converter writes for a second program is what, for the workbench, both manuals promise.
+    """What the converter writes for a second program is what, for the workbench, both manuals
+    promise.
 
-    Each program beside this book's, and each two neighbours of those whose axes are known; at night all pairs.
+    Each program beside this book's, and each two neighbours of those whose axes are known; at night
+    all pairs.
     """
     with_axes = [program for program, facts in PROGRAMS.items() if facts.get("body")]
     pairs = [("this book", program) for program in PROGRAMS] + list(itertools.pairwise(with_axes))
@@ -93,11 +107,16 @@ def test_converter_and_workbench_mean_the_same_by_a_program(everything):
     for which, pair in enumerate(pairs):
         first, second = (sides(program)[which % len(sides(program))] for program in pair)
         for dcm in dcms:
-            jobs += [{"side": first, "dcm": dcm.tolist()}, {"source": first, "side": second, "dcm": dcm.tolist()}]
+            jobs += [
+                {"side": first, "dcm": dcm.tolist()},
+                {"source": first, "side": second, "dcm": dcm.tolist()},
+            ]
     answers, exchanged = converted(jobs), 0
     for which, pair in enumerate(pairs):
         job, other, *_ = jobs[4 * which : 4 * which + 4]
-        texts = ["\n".join(answers[4 * which + k]["text"] for k in those) for those in ((0, 2), (1, 3))]
+        texts = [
+            "\n".join(answers[4 * which + k]["text"] for k in those) for those in ((0, 2), (1, 3))
+        ]
         said = answers[4 * which + 1]["said"]
         exchanged += "x, y, z point" in said
         if "none are exchanged" in said:
@@ -120,7 +139,10 @@ def test_numbers_that_libraries_give_are_read_as_they_mean_them():
         ("SymPy mechanics", "matrix", "zxy", D_C_A),
     ]
     jobs = [
-        {"side": {"program": program, "form": form, "sequence": sequence}, "text": str(np.asarray(numbers).tolist())}
+        {
+            "side": {"program": program, "form": form, "sequence": sequence},
+            "text": str(np.asarray(numbers).tolist()),
+        }
         for program, form, sequence, numbers in given
     ]
     for one, answer in zip(given, converted(jobs), strict=True):
@@ -129,14 +151,30 @@ def test_numbers_that_libraries_give_are_read_as_they_mean_them():
 
 
 def test_the_example_of_a_manual_that_cannot_be_run():
-    """MathWorks prints what ``angle2dcm`` gives for 0.7854, 0.1, 0, and for two triples of 'YXZ'."""
+    """MathWorks prints what ``angle2dcm`` gives for 0.7854, 0.1, 0, and for two triples of
+    'YXZ'.
+    """
     printed = [
-        ("zyx", "0.7854 0.1 0", [[0.7036, 0.7036, -0.0998], [-0.7071, 0.7071, 0], [0.0706, 0.0706, 0.9950]]),
-        ("yxz", "0.1 0 0.7854", [[0.7036, 0.7071, -0.0706], [-0.7036, 0.7071, 0.0706], [0.0998, 0, 0.9950]]),
-        ("yxz", "0.3 0.1 0.5", [[0.8525, 0.4770, -0.2136], [-0.4321, 0.8732, 0.2254], [0.2940, -0.0998, 0.9506]]),
+        (
+            "zyx",
+            "0.7854 0.1 0",
+            [[0.7036, 0.7036, -0.0998], [-0.7071, 0.7071, 0], [0.0706, 0.0706, 0.9950]],
+        ),
+        (
+            "yxz",
+            "0.1 0 0.7854",
+            [[0.7036, 0.7071, -0.0706], [-0.7036, 0.7071, 0.0706], [0.0998, 0, 0.9950]],
+        ),
+        (
+            "yxz",
+            "0.3 0.1 0.5",
+            [[0.8525, 0.4770, -0.2136], [-0.4321, 0.8732, 0.2254], [0.2940, -0.0998, 0.9506]],
+        ),
     ]
     side = {"program": "MATLAB Aerospace", "form": "body fixed angles"}
-    answers = converted([{"side": side | {"sequence": sequence}, "text": text} for sequence, text, _ in printed])
+    answers = converted(
+        [{"side": side | {"sequence": sequence}, "text": text} for sequence, text, _ in printed]
+    )
     for (_, text, expected), answer in zip(printed, answers):
         assert np.allclose(answer["dcm"], expected, atol=6e-5), text
 
@@ -151,7 +189,9 @@ def test_the_example_of_a_manual_that_cannot_be_run():
     ],
 )
 def test_what_means_no_orientation_is_refused_in_the_readers_terms(form, text, message):
-    (answer,) = converted([{"side": {"program": "this book", "form": form, "sequence": "zyx"}, "text": text}])
+    (answer,) = converted(
+        [{"side": {"program": "this book", "form": form, "sequence": "zyx"}, "text": text}]
+    )
     assert message in answer["fault"]
 
 
@@ -160,12 +200,21 @@ def test_rounded_numbers_are_taken_and_said_to_be():
     quaternion, matrix, degrees = converted(
         [
             {"side": side | {"form": "quaternion"}, "text": "q = [0.97, 0, 0, 0.26]"},
-            {"side": side | {"form": "matrix"}, "text": "[[0.87, 0.5, 0], [\u22120.5, 0.87, 0], [0, 0, 1]]"},
+            {
+                "side": side | {"form": "matrix"},
+                "text": "[[0.87, 0.5, 0], [\u22120.5, 0.87, 0], [0, 0, 1]]",
+            },
             {"side": side | {"form": "body fixed angles"}, "text": "30, 0, 0"},
         ]
     )
-    assert "is made 1" in quaternion["said"] and "rounded" in matrix["said"] and "degrees?" in degrees["said"]
-    assert rotation_error(np.array(matrix["dcm"]), orientation.simple_dcm("z", np.radians(30))) < 0.01
+    assert (
+        "is made 1" in quaternion["said"]
+        and "rounded" in matrix["said"]
+        and "degrees?" in degrees["said"]
+    )
+    assert (
+        rotation_error(np.array(matrix["dcm"]), orientation.simple_dcm("z", np.radians(30))) < 0.01
+    )
 
 
 def test_the_table_names_the_version_that_is_here():
@@ -175,7 +224,10 @@ def test_the_table_names_the_version_that_is_here():
 def test_a_side_that_does_not_exist_is_refused():
     for side, message in (
         ({"program": "SciPi"}, "there is this book, SymPy"),
-        ({"program": "OpenCV", "form": "quaternion"}, "OpenCV takes no quaternion; it takes matrix"),
+        (
+            {"program": "OpenCV", "form": "quaternion"},
+            "OpenCV takes no quaternion; it takes matrix",
+        ),
         ({"programme": "SciPy"}, "what can be chosen is program"),
     ):
         with pytest.raises(Exception, match=message):
@@ -183,11 +235,19 @@ def test_a_side_that_does_not_exist_is_refused():
 
 
 def test_the_printed_card_is_what_the_table_makes():
-    """Two pages with every line of every program; the committed files are those of the generator."""
-    text = "".join(page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(card.FILE))
+    """Two pages with every line of every program; the committed files are those of the
+    generator.
+    """
+    text = "".join(
+        page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(card.FILE)
+    )
     for program, _, convention, lines in card.rows():
         assert program in text and convention in text
         for form, line in lines:
             assert form in text and line.split(" * ")[0] in text, line
-    assert "C.T" in dict(dict((name, lines) for name, _, _, lines in card.rows())["SciPy"])["matrix"]
-    assert {name: file.read_bytes() for name, file in card.FILES.items()} == card.drawn(), f"run `{card.COMMAND}`"
+    assert (
+        "C.T" in dict(dict((name, lines) for name, _, _, lines in card.rows())["SciPy"])["matrix"]
+    )
+    assert {name: file.read_bytes() for name, file in card.FILES.items()} == card.drawn(), (
+        f"run `{card.COMMAND}`"
+    )

@@ -1,4 +1,6 @@
-"""The pictures: their geometry is the module's, they say in words what they show, and they come out the same."""
+"""The pictures: their geometry is the module's, they say in words what they show, and they come out
+the same.
+"""
 
 import hashlib
 import json
@@ -16,7 +18,16 @@ import pytest
 from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
 from orientation_figures import drawing as drawings
 from orientation_figures.animation import Animation, one_after_another
-from orientation_figures.drawing import BARB, HEADS, IN_SPACE, Drawing, looking_down, path_data, typeset, view_from
+from orientation_figures.drawing import (
+    BARB,
+    HEADS,
+    IN_SPACE,
+    Drawing,
+    looking_down,
+    path_data,
+    typeset,
+    view_from,
+)
 from orientation_figures.objects import draw_book, draw_eye, plane_drawing, turning_frames_animation
 from orientation_figures.style import DARK, LIGHT, STROKES
 
@@ -33,7 +44,9 @@ def gimbal_frames(angles):
     D = simple_dcm("y", angles[2]) @ C
     drawing = Drawing(ALT, view_from(np.radians(92), np.radians(24)), 112)
     for row, (letter, frame) in enumerate(zip("DCBA", (D, C, B, A))):
-        drawing.triad(letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46)
+        drawing.triad(
+            letter, frame, 2.55 * drawing.view[0] + (1 - 1.2 * row) * drawing.view[1], 0.46
+        )
     return drawing
 
 
@@ -51,9 +64,17 @@ def gimbal_animation(angles=GIMBAL_ANGLES):
 
 def samples():
     """One of each kind of figure."""
-    every = Drawing(ALT).triad("N", np.eye(3)).triad("A", dcm_from_axis_angle(AXIS, ANGLE), (0, 1, 0), 0.5)
-    every.arc((1, 0, 0), (0, 1, 1), label=r"$\theta$").right_angle((1, 0, 0), (0, 0, 1)).circle((1, 2, 3))
-    every.box(np.eye(3), (1, 2, 3)).cylinder((0, 0, 0), (1, 1, 0), 0.2).area(np.eye(3)).dot((0, 0, 1))
+    every = (
+        Drawing(ALT)
+        .triad("N", np.eye(3))
+        .triad("A", dcm_from_axis_angle(AXIS, ANGLE), (0, 1, 0), 0.5)
+    )
+    every.arc((1, 0, 0), (0, 1, 1), label=r"$\theta$").right_angle((1, 0, 0), (0, 0, 1)).circle(
+        (1, 2, 3)
+    )
+    every.box(np.eye(3), (1, 2, 3)).cylinder((0, 0, 0), (1, 1, 0), 0.2).area(np.eye(3)).dot(
+        (0, 0, 1)
+    )
     every.line(np.eye(3), "B", "tube").node((2, 2, 0), "Z").arrow((1, 1, 1), label="$v$", bow=20)
     draw_book(draw_eye(every, (0, 0, 2)), np.eye(3)).note(r"words and $\frac{\theta}{2}$")
     return {
@@ -77,7 +98,11 @@ def svg_of(figure):
 def arrows(drawing, letter):
     """From each arrow of a frame: the vector on the sheet from its tail to its tip, in pixels."""
     tails = [place[0] for kind, _, place, _ in drawing.marks if kind == f"axis {letter}"]
-    tips = [place[0] for kind, shape, place, _ in drawing.marks if kind == f"head {letter}" and shape == "MLLLZ"]
+    tips = [
+        place[0]
+        for kind, shape, place, _ in drawing.marks
+        if kind == f"head {letter}" and shape == "MLLLZ"
+    ]
     return np.array(tips[: len(tails)]) - tails
 
 
@@ -100,7 +125,9 @@ def test_views_are_frames_and_keep_z_upright():
         np.testing.assert_allclose(view @ view.T, np.eye(3), atol=1e-15)
         assert np.linalg.det(view) == pytest.approx(1)
         assert view[0] @ (0, 0, 1) == pytest.approx(0) and view[1] @ (0, 0, 1) > 0
-        towards = np.cos(elevation) * np.array([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)])
+        towards = np.cos(elevation) * np.array(
+            [np.cos(azimuth), np.sin(azimuth), np.tan(elevation)]
+        )
         np.testing.assert_allclose(view[2], towards, atol=1e-15)
 
 
@@ -119,7 +146,9 @@ def test_an_arc_sweeps_as_the_module_turns():
         np.testing.assert_allclose(head[0], drawing.on_sheet(a), atol=1e-9)
         np.testing.assert_allclose(curve[0], drawing.on_sheet(n), atol=1e-9)
         # Between the ends, the curve keeps to the true arc.
-        dense = drawing.on_sheet([dcm_from_axis_angle(AXIS, part).T @ n for part in np.linspace(0, ANGLE, 2000)])
+        dense = drawing.on_sheet(
+            [dcm_from_axis_angle(AXIS, part).T @ n for part in np.linspace(0, ANGLE, 2000)]
+        )
         for k in range(1, len(curve), 3):
             middle = np.array([1, 3, 3, 1]) / 8 @ curve[k - 1 : k + 3]
             assert np.linalg.norm(dense - middle, axis=1).min() < 0.1
@@ -133,14 +162,17 @@ def test_an_arc_between_two_directions_ends_on_the_second():
 
 
 @pytest.mark.parametrize(
-    "axis, name", [(sign + axis, name) for sign in ("", "-") for axis in "xyz" for name in ("theta", "phi")]
+    "axis, name",
+    [(sign + axis, name) for sign in ("", "-") for axis in "xyz" for name in ("theta", "phi")],
 )
 def test_plane_figures_turn_the_second_frame_the_way_they_say(axis, name):
     drawing = plane_drawing(axis, 0.4, "C", "D", name, components=True)
     direction = np.eye(3)["xyz".index(axis[-1])] * (-1 if axis[0] == "-" else 1)
     np.testing.assert_allclose(drawing.view[2], direction)
     assert np.linalg.det(drawing.view) == pytest.approx(1)
-    turned = [row for row, other in zip(dcm_from_axis_angle(direction, 0.4), "xyz") if other != axis[-1]]
+    turned = [
+        row for row, other in zip(dcm_from_axis_angle(direction, 0.4), "xyz") if other != axis[-1]
+    ]
     np.testing.assert_allclose(arrows(drawing, "D")[:2], drawing.on_sheet(turned), atol=1e-9)
     assert f"through {name}" in drawing.alt and "counterclockwise" in drawing.alt
 
@@ -247,7 +279,12 @@ def test_ids_resolve_and_sizes_are_small(name):
 
 
 def test_figures_on_one_page_do_not_share_ids():
-    everything = [part.get("id") for figure in SAMPLES.values() for part in svg_of(figure).iter() if part.get("id")]
+    everything = [
+        part.get("id")
+        for figure in SAMPLES.values()
+        for part in svg_of(figure).iter()
+        if part.get("id")
+    ]
     assert len(everything) == len(set(everything))
 
 
@@ -266,7 +303,12 @@ def test_nothing_leaves_the_sheet(name):
     left, top, width, height = map(float, svg_of(figure).get("viewBox").split())
     for drawing in getattr(figure, "drawings", [figure]):
         bounds = drawing.bounds()
-        assert left < bounds[0] and top < bounds[1] and bounds[2] < left + width and bounds[3] < top + height
+        assert (
+            left < bounds[0]
+            and top < bounds[1]
+            and bounds[2] < left + width
+            and bounds[3] < top + height
+        )
 
 
 @pytest.mark.parametrize("name", SAMPLES)
@@ -290,9 +332,15 @@ def test_the_html_is_closed_in_order(name):
 def test_output_is_the_same_in_every_run():
     code = (
         "import hashlib, sys; sys.path.insert(0, sys.argv[1]); from test_drawing import SAMPLES; "
-        "print({name: hashlib.sha256(figure._repr_html_().encode()).hexdigest() for name, figure in SAMPLES.items()})"
+        "print({name: hashlib.sha256(figure._repr_html_().encode()).hexdigest() for name, figure "
+        "in SAMPLES.items()})"
     )
-    here = str({name: hashlib.sha256(figure._repr_html_().encode()).hexdigest() for name, figure in SAMPLES.items()})
+    here = str(
+        {
+            name: hashlib.sha256(figure._repr_html_().encode()).hexdigest()
+            for name, figure in SAMPLES.items()
+        }
+    )
     for seed in "1", "2":
         run = subprocess.run(
             [sys.executable, "-c", code, os.path.dirname(__file__)],
@@ -306,7 +354,8 @@ def test_output_is_the_same_in_every_run():
 
 def test_the_module_loads_no_pictures_by_itself():
     code = (
-        'import sys, orientation; print([name for name in ("matplotlib", "orientation_figures.drawing") if name '
+        'import sys, orientation; print([name for name in ("matplotlib", '
+        '"orientation_figures.drawing") if name '
         "in sys.modules])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -317,7 +366,9 @@ def test_the_module_loads_no_pictures_by_itself():
 
 
 def key_frames(animation, letter, number):
-    """The tip of one arrow of a frame at every key frame, read from the SVG as the browser reads it."""
+    """The tip of one arrow of a frame at every key frame, read from the SVG as the browser reads
+    it.
+    """
     heads = [
         part
         for part in svg_of(animation).iter()
@@ -326,9 +377,16 @@ def key_frames(animation, letter, number):
     head = heads[number]
     (motion,) = head
     values = motion.get("values").split(";")
-    tips = np.array([[float(number) for number in re.findall(r"-?[\d.]+", value)[:2]] for value in values])
+    tips = np.array(
+        [[float(number) for number in re.findall(r"-?[\d.]+", value)[:2]] for value in values]
+    )
     times = np.array([float(time) for time in motion.get("keyTimes").split(";")])
-    assert motion.get("begin") == "indefinite" and times[0] == 0 and times[-1] == 1 and (np.diff(times) > 0).all()
+    assert (
+        motion.get("begin") == "indefinite"
+        and times[0] == 0
+        and times[-1] == 1
+        and (np.diff(times) > 0).all()
+    )
     every = np.linspace(0, 1, len(animation.moments))
     return np.column_stack([np.interp(every, times, tips[:, k]) for k in (0, 1)])
 
@@ -343,7 +401,12 @@ def test_one_after_another():
     "name, sequence, angles, origins",
     [
         ("moving", "zxy", GIMBAL_ANGLES, lambda view: (2.55 * view[0] + view[1], 0.46, 112)),
-        ("turning", "zxz", np.radians((50, 45, 40)), lambda view: (2.75 * view[0] - 2.45 * view[1], 1, 92)),
+        (
+            "turning",
+            "zxz",
+            np.radians((50, 45, 40)),
+            lambda view: (2.75 * view[0] - 2.45 * view[1], 1, 92),
+        ),
     ],
 )
 def test_key_frames_are_the_modules_orientations(name, sequence, angles, origins):
@@ -355,7 +418,9 @@ def test_key_frames_are_the_modules_orientations(name, sequence, angles, origins
         for moment, tip in zip(animation.moments, tips):
             row = dcm_from_body_fixed(one_after_another(angles, moment), sequence)[number]
             expected = scale * ((origin + length * row) @ view[:2].T) * (1, -1)
-            np.testing.assert_allclose(tip, expected, atol=0.08)  # one decimal of a pixel, and its time's four digits
+            np.testing.assert_allclose(
+                tip, expected, atol=0.08
+            )  # one decimal of a pixel, and its time's four digits
 
 
 def test_the_gimbal_ends_where_its_matrix_says():
@@ -364,14 +429,20 @@ def test_the_gimbal_ends_where_its_matrix_says():
     np.testing.assert_allclose(arrows(drawing, "D"), expected, atol=1e-9)
     aligned = gimbal_frames((0, 0, 0))
     for letter in "ABCD":
-        np.testing.assert_allclose(arrows(aligned, letter), 0.46 * aligned.on_sheet(np.eye(3)), atol=1e-9)
+        np.testing.assert_allclose(
+            arrows(aligned, letter), 0.46 * aligned.on_sheet(np.eye(3)), atol=1e-9
+        )
 
 
 def test_the_words_of_the_exercise_are_what_is_seen():
-    """In each step the arrows named stay, every other arrow of the frames named moves, and nothing else does."""
+    """In each step the arrows named stay, every other arrow of the frames named moves, and nothing
+    else does.
+    """
     animation = SAMPLES["turning"]
     told = [sentence for sentence in animation.drawings[0].alt.split(". ") if "marked" in sentence]
-    moments = [next(k for k, moment in enumerate(animation.moments) if moment == step) for step in range(4)]
+    moments = [
+        next(k for k, moment in enumerate(animation.moments) if moment == step) for step in range(4)
+    ]
     for step, (words, more) in enumerate(animation.steps):
         before, after = (animation.drawings[moments[k]] for k in (step, step + 1))
         named, axis = re.findall(r"\b[A-D]\b", words), re.search(r"the ([xyz]) arrow", more)[1]
@@ -394,7 +465,9 @@ def test_nothing_moves_by_itself():
         moving = [part for part in svg.iter() if part.tag.startswith("animate")]
         assert len(moving) > 20 and all(part.get("begin") == "indefinite" for part in moving)
         # Until then the paths stand as in the last drawing.
-        paths = [part.get("d") for part in svg.iter() if part.tag.endswith("path") and part.get("class")]
+        paths = [
+            part.get("d") for part in svg.iter() if part.tag.endswith("path") and part.get("class")
+        ]
         last = [
             path_data(shape, place, 1)
             for kind, shape, place, _ in SAMPLES[name].drawings[-1].marks
@@ -406,15 +479,23 @@ def test_nothing_moves_by_itself():
 def test_moments_that_do_not_match_are_refused():
     with pytest.raises(ValueError, match="does not consist of the same marks"):
         Animation(
-            lambda progress: Drawing(ALT, looking_down("z")).triad("A", simple_dcm("x", progress)), [("A turns", 1.0)]
+            lambda progress: Drawing(ALT, looking_down("z")).triad("A", simple_dcm("x", progress)),
+            [("A turns", 1.0)],
         )
 
 
 def test_what_a_screen_reader_says_follows_the_angle():
     html = SAMPLES["moving"]._repr_html_()
     words, texts = json.loads(re.search(r"data-texts='([^']*)'", html)[1])
-    assert len(words) == 3 and words[1] == "Step 2 of 3: C and D turn about the x axis of B through theta"
-    assert texts[0] == [0, ", 0 degrees"] and texts[5] == [0, ", 35 degrees"] and texts[-1] == [2, ", 25 degrees"]
+    assert (
+        len(words) == 3
+        and words[1] == "Step 2 of 3: C and D turn about the x axis of B through theta"
+    )
+    assert (
+        texts[0] == [0, ", 0 degrees"]
+        and texts[5] == [0, ", 35 degrees"]
+        and texts[-1] == [2, ", 25 degrees"]
+    )
     assert len(texts) == len(SAMPLES["moving"].moments)
 
 
@@ -452,7 +533,8 @@ def test_keyboard_button_and_slider(moving_page):
     assert first.evaluate(TIP) == pytest.approx(list(tips[8]), abs=0.1)
     assert slider.get_attribute("aria-valuetext").startswith("Step 2 of 3: C and D turn")
     assert (
-        first.query_selector("output").inner_text() == "Step 2 of 3: C and D turn about the x axis of B through theta"
+        first.query_selector("output").inner_text()
+        == "Step 2 of 3: C and D turn about the x axis of B through theta"
     )
     button.press("Enter")
     moving_page.wait_for_function('figure => figure.querySelector("input").value > 9', arg=first)
@@ -465,7 +547,8 @@ def test_keyboard_button_and_slider(moving_page):
     # Played from the end, it starts again.
     other.query_selector("button").click()
     between = (
-        'figure => { const { value, min, max } = figure.querySelector("input"); return +value > +min && '
+        'figure => { const { value, min, max } = figure.querySelector("input"); return +value > '
+        "+min && "
         "+value < +max; }"
     )
     moving_page.wait_for_function(between, arg=other)
@@ -495,7 +578,9 @@ def test_labels_at_hand_are_those_that_matplotlib_sets():
 
 def test_a_drawing_without_matplotlib_is_the_same(monkeypatch):
     def one():
-        return Drawing("n x points right, n y up, and an arrow leads to the label of an angle.").triad("N", np.eye(3))
+        return Drawing(
+            "n x points right, n y up, and an arrow leads to the label of an angle."
+        ).triad("N", np.eye(3))
 
     before = one().svg()
     drawings.typeset.cache_clear()

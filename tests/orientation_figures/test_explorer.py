@@ -1,4 +1,6 @@
-"""The explorer of sequences, without a browser: what is set in its controls, and what it then shows."""
+"""The explorer of sequences, without a browser: what is set in its controls, and what it then
+shows.
+"""
 
 import re
 
@@ -7,7 +9,13 @@ import sympy as sm
 from traitlets import TraitError
 
 from notebook_pages.moving import WIDGET
-from orientation import PROPER_EULER, SEQUENCES, dcm_from_body_fixed, dcm_from_space_fixed, simple_dcm
+from orientation import (
+    PROPER_EULER,
+    SEQUENCES,
+    dcm_from_body_fixed,
+    dcm_from_space_fixed,
+    simple_dcm,
+)
 from orientation_figures.moving import SequenceExplorer
 from orientation_figures.moving.explorer import angle_from_text
 
@@ -22,7 +30,9 @@ def shown_matrices(explorer):
 
 def typed(explorer, place, text):
     """Type an angle, as the front end tells it."""
-    explorer.set_state({"angles": [text if k == place else angle for k, angle in enumerate(explorer.angles)]})
+    explorer.set_state(
+        {"angles": [text if k == place else angle for k, angle in enumerate(explorer.angles)]}
+    )
 
 
 def tex_of(matrix):
@@ -30,7 +40,9 @@ def tex_of(matrix):
 
 
 @pytest.mark.sampled(6)
-@pytest.mark.parametrize("fixed, build", [("body", dcm_from_body_fixed), ("space", dcm_from_space_fixed)])
+@pytest.mark.parametrize(
+    "fixed, build", [("body", dcm_from_body_fixed), ("space", dcm_from_space_fixed)]
+)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed, build):
     explorer = SequenceExplorer()
@@ -41,7 +53,9 @@ def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed
     somewhere = {PSI: 0.3, THETA: -0.7, PHI: 1.9}
     assert (order[0] * order[1] * order[2] - dcm).subs(somewhere).norm() < 1e-15
     assert explorer.dcm == dcm and list(explorer.factors) == turns
-    *factors, product, locked = [[[entry.strip() for entry in row] for row in one] for one in shown_matrices(explorer)]
+    *factors, product, locked = [
+        [[entry.strip() for entry in row] for row in one] for one in shown_matrices(explorer)
+    ]
     assert factors == [tex_of(turn) for turn in order] and product == tex_of(dcm)
     lock = 0 if sequence in PROPER_EULER else sm.pi / 2
     left = sm.trigsimp(dcm.subs(THETA, lock))
@@ -50,7 +64,9 @@ def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed
     assert explorer.result.count("<mtable>") == 5 and explorer.result.count("<mtd>") == 45
     assert "varphi" not in explorer.result
     # Only the sum or the difference of the two other angles is left.
-    assert any((left.diff(PSI) + sign * left.diff(PHI)).subs(somewhere).norm() < 1e-15 for sign in (1, -1))
+    assert any(
+        (left.diff(PSI) + sign * left.diff(PHI)).subs(somewhere).norm() < 1e-15 for sign in (1, -1)
+    )
     where = "θ = 0 and θ = π" if sequence in PROPER_EULER else "θ = π/2 and θ = −π/2"
     assert f"{'-'.join(sequence)} locks at {where}" in explorer.message
 

@@ -39,7 +39,11 @@ def laboratory(tmp_path_factory):
     notebook = nbformat.v4.new_notebook(
         cells=[nbformat.v4.new_code_cell(source, id=f"c{k}") for k, source in enumerate(cells)]
     )
-    notebook.metadata["kernelspec"] = {"name": "python3", "display_name": "Python 3", "language": "python"}
+    notebook.metadata["kernelspec"] = {
+        "name": "python3",
+        "display_name": "Python 3",
+        "language": "python",
+    }
     nbformat.write(notebook, folder / "figures.ipynb")
     # Every cell stands in the page, also those out of sight; no questions about news.
     for name, values in (
@@ -52,7 +56,9 @@ def laboratory(tmp_path_factory):
     homes = ("JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR", "IPYTHONDIR")
     places = {name: str(folder / name.lower()) for name in homes}
     environment = (
-        os.environ | places | {"JUPYTERLAB_SETTINGS_DIR": str(folder / "settings"), "JUPYTER_PREFER_ENV_PATH": "1"}
+        os.environ
+        | places
+        | {"JUPYTERLAB_SETTINGS_DIR": str(folder / "settings"), "JUPYTER_PREFER_ENV_PATH": "1"}
     )
     with (folder / "log").open("w") as log:
         server = subprocess.Popen(
@@ -71,7 +77,9 @@ def wait_for_address(server, folder):
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
         for file in (folder / "jupyter_runtime_dir").glob("jpserver-*.json"):
-            if file.name.endswith(f"{server.pid}.json") and (text := file.read_text("utf8")).endswith("}"):
+            if file.name.endswith(f"{server.pid}.json") and (
+                text := file.read_text("utf8")
+            ).endswith("}"):
                 return json.loads(text)["url"]
         if server.poll() is not None:
             break
@@ -91,8 +99,14 @@ class Kernel:
         self.client.wait_for_ready(timeout=PATIENCE)
 
     def run(self, code):
-        reply = self.client.execute_interactive(code, store_history=False, timeout=PATIENCE, allow_stdin=False,
-                                                output_hook=lambda message: None)["content"]  # fmt: skip
+        reply = self.client.execute_interactive(
+            code,
+            store_history=False,
+            timeout=PATIENCE,
+            allow_stdin=False,
+            # fmt: skip
+            output_hook=lambda message: None,
+        )["content"]
         assert reply["status"] == "ok", reply
 
     def value(self, code):
@@ -129,11 +143,20 @@ def test_python_and_every_figure_move_together(browser, laboratory):
     context.set_default_timeout(1000 * PATIENCE)
     page, faults, asked = context.new_page(), [], []
     page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("request", lambda request: request.url.startswith((address, "data:", "blob:")) or asked.append(request.url))
+    page.on(
+        "request",
+        lambda request: (
+            request.url.startswith((address, "data:", "blob:")) or asked.append(request.url)
+        ),
+    )
     page.goto(f"{address}lab/tree/figures.ipynb?token={TOKEN}")
-    page.wait_for_function("document.querySelectorAll('.jp-CodeCell').length > 7 && window.jupyterapp")
+    page.wait_for_function(
+        "document.querySelectorAll('.jp-CodeCell').length > 7 && window.jupyterapp"
+    )
     page.evaluate(RUN_ALL)
-    page.wait_for_function("document.querySelectorAll('.jp-OutputArea-output .moving .sheet').length >= 6")
+    page.wait_for_function(
+        "document.querySelectorAll('.jp-OutputArea-output .moving .sheet').length >= 6"
+    )
     kernel = Kernel(folder, address)
     cells = page.locator(".jp-CodeCell")
 
@@ -157,7 +180,9 @@ def test_python_and_every_figure_move_together(browser, laboratory):
                 "([field, value]) => Math.abs(field.value - value) < 0.01",
                 arg=[cell.get_by_label(label, exact=True).first.element_handle(), shown],
             )
-        page.wait_for_function(f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, before])
+        page.wait_for_function(
+            f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, before]
+        )
         assert kernel.value("heard[-1][:2]") == [kind, name]
         # Keys move Python, and nothing else of the notebook.
         count = kernel.value("len(heard)")
@@ -178,7 +203,9 @@ def test_python_and_every_figure_move_together(browser, laboratory):
         state, drawn = kernel.value(f"figures[{kind!r}].state()"), page.evaluate(SHOWN, element)
         box = cell.locator(".sheet").first.bounding_box()
         drag(page, (box["x"] + 8, box["y"] + box["height"] - 8), (60, 0))
-        page.wait_for_function(f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, drawn])
+        page.wait_for_function(
+            f"([cell, before]) => ({SHOWN})(cell) !== before", arg=[element, drawn]
+        )
         assert kernel.value(f"figures[{kind!r}].state()") == state
         box = part.last.bounding_box()
         drag(page, (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2), (-30, 24))

@@ -1,4 +1,6 @@
-"""The moving figures as a reader meets them: by mouse, by keys alone, by touch, in both themes, from disk."""
+"""The moving figures as a reader meets them: by mouse, by keys alone, by touch, in both themes,
+from disk.
+"""
 
 import gzip
 import json
@@ -25,7 +27,8 @@ import orientation as module
 from orientation_figures import moving
 from orientation_figures.moving import bundle
 
-HEAVIEST = 80_000  # bytes of our own JavaScript for all figures together, compressed; a page loads those it shows
+# bytes of our own JavaScript for all figures together, compressed; a page loads those it shows
+HEAVIEST = 80_000
 SMALLEST_TARGET = 24  # pixels
 MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag may change
 
@@ -33,14 +36,16 @@ MOST_WRITTEN = 300  # attributes, texts and elements that one picture of a drag 
 def test_every_figure_is_tested():
     assert {"triad", "gimbal", "nine_numbers"} <= set(KINDS)
     modules = {path.stem for path in (bundle.FOLDER / "js").glob("*.js")}
-    # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py. A formula that is taken away
-    # is no drawing: test_take_away.py.
+    # The explorer needs Python for its algebra: tests/test_explorer.py and test_live.py. A formula
+    # that is taken away is no drawing: test_take_away.py.
     own = {own for names in bundle.OWN.values() for own in names}
     assert modules == {*KINDS, *bundle.SHARED, *own, "explorer", "formula"}
 
 
 def test_weight():
-    """All figures together; the workbench has a page of its own, where it is alone with what all share."""
+    """All figures together; the workbench has a page of its own, where it is alone with what all
+    share.
+    """
     kinds = [kind for kind in KINDS if kind != "workbench"]
     texts = {"shared": bundle.shared_script()} | {kind: bundle.script(kind) for kind in KINDS}
     weights = {name: len(gzip.compress(text.encode(), 6)) for name, text in texts.items()}
@@ -58,7 +63,10 @@ def test_figure_on_the_page(open_figure, kind, viewport, theme):
     assert page.evaluate(SIDEWAYS) <= 0
     assert violations(page) == []
     boxes = ("still", "live .sheet")
-    views = [page.get_attribute(f".moving .{box}{' svg' if box == 'still' else ''}", "viewBox") for box in boxes]
+    views = [
+        page.get_attribute(f".moving .{box}{' svg' if box == 'still' else ''}", "viewBox")
+        for box in boxes
+    ]
     assert views[0] == views[1], "still and figure differ in size"
     assert not page.is_visible(".moving .still")
 
@@ -83,8 +91,9 @@ def test_nothing_moves_while_the_script_is_on_its_way(open_figure, kind):
         assert asleep.locator("#after").bounding_box()["y"] == pytest.approx(after["y"], abs=60)
 
 
-# Each shape by its colour and the box that it fills. Labels are pictures of letters, without a class; what is there
-# for the hand or tells the hand's place alone, and the lines behind a graph, stand in one of the pictures only.
+# Each shape by its colour and the box that it fills. Labels are pictures of letters, without a
+# class; what is there for the hand or tells the hand's place alone, and the lines behind a graph,
+# stand in one of the pictures only.
 SHAPES = """(box) => {
   for (const still of document.querySelectorAll('.still')) still.style.display = 'block';
   return [...document.querySelectorAll(box)].map((sheet) =>
@@ -103,16 +112,20 @@ def without_twin(shapes, others):
     return [
         (colour, place)
         for colour, place in shapes
-        if not any(colour == other and place == pytest.approx(twin, abs=0.16) for other, twin in others)
+        if not any(
+            colour == other and place == pytest.approx(twin, abs=0.16) for other, twin in others
+        )
     ]
 
 
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_both_languages_draw_the_same_picture(open_figure, kind):
-    """The still comes from Python, the figure from the browser: every shape lies where its twin does.
+    """The still comes from Python, the figure from the browser: every shape lies where its twin
+    does.
 
-    The first picture of each: what stands beside it grows with time in the page, and is whole on paper.
+    The first picture of each: what stands beside it grows with time in the page, and is whole on
+    paper.
     """
     page = open_figure(kind)
     (still, *_), (live, *_) = (page.evaluate(SHAPES, box) for box in (".still svg", ".live .sheet"))
@@ -156,7 +169,9 @@ FOCUSED = """() => {
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_keys_alone(open_figure, kind):
-    """Tab reaches every control in turn, each shows the focus and has a name, and each does what it says."""
+    """Tab reaches every control in turn, each shows the focus and has a name, and each does what it
+    says.
+    """
     page = open_figure(kind)
     stops, tags = [], set()
     for _ in range(60):
@@ -170,7 +185,9 @@ def test_keys_alone(open_figure, kind):
         settle(page)  # what leaves the focus is drawn as it was
         before = drawing(page)
         if stop["type"] == "range":
-            assert stop["name"] in stop["value"] and any(digit in stop["value"] for digit in "0123456789")
+            assert stop["name"] in stop["value"] and any(
+                digit in stop["value"] for digit in "0123456789"
+            )
             for key in ("ArrowLeft", "ArrowRight"):  # a recording begins at its first moment
                 page.keyboard.press(key)
                 settle(page)
@@ -182,7 +199,8 @@ def test_keys_alone(open_figure, kind):
             page.keyboard.press("ArrowUp")
             settle(page)
             assert drawing(page) != before
-            # A view is turned back by Home; where the keys turn a frame instead, by the opposite key.
+            # A view is turned back by Home; where the keys turn a frame instead, by the opposite
+            # key.
             page.keyboard.press("Home" if "Home" in stop["name"] else "ArrowDown")
             settle(page)
             assert drawing(page) == before
@@ -206,7 +224,9 @@ def test_keys_alone(open_figure, kind):
 @pytest.mark.parametrize("colours", ["none", "active"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_targets_are_large_enough_for_a_finger(open_figure, kind, colours):
-    """Of each control the box itself, without the words beside it; also in colours that the reader's system forces."""
+    """Of each control the box itself, without the words beside it; also in colours that the
+    reader's system forces.
+    """
     page = open_figure(kind, viewport=NARROW, forced_colors=colours)
     boxes = page.eval_on_selector_all(
         ".live :is(button, input, select, .grip)",
@@ -233,7 +253,8 @@ def test_touch(open_figure, kind):
     page.wait_for_function("scrollY > 50")
 
 
-# Where a part is held: the middle of a spot, or a corner of a line, which always is the same point of it.
+# Where a part is held: the middle of a spot, or a corner of a line, which always is the same point
+# of it.
 HOLD = """([part, corner]) => {
   const grip = document.querySelector(`.sheet [data-part="${part}"]`), matrix = grip.getScreenCTM();
   const [x, y] = corner === null ? [grip.cx.baseVal.value, grip.cy.baseVal.value]
@@ -278,7 +299,9 @@ def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("part, name", [("B", "psi"), ("C", "theta")])
 def test_a_ring_stays_under_the_pointer(open_figure, part, name):
-    """Places of one point of a ring, from the slider; held there, the ring follows the pointer along them."""
+    """Places of one point of a ring, from the slider; held there, the ring follows the pointer
+    along them.
+    """
     page, places = open_figure("gimbal"), []
     for angle in (40, 20, 0, -20, 20):
         type_number(page, f"{name} in degrees", angle)
@@ -289,12 +312,16 @@ def test_a_ring_stays_under_the_pointer(open_figure, part, name):
     for angle, place in ((0, places[2]), (-20, places[3]), (40, places[0])):
         page.mouse.move(*place, steps=10)
         settle(page)
-        assert float(page.get_by_label(f"{name} in degrees").input_value()) == pytest.approx(angle, abs=2)
+        assert float(page.get_by_label(f"{name} in degrees").input_value()) == pytest.approx(
+            angle, abs=2
+        )
     page.mouse.up()
 
 
 @pytest.mark.sampled(1)
-@pytest.mark.parametrize("axis, angle", [((0, 0, 1), 30), ((1, 2, -2), -125), ((-3, 0.5, 1), 180), ((0, 1, 0), 0)])
+@pytest.mark.parametrize(
+    "axis, angle", [((0, 0, 1), 30), ((1, 2, -2), -125), ((-3, 0.5, 1), 180), ((0, 1, 0), 0)]
+)
 def test_numbers_of_the_triad_are_those_of_the_module(open_figure, axis, angle):
     page = open_figure("triad")
     for name, value in zip("xyz", axis):
@@ -302,7 +329,9 @@ def test_numbers_of_the_triad_are_those_of_the_module(open_figure, axis, angle):
     type_number(page, "theta in degrees", angle)
     radians = np.radians(angle)
     dcm = module.dcm_from_axis_angle(axis, radians)
-    assert numbers(page, "Direction cosine matrix of A with respect to N") == pytest.approx(dcm, abs=6e-4)
+    assert numbers(page, "Direction cosine matrix of A with respect to N") == pytest.approx(
+        dcm, abs=6e-4
+    )
     quaternion = module.quaternion_from_axis_angle(axis, radians)
     assert numbers(page, "Quaternion, scalar first") == pytest.approx(quaternion, abs=6e-4)
     unit = np.divide(axis, np.linalg.norm(axis))
@@ -332,12 +361,16 @@ def test_every_number_of_the_triad_says_what_it_means(open_figure):
 
 def test_numbers_are_reached_by_arrow_keys_and_read_aloud(open_figure):
     page = open_figure("triad")
-    first = page.locator('[aria-label="Direction cosine matrix of A with respect to N"] button').first
+    first = page.locator(
+        '[aria-label="Direction cosine matrix of A with respect to N"] button'
+    ).first
     first.focus()
     page.keyboard.press("ArrowRight")
     page.keyboard.press("ArrowDown")
     assert page.evaluate("document.activeElement.dataset.at") == "1,1"
-    page.wait_for_function("document.querySelector('[role=status]').textContent.includes('a y · n y = cos')")
+    page.wait_for_function(
+        "document.querySelector('[role=status]').textContent.includes('a y · n y = cos')"
+    )
     page.keyboard.press("Escape")
     settle(page)
     assert page.locator(".sheet .faded").count() == 0
@@ -352,9 +385,13 @@ def test_gimbal_shows_the_matrix_of_the_module(open_figure, sequence):
         for name, angle in zip(("psi", "theta", "phi"), angles):
             type_number(page, f"{name} in degrees", angle)
         dcm = module.dcm_from_body_fixed(np.radians(angles), sequence)
-        assert numbers(page, "Direction cosine matrix of D with respect to A") == pytest.approx(dcm, abs=6e-4)
+        assert numbers(page, "Direction cosine matrix of D with respect to A") == pytest.approx(
+            dcm, abs=6e-4
+        )
         margin = np.degrees(module.gimbal_lock_margin(np.radians(angles), sequence))
-        assert float(page.get_attribute("[role=meter]", "aria-valuenow")) == pytest.approx(margin, abs=0.06)
+        assert float(page.get_attribute("[role=meter]", "aria-valuenow")) == pytest.approx(
+            margin, abs=0.06
+        )
 
 
 @pytest.mark.sampled(1)
@@ -378,7 +415,9 @@ def test_two_sliders_do_the_same_thing_at_lock(open_figure, sequence):
 
 
 @pytest.mark.sampled(2)
-@pytest.mark.parametrize("example", ["Valid", "One decimal", "Measured", "Skewed", "1.2 times", "Left-handed"])
+@pytest.mark.parametrize(
+    "example", ["Valid", "One decimal", "Measured", "Skewed", "1.2 times", "Left-handed"]
+)
 def test_nine_numbers_says_what_the_module_says(open_figure, example):
     page = open_figure("nine_numbers")
     page.get_by_role("button", name=example).click()
@@ -418,7 +457,8 @@ def test_nine_numbers_leaves_alone_what_is_being_typed(open_figure):
     assert field.input_value() != "99"
 
 
-# How fast a drag is answered is measured by `python -m benchmarks.moving`. What makes it fast is tested here.
+# How fast a drag is answered is measured by `python -m benchmarks.moving`. What makes it fast is
+# tested here.
 MOVES = """async ({ pictures, moves }) => {
   const control = document.querySelector('.live input[type=range], .live input, .live textarea');
   const [low, high] = control.type === 'range' ? [Number(control.min), Number(control.max)] : [-1, 1];
@@ -450,7 +490,9 @@ MOVES = """async ({ pictures, moves }) => {
 
 
 @pytest.mark.sampled(1)
-@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "hands"])  # that has buttons and no slider
+@pytest.mark.parametrize(
+    "kind", [kind for kind in KINDS if kind != "hands"]
+)  # that has buttons and no slider
 def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(open_figure, kind):
     # The slider of a challenge adjusts the last turn.
     page = open_figure(moving.ChallengeFigure(turns=[("z", 0.3)]) if kind == "challenge" else kind)
@@ -493,7 +535,9 @@ def test_reduced_motion_is_respected(open_figure):
 
 def test_a_figure_starts_from_its_own_state(open_figure):
     """Two figures of one kind on a page do not know of each other."""
-    page = open_figure([moving.TriadFigure(angle=0.5), moving.TriadFigure(angle=-1.0, axis=(0, 0, 1))])
+    page = open_figure(
+        [moving.TriadFigure(angle=0.5), moving.TriadFigure(angle=-1.0, axis=(0, 0, 1))]
+    )
     fields = page.get_by_label("theta in degrees")
     values = [float(fields.nth(k).input_value()) for k in range(2)]
     assert values == pytest.approx(np.degrees([0.5, -1.0]), abs=0.01)

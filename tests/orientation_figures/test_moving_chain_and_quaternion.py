@@ -1,4 +1,6 @@
-"""The chain of turns and the quaternion with its double: in Python, and in the browser by keys, touch and mouse."""
+"""The chain of turns and the quaternion with its double: in Python, and in the browser by keys,
+touch and mouse.
+"""
 
 import json
 import math
@@ -54,8 +56,16 @@ def numbers_in(text):
 def test_chain_is_the_products_of_the_module(seed):
     angles = np.random.default_rng(seed).uniform(-3, 3, 3)
     turns = list(zip("zxy", angles))
-    assert rotation_error(SuccessiveFigure(turns=turns).dcm, dcm_from_body_fixed(angles, "zxy")) < 1e-14
-    assert rotation_error(SuccessiveFigure(turns=turns, fixed="space").dcm, dcm_from_space_fixed(angles, "zxy")) < 1e-14
+    assert (
+        rotation_error(SuccessiveFigure(turns=turns).dcm, dcm_from_body_fixed(angles, "zxy"))
+        < 1e-14
+    )
+    assert (
+        rotation_error(
+            SuccessiveFigure(turns=turns, fixed="space").dcm, dcm_from_space_fixed(angles, "zxy")
+        )
+        < 1e-14
+    )
 
 
 def test_chain_compared_with_the_exchanged_one():
@@ -65,7 +75,10 @@ def test_chain_compared_with_the_exchanged_one():
     # Each is a third of a turn about a corner of the cube; so is the turn between them.
     assert math.degrees(figure.angle_between) == pytest.approx(120)
     figure.compare = "body and space fixed"
-    assert rotation_error(figure.other, SuccessiveFigure(turns=RIGHT_ANGLES, fixed="space").dcm) < 1e-15
+    assert (
+        rotation_error(figure.other, SuccessiveFigure(turns=RIGHT_ANGLES, fixed="space").dcm)
+        < 1e-15
+    )
     figure.compare = "nothing"
     assert figure.other is None and figure.angle_between is None
 
@@ -147,7 +160,11 @@ def test_half_a_turn_has_no_shorter_way():
 @pytest.mark.parametrize(
     "figure",
     [SuccessiveFigure(**FOUR_TURNS) for FOUR_TURNS in CHAINS]
-    + [QuaternionFigure(), QuaternionFigure(angle=11.0), *(QuaternionFigure(view="way", **ends) for ends in ENDS)],
+    + [
+        QuaternionFigure(),
+        QuaternionFigure(angle=11.0),
+        *(QuaternionFigure(view="way", **ends) for ends in ENDS),
+    ],
 )
 def test_still_has_the_state_and_stands_for_the_figure(figure):
     soup = BeautifulSoup(figure.still(), "html.parser")
@@ -161,13 +178,19 @@ def test_still_has_the_state_and_stands_for_the_figure(figure):
     elif figure.view == "double":
         assert numbers_in(alt)[-4:] == pytest.approx(figure.quaternion.tolist(), abs=0.000501)
     else:
-        assert numbers_in(alt)[-3:] == pytest.approx(np.linalg.norm(figure.blend(figure.share), axis=1), abs=0.005001)
+        assert numbers_in(alt)[-3:] == pytest.approx(
+            np.linalg.norm(figure.blend(figure.share), axis=1), abs=0.005001
+        )
     left, top, right, bottom = figure.sheet
     assert soup.svg["viewbox"] == f"{left} {top} {right - left} {bottom - top}"
 
 
 def test_still_keeps_within_its_sheet():
-    for figure in [*(SuccessiveFigure(**chain) for chain in CHAINS), QuaternionFigure(), QuaternionFigure(view="way")]:
+    for figure in [
+        *(SuccessiveFigure(**chain) for chain in CHAINS),
+        QuaternionFigure(),
+        QuaternionFigure(view="way"),
+    ]:
         inside = np.array(figure.drawing().bounds()) * (-1, -1, 1, 1)
         assert (inside <= np.array(figure.sheet) * (-1, -1, 1, 1)).all(), (figure.state(), inside)
 
@@ -205,9 +228,12 @@ def test_chain_shows_the_numbers_of_the_module(open_figure, chain):
     shown = page.eval_on_selector_all(
         ".factor:not([hidden])",
         "all => all.sort((a, b) => a.style.order - b.style.order)"
-        ".map(f => [...f.querySelectorAll('.small-matrix span')].map(s => s.textContent.replace('\u2212', '-')))",
+        ".map(f => [...f.querySelectorAll('.small-matrix span')].map(s => "
+        "s.textContent.replace('\u2212', '-')))",
     )
-    product = np.linalg.multi_dot([np.eye(3), *(np.reshape([float(e) for e in one], (3, 3)) for one in shown)])
+    product = np.linalg.multi_dot(
+        [np.eye(3), *(np.reshape([float(e) for e in one], (3, 3)) for one in shown)]
+    )
     assert len(shown) == len(figure.turns)
     assert np.abs(product - figure.dcm).max() < 0.03
 
@@ -219,7 +245,10 @@ def test_double_shows_the_numbers_of_the_module(open_figure, angle):
     page = open_figure(figure)
     shown = numbers(page, "q and minus q, scalar first")
     assert np.abs(shown - [figure.quaternion, -figure.quaternion]).max() < 5.01e-4
-    assert np.abs(matrix(page, "Direction cosine matrix of A with respect to N") - figure.dcm).max() < 5.01e-4
+    assert (
+        np.abs(matrix(page, "Direction cosine matrix of A with respect to N") - figure.dcm).max()
+        < 5.01e-4
+    )
 
 
 @pytest.mark.sampled(1)
@@ -233,13 +262,17 @@ def test_ways_show_the_numbers_of_the_module(open_figure, ends):
     assert shown[:, 0] == pytest.approx(np.degrees(turned), abs=0.0501)
     assert shown[:, 1] == pytest.approx(np.degrees(figure.speeds(figure.share)), abs=0.0501)
     lengths = np.linalg.norm(figure.blend(figure.share), axis=1)
-    assert numbers(page, "Lengths of the rows of the blended matrix") == pytest.approx(lengths, abs=5.01e-4)
+    assert numbers(page, "Lengths of the rows of the blended matrix") == pytest.approx(
+        lengths, abs=5.01e-4
+    )
 
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("ends", ENDS)
 def test_speeds_in_the_words_are_those_of_the_table(open_figure, ends):
-    """The slowest and the fastest of the way by Euler angles: nowhere does the table show another one."""
+    """The slowest and the fastest of the way by Euler angles: nowhere does the table show another
+    one.
+    """
     figure = QuaternionFigure(view="way", **ends)
     page = open_figure(figure)
     said = re.search(r"at ([\d.]+) to ([\d.]+) °/s", words(page))
@@ -247,10 +280,13 @@ def test_speeds_in_the_words_are_those_of_the_table(open_figure, ends):
     speeds = np.degrees([figure.speeds(share)[1] for share in shares])
     for word, place in ((said[1], speeds.argmin()), (said[2], speeds.argmax())):
         page.evaluate(
-            "share => { const { model } = document.querySelector('.moving'); model.move({ ...model.moved, share }); }",
+            "share => { const { model } = document.querySelector('.moving'); model.move({ "
+            "...model.moved, share }); }",
             float(shares[place]),
         )
-        assert numbers(page, "The three ways")[1, 1] == pytest.approx(float(word), abs=0.0501), place
+        assert numbers(page, "The three ways")[1, 1] == pytest.approx(float(word), abs=0.0501), (
+            place
+        )
 
 
 def test_half_a_turn_is_said(open_figure):
@@ -265,7 +301,10 @@ def test_chain_by_keys_alone(open_figure):
         page.keyboard.press("ArrowLeft")
     expected = SuccessiveFigure(turns=(("z", math.radians(80)), RIGHT_ANGLES[1]))
     assert np.abs(matrix(page) - expected.dcm).max() < 5.01e-4
-    assert page.evaluate("document.activeElement.getAttribute('aria-valuetext')") == "Turn 1, to frame A, 80 degrees"
+    assert (
+        page.evaluate("document.activeElement.getAttribute('aria-valuetext')")
+        == "Turn 1, to frame A, 80 degrees"
+    )
     tab_to(page, "Exchange turns 1 and 2")
     page.keyboard.press("Enter")
     expected.turns = expected.turns[::-1]
@@ -281,9 +320,14 @@ def test_chain_by_keys_alone(open_figure):
     page.keyboard.press("Space")
     settle(page)
     assert page.locator(".factor:visible").count() == 1
-    assert page.eval_on_selector('select[aria-label="Compare with"]', "list => list.value") == "nothing"
+    assert (
+        page.eval_on_selector('select[aria-label="Compare with"]', "list => list.value")
+        == "nothing"
+    )
     # What is said aloud follows the text.
-    page.wait_for_function("""document.querySelector('[role="status"]').textContent.includes('body fixed')""")
+    page.wait_for_function(
+        """document.querySelector('[role="status"]').textContent.includes('body fixed')"""
+    )
 
 
 def test_chain_body_and_space_fixed(open_figure):
@@ -306,7 +350,9 @@ def test_number_lights_up(open_figure):
 
 
 def test_quaternion_by_keys_alone(open_figure):
-    page = open_figure(QuaternionFigure(axis=(0, 0, 1), angle=math.radians(350)), reduced_motion="reduce")
+    page = open_figure(
+        QuaternionFigure(axis=(0, 0, 1), angle=math.radians(350)), reduced_motion="reduce"
+    )
     tab_to(page, "theta")
     for _ in range(10):
         page.keyboard.press("ArrowRight")
@@ -363,14 +409,22 @@ def test_quaternion_by_touch(open_figure):
     scale = sheet["width"] / 360
     centre = sheet["x"] + (118 + 142) * scale, sheet["y"] + (142 + 130) * scale
     # Half way round the circle is once round for the frame.
-    drag_with_a_finger(page, middle(page.locator('.grip[data-part="q"]')), (centre[0], centre[1] - 70 * scale))
-    drag_with_a_finger(page, middle(page.locator('.grip[data-part="q"]')), (centre[0] - 70 * scale, centre[1]))
+    drag_with_a_finger(
+        page, middle(page.locator('.grip[data-part="q"]')), (centre[0], centre[1] - 70 * scale)
+    )
+    drag_with_a_finger(
+        page, middle(page.locator('.grip[data-part="q"]')), (centre[0] - 70 * scale, centre[1])
+    )
     angle = float(page.input_value('input[aria-label="theta in degrees"]'))
     assert angle == pytest.approx(360, abs=8)
     figure = QuaternionFigure(angle=math.radians(angle))
-    assert numbers(page, "q and minus q, scalar first")[0] == pytest.approx(figure.quaternion, abs=5.01e-4)
+    assert numbers(page, "q and minus q, scalar first")[0] == pytest.approx(
+        figure.quaternion, abs=5.01e-4
+    )
     page.get_by_role("button", name="From A to B").tap()
-    assert page.locator(".sheet:visible").count() == 1 and numbers(page, "The three ways").shape == (3, 2)
+    assert page.locator(".sheet:visible").count() == 1 and numbers(
+        page, "The three ways"
+    ).shape == (3, 2)
 
 
 EVERY = [
@@ -391,7 +445,8 @@ def test_accessible_in_both_themes_and_not_wider_than_a_phone(open_figure, make,
         assert violations(page) == []
 
 
-# Pictures that come every 50 milliseconds, however fast or slow this machine is, and the times that were shown.
+# Pictures that come every 50 milliseconds, however fast or slow this machine is, and the times that
+# were shown.
 STEADY = """() => {
   const field = document.querySelector('.player:not([hidden] *) input[type=number]');
   const ask = window.requestAnimationFrame.bind(window);
@@ -415,17 +470,23 @@ def test_play_reaches_the_end(open_figure, figure, start, end, motion):
     page = open_figure(figure, reduced_motion=motion)
     page.evaluate(STEADY)
     page.locator(".player:visible button", has_text="Play").click()
-    page.locator(".player:visible button", has_text="Play").wait_for()  # the click has made it Pause
+    page.locator(
+        ".player:visible button", has_text="Play"
+    ).wait_for()  # the click has made it Pause
     settle(page)
     times = sorted({float(value) for value in page.evaluate("window.seen")})
     assert times[0] == start and times[-1] == end
     steps = np.diff(times)
     # Two pictures of the page may fall between two of the figure.
-    assert max(steps) <= 0.55 and min(steps[:-1]) > 0.4 if motion == "reduce" else max(steps) <= 0.15
+    assert (
+        max(steps) <= 0.55 and min(steps[:-1]) > 0.4 if motion == "reduce" else max(steps) <= 0.15
+    )
     if isinstance(figure, SuccessiveFigure):
         assert np.abs(matrix(page) - figure.dcm).max() < 5.01e-4
     if isinstance(figure, QuaternionFigure):
-        first, second = (dcm_from_body_fixed(angles, "zxy") for angles in (figure.first, figure.second))
+        first, second = (
+            dcm_from_body_fixed(angles, "zxy") for angles in (figure.first, figure.second)
+        )
         whole = math.degrees(Rotation.from_matrix(second @ first.T).magnitude())
         assert numbers(page, "The three ways")[:, 0] == pytest.approx([whole] * 3, abs=0.0501)
 
@@ -442,7 +503,8 @@ EARLY = """() => {
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("motion", ["no-preference", "reduce"])
 @pytest.mark.parametrize(
-    "figure", [SuccessiveFigure(share=0.0), QuaternionFigure(view="way", share=0.0), MotionFigure(time=0.0)]
+    "figure",
+    [SuccessiveFigure(share=0.0), QuaternionFigure(view="way", share=0.0), MotionFigure(time=0.0)],
 )
 def test_play_begins_with_a_picture_that_was_due_before(open_figure, figure, motion):
     page = open_figure(figure, reduced_motion=motion)
@@ -455,12 +517,16 @@ def test_play_begins_with_a_picture_that_was_due_before(open_figure, figure, mot
 def test_turn_once_round(open_figure):
     page = open_figure(QuaternionFigure(angle=0.0))
     page.get_by_role("button", name="Turn once round").click()
-    page.wait_for_function("""() => document.querySelector('input[aria-label="theta in degrees"]').value === '360'""")
+    page.wait_for_function(
+        """() => document.querySelector('input[aria-label="theta in degrees"]').value === '360'"""
+    )
     assert numbers(page, "q and minus q, scalar first")[0, 0] == -1
 
 
 def test_no_speed_is_cut_off_in_silence():
-    """The scale holds all three ways; what is too fast for any scale leaves a gap, and its size is told."""
+    """The scale holds all three ways; what is too fast for any scale leaves a gap, and its size is
+    told.
+    """
     from orientation_figures.moving.pictures.quaternion import plotted
 
     slow = np.radians([[30.0] * 4, [40, 50, 60, 70], [100, 170, 110, 20]])
@@ -470,7 +536,9 @@ def test_no_speed_is_cut_off_in_silence():
     fast = np.radians([[30.0] * 5, [40.0] * 5, [100, 200, 5000, 300, 100]])
     highest, pieces, beyond = plotted(fast)
     assert highest == 720 and beyond == pytest.approx(5000)
-    assert [len(run) for run in pieces[2]] == [2, 2] and max(s for run in pieces[2] for _, s in run) <= 720
+    assert [len(run) for run in pieces[2]] == [2, 2] and max(
+        s for run in pieces[2] for _, s in run
+    ) <= 720
     # Half a turn but a little: blended entries turn over all at once.
     words = repr(QuaternionFigure(view="way", first=(0, 0, 0), second=(3.1, 0.02, 0)))
     assert "cut off at 720 degrees per second; the fastest is 871" in words

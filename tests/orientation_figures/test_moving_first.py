@@ -1,4 +1,6 @@
-"""The figures of the first chapters: hands, challenges, a tree of frames and the belt, in Python and in the browser."""
+"""The figures of the first chapters: hands, challenges, a tree of frames and the belt, in Python
+and in the browser.
+"""
 
 import math
 
@@ -34,8 +36,11 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
     given, turns = (list(zip("zxy", random.uniform(-3, 3, 3))) for _ in range(2))
 
     def end(chain):
-        # A chain about the box's own axes is an intrinsic sequence, and SciPy's matrices are transposes of ours.
-        return Rotation.from_euler("".join(axis for axis, _ in chain).upper(), [angle for _, angle in chain])
+        # A chain about the box's own axes is an intrinsic sequence, and SciPy's matrices are
+        # transposes of ours.
+        return Rotation.from_euler(
+            "".join(axis for axis, _ in chain).upper(), [angle for _, angle in chain]
+        )
 
     match = ChallengeFigure(task="match", given=given, turns=turns)
     assert match.remaining == pytest.approx((end(given).inv() * end(turns)).magnitude(), abs=1e-12)
@@ -77,11 +82,18 @@ def test_the_belt_is_a_path_of_unit_quaternions_with_its_ends_held(angle, passed
 
 def test_two_full_turns_come_out_of_the_belt_and_one_does_not():
     flat = [1, 0, 0, 0]
-    assert all(BeltFigure(angle=2 * FULL, passed=1).quaternion_at(s) == pytest.approx(flat) for s in (0.3, 0.5, 0.8))
-    reversed_, first = (BeltFigure(angle=FULL, passed=passed).quaternion_at(0.5) for passed in (1, 0))
+    assert all(
+        BeltFigure(angle=2 * FULL, passed=1).quaternion_at(s) == pytest.approx(flat)
+        for s in (0.3, 0.5, 0.8)
+    )
+    reversed_, first = (
+        BeltFigure(angle=FULL, passed=passed).quaternion_at(0.5) for passed in (1, 0)
+    )
     assert reversed_ == pytest.approx([0, 0, -1, 0]) and first == pytest.approx([0, 0, 1, 0])
     # The way there: every belt between the first and the last is near the one before.
-    middles = [BeltFigure(angle=2 * FULL, passed=part).quaternion_at(0.5) for part in np.linspace(0, 1, 60)]
+    middles = [
+        BeltFigure(angle=2 * FULL, passed=part).quaternion_at(0.5) for part in np.linspace(0, 1, 60)
+    ]
     assert np.abs(np.diff(middles, axis=0)).max() < 0.1
     for bad in (-0.1, 4 * math.pi + 0.1):
         with pytest.raises(TraitError, match="numbers from 0 to 12.5664"):
@@ -96,14 +108,23 @@ def test_the_belt_does_not_stretch():
     assert np.abs(np.sum(along * frames[:-1, 0], axis=1)).max() < 0.1, "its width stays across it"
 
 
-TREE = [("A", "N", "z", 0.7), ("B", "N", "x", -0.4), ("C", "B", "y", 1.1), ("D", "B", "z", 2.0), ("E", "D", "x", -0.9)]
+TREE = [
+    ("A", "N", "z", 0.7),
+    ("B", "N", "x", -0.4),
+    ("C", "B", "y", 1.1),
+    ("D", "B", "z", 2.0),
+    ("E", "D", "x", -0.9),
+]
 
 
 @pytest.mark.parametrize(
-    "edges", [[("B", "A", "x", 0.1)], [("A", "N", "x", 0.1), ("A", "N", "y", 0.1)], [("Q", "N", "x", 1)]]
+    "edges",
+    [[("B", "A", "x", 0.1)], [("A", "N", "x", 0.1), ("A", "N", "y", 0.1)], [("Q", "N", "x", 1)]],
 )
 def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
-    with pytest.raises(TraitError, match="edges (turns B in A, which is not there|makes the frame)"):
+    with pytest.raises(
+        TraitError, match="edges (turns B in A, which is not there|makes the frame)"
+    ):
         GraphFigure(edges=edges, target="N", source="N")
 
 
@@ -123,11 +144,15 @@ def test_the_matrix_over_a_path_is_that_of_sympy(open_figure, target, source):
     for frame, reference, axis, angle in TREE:
         frames[frame].orient_axis(frames[reference], getattr(frames[reference], axis), angle)
     expected = np.array(frames[target].dcm(frames[source])).astype(float)
-    assert rotation_error(GraphFigure(edges=TREE, target=target, source=source).dcm, expected) < 1e-12
+    assert (
+        rotation_error(GraphFigure(edges=TREE, target=target, source=source).dcm, expected) < 1e-12
+    )
     page = open_figure(GraphFigure(edges=TREE))
     page.get_by_label("Matrix of").select_option(target)
     page.get_by_label("with respect to").select_option(source)
-    assert numbers(page, "Direction cosine matrix over the path") == pytest.approx(expected, abs=6e-4)
+    assert numbers(page, "Direction cosine matrix over the path") == pytest.approx(
+        expected, abs=6e-4
+    )
 
 
 def test_frames_are_added_turned_and_removed_by_keys(open_figure):
@@ -143,12 +168,16 @@ def test_frames_are_added_turned_and_removed_by_keys(open_figure):
     assert not page.get_by_role("button", name="add a frame turned in D").is_visible()
     page.get_by_role("button", name="Remove the last").press("Enter")
     settle(page)
-    assert page.get_by_label("Matrix of").input_value() == "N", "a matrix of a frame that is gone is not asked for"
+    assert page.get_by_label("Matrix of").input_value() == "N", (
+        "a matrix of a frame that is gone is not asked for"
+    )
     assert numbers(page, name)[0, 1] == pytest.approx(-math.sin(0.7), abs=6e-4)
 
 
 def test_a_matrix_is_matched_by_keys(open_figure):
-    page = open_figure(ChallengeFigure(task="match", given=[("z", math.pi / 2), ("x", math.pi / 3)]))
+    page = open_figure(
+        ChallengeFigure(task="match", given=[("z", math.pi / 2), ("x", math.pi / 3)])
+    )
     assert numbers(page, "Matrix of the goal") == pytest.approx(
         dcm_from_body_fixed((math.pi / 2, math.pi / 3, 0), "zxy"), abs=6e-4
     )
@@ -170,7 +199,9 @@ def test_a_matrix_is_matched_by_keys(open_figure):
 
 
 def test_turns_are_undone_from_the_last(open_figure):
-    page = open_figure(ChallengeFigure(task="undo", given=[("z", math.pi / 2), ("x", -math.pi / 3)]))
+    page = open_figure(
+        ChallengeFigure(task="undo", given=[("z", math.pi / 2), ("x", -math.pi / 3)])
+    )
     for axis, degrees in (("x", 60), ("z", -90)):
         page.get_by_role("button", name=f"turn the box about a {axis}").click()
         type_number(page, "Angle of the last turn in degrees", degrees)
@@ -207,7 +238,11 @@ def test_the_last_turn_follows_a_drag(open_figure):
 def test_two_arrows_of_the_mirror_image_fit_and_all_of_the_copy(open_figure):
     page = open_figure(HandsFigure(quaternion=(0.8, 0.1, -0.4, 0.3)), reduced_motion="reduce")
     name = "Angles between the arrows of the same name"
-    for pair, angles in (("x and y", [0, 0, 180]), ("y and z", [180, 0, 0]), ("z and x", [0, 180, 0])):
+    for pair, angles in (
+        ("x and y", [0, 0, 180]),
+        ("y and z", [180, 0, 0]),
+        ("z and x", [0, 180, 0]),
+    ):
         page.get_by_role("button", name=f"Fit {pair}").click()
         assert numbers(page, name) == pytest.approx(angles)
         assert words(page).startswith("Two arrows fit")
@@ -215,7 +250,9 @@ def test_two_arrows_of_the_mirror_image_fit_and_all_of_the_copy(open_figure):
     page.get_by_role("button", name="Copy").click()
     page.get_by_role("button", name="Fit x and y").click()
     assert numbers(page, name) == pytest.approx([0, 0, 0])
-    assert words(page).startswith("All three arrows fit") and "of the image: +1" in page.inner_text(".readouts")
+    assert words(page).startswith("All three arrows fit") and "of the image: +1" in page.inner_text(
+        ".readouts"
+    )
     page.get_by_role("button", name="turn by 15 degrees about n z").press("Enter")
     assert numbers(page, name) == pytest.approx([15, 15, 0])
 
@@ -232,14 +269,18 @@ def test_the_image_turns_under_the_finger(open_figure):
     assert angles[2] < 25 < angles[0]
 
 
-@pytest.mark.parametrize("turns, passed, flat", [("One", 1, False), ("Two", 1, True), ("Two", 0.4, False)])
+@pytest.mark.parametrize(
+    "turns, passed, flat", [("One", 1, False), ("Two", 1, True), ("Two", 0.4, False)]
+)
 def test_the_belt_in_the_browser_is_that_of_the_module(open_figure, turns, passed, flat):
     page = open_figure(BeltFigure(angle=0.5), reduced_motion="reduce")
     assert page.get_by_role("button", name="Pass the belt round the plate").is_disabled()
     page.get_by_role("button", name=f"{turns} full turn").click()
     type_number(page, "Belt passed round the plate in per cent", 100 * passed)
     angle = FULL * (1 + (turns == "Two"))
-    expected = [BeltFigure(angle=angle, passed=passed).quaternion_at(share) for share in (0, 0.5, 1)]
+    expected = [
+        BeltFigure(angle=angle, passed=passed).quaternion_at(share) for share in (0, 0.5, 1)
+    ]
     assert numbers(page, "Quaternions") == pytest.approx(np.array(expected), abs=6e-4)
     assert ("the belt is flat" in words(page)) is flat
 

@@ -1,4 +1,6 @@
-"""The mathematics of the moving figures, run in Node, against the module: two languages, one book."""
+"""The mathematics of the moving figures, run in Node, against the module: two languages, one
+book.
+"""
 
 import json
 import subprocess
@@ -28,15 +30,26 @@ console.log(JSON.stringify(jobs.map(([name, calls]) => calls.map((call) => funct
 @pytest.fixture(scope="session")
 def in_browser_language(tmp_path_factory):
     """``run(name, *columns)``: the JavaScript function on each row of the columns, as a list."""
-    names = [name for one in ("formulas", "mathematics") for name in bundle.EXPORT.findall(bundle.source(one))]
+    names = [
+        name
+        for one in ("formulas", "mathematics")
+        for name in bundle.EXPORT.findall(bundle.source(one))
+    ]
     script = tmp_path_factory.mktemp("node") / "apply.mjs"
     body = bundle.body("formulas") + bundle.body("mathematics")
     script.write_text(body + APPLY.replace("NAMES", ", ".join(names)), "utf8")
 
     def run(name, *columns):
-        calls = [[entry.tolist() if hasattr(entry, "tolist") else entry for entry in row] for row in zip(*columns)]
+        calls = [
+            [entry.tolist() if hasattr(entry, "tolist") else entry for entry in row]
+            for row in zip(*columns)
+        ]
         done = subprocess.run(
-            [NODE, script], input=json.dumps({"jobs": [[name, calls]]}), capture_output=True, text=True, check=True
+            [NODE, script],
+            input=json.dumps({"jobs": [[name, calls]]}),
+            capture_output=True,
+            text=True,
+            check=True,
         )
         return json.loads(done.stdout)[0]
 
@@ -61,11 +74,18 @@ def orientations(sequence="zxy"):
     ]
     half_turns = [np.diag(signs) for signs in ((1.0, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1))]
     return np.concatenate(
-        [random_dcms(300, 1), *(module.dcm_from_axis_angle(axes, turn) for turn in turns), *locked, half_turns]
+        [
+            random_dcms(300, 1),
+            *(module.dcm_from_axis_angle(axes, turn) for turn in turns),
+            *locked,
+            half_turns,
+        ]
     )
 
 
-CALLS = [(name, choice) for name, choices in formulas.NAMES.items() for choice in choices or (None,)]
+CALLS = [
+    (name, choice) for name, choices in formulas.NAMES.items() for choice in choices or (None,)
+]
 
 
 def given(kind, seed, choice):
@@ -80,7 +100,9 @@ def given(kind, seed, choice):
 
 @pytest.mark.parametrize("name, choice", CALLS)
 def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
-    """Recorded from the module, and still held to its numbers: the recording itself could be wrong."""
+    """Recorded from the module, and still held to its numbers: the recording itself could be
+    wrong.
+    """
     columns = [given(kind, seed, choice) for seed, kind in enumerate(FORMULAS[name][0].values())]
     count = min(map(len, columns))
     columns = [column[:count] for column in columns]
@@ -88,14 +110,28 @@ def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
     first = name == "simple_dcm"
     expected = getattr(module, name)(*(chosen * first), *columns, *(chosen * (not first)))
     lists = [[choice] * count] * len(chosen)
-    found = np.array(in_browser_language(formulas.camel(name), *(lists * first), *columns, *(lists * (not first))))
-    if name == "body_fixed_from_dcm":  # where the angles have no meaning of their own, the orientation has
+    found = np.array(
+        in_browser_language(
+            formulas.camel(name), *(lists * first), *columns, *(lists * (not first))
+        )
+    )
+    if (
+        name == "body_fixed_from_dcm"
+    ):  # where the angles have no meaning of their own, the orientation has
         make = module.dcm_from_body_fixed
         assert rotation_error(make(found, choice), columns[0]) < LARGEST
         clear = module.gimbal_lock_margin(expected, choice) > 1e-2
-        assert clear.sum() > 250 and np.abs(np.angle(np.exp(1j * (found - expected))))[clear].max() < LARGEST
+        assert (
+            clear.sum() > 250
+            and np.abs(np.angle(np.exp(1j * (found - expected))))[clear].max() < LARGEST
+        )
         exact = columns[0][-4:]
-        assert np.allclose(found[-4:], [module.body_fixed_from_dcm(dcm, choice) for dcm in exact], rtol=0, atol=1e-15)
+        assert np.allclose(
+            found[-4:],
+            [module.body_fixed_from_dcm(dcm, choice) for dcm in exact],
+            rtol=0,
+            atol=1e-15,
+        )
     else:
         assert np.abs(found - expected).max() < LARGEST
 
@@ -110,8 +146,13 @@ def test_what_is_made_of_formulas(in_browser_language):
         names = [sequence] * len(dcms)
         angles = np.array(in_browser_language("spaceFixedFromDcm", dcms, names))
         assert rotation_error(module.dcm_from_space_fixed(angles, sequence), dcms) < LARGEST
-        assert rotation_error(in_browser_language("dcmFromSpaceFixed", angles, names), dcms) < LARGEST
-    matrices, vectors = np.random.default_rng(8).normal(size=(200, 3, 3)), random_unit_vectors(200, 2)
+        assert (
+            rotation_error(in_browser_language("dcmFromSpaceFixed", angles, names), dcms) < LARGEST
+        )
+    matrices, vectors = (
+        np.random.default_rng(8).normal(size=(200, 3, 3)),
+        random_unit_vectors(200, 2),
+    )
     solved = np.array(in_browser_language("solve", matrices, vectors))
     assert np.abs(np.einsum("nij,nj->ni", matrices, solved) - vectors).max() < 1e-9
     product = in_browser_language("multiply", matrices[:100], matrices[100:])
@@ -142,7 +183,9 @@ def test_nearest_matrix(in_browser_language):
     matrices = measured(3000)
     scales = np.linalg.svd(matrices, compute_uv=False)
     gap = scales[:, 1] + np.sign(np.linalg.det(matrices)) * scales[:, 2]
-    matrices = matrices[gap > 0.05 * scales[:, 0]]  # close to several equally near ones no method is exact
+    matrices = matrices[
+        gap > 0.05 * scales[:, 0]
+    ]  # close to several equally near ones no method is exact
     assert len(matrices) > 2500 and (np.linalg.det(matrices) < 0).any()
     expected = module.nearest_dcm(matrices)
     found = in_browser_language("nearestDcm", matrices)

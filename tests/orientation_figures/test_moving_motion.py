@@ -1,4 +1,6 @@
-"""The tumbling racket: the integration in Python and in the browser's language, and the figure in a browser."""
+"""The tumbling racket: the integration in Python and in the browser's language, and the figure in a
+browser.
+"""
 
 import json
 import subprocess
@@ -51,11 +53,13 @@ AGREE = 1e-12
 FEW_SECONDS = 4.0
 
 
-# ---- the same integration, written once more from the module's functions -------------------------------
+# ---- the same integration, written once more from the module's functions -------------------------
 
 
 def integrated(moments, axis, disturbance, method, step, restored, seconds):
-    """Each description at every step, by the textbook's formulas, with the angular velocity that SciPy finds."""
+    """Each description at every step, by the textbook's formulas, with the angular velocity that
+    SciPy finds.
+    """
     moments = np.array(moments)
     start = np.array([SPIN if axis == other else disturbance for other in "xyz"])
     solution = solve_ivp(
@@ -118,7 +122,8 @@ def test_the_figure_integrates_as_the_formulas_say(settings):
     ours = MotionFigure(**settings, time=FEW_SECONDS).run()
     for name, expected in integrated(**settings, seconds=FEW_SECONDS).items():
         assert ours[name].shape == expected.shape
-        # The figure finds the angular velocity in steps of a tenth. Angles go through gimbal lock, where errors grow.
+        # The figure finds the angular velocity in steps of a tenth. Angles go through gimbal lock,
+        # where errors grow.
         most = 1e-3 if name == "angles" else 2e-6
         assert abs(ours[name] - expected).max() < most, name
 
@@ -129,7 +134,9 @@ def test_the_reference_agrees_with_scipy():
 
     def rate(_, state):
         omega, q = state[:3], state[3:]
-        return np.concatenate([-np.cross(omega, moments * omega) / moments, quaternion_rate(q, omega)])
+        return np.concatenate(
+            [-np.cross(omega, moments * omega) / moments, quaternion_rate(q, omega)]
+        )
 
     start = np.concatenate([figure.run()["angular_velocity"][0], [1, 0, 0, 0]])
     truth = solve_ivp(rate, (0, 6), start, "DOP853", rtol=1e-12, atol=1e-13).y[3:, -1]
@@ -149,7 +156,8 @@ def test_angular_momentum_stays_where_it_is(description):
 def test_the_racket_flips_about_its_middle_axis_only():
     # What the chapter's program finds: flips after 3.3, 8.5, 13.7 and 18.9 s.
     counts = [
-        MotionFigure(method="Runge-Kutta", step=0.02, time=t).flips for t in (3.2, 3.4, 8.4, 8.6, 13.6, 13.8, 18.8, 19)
+        MotionFigure(method="Runge-Kutta", step=0.02, time=t).flips
+        for t in (3.2, 3.4, 8.4, 8.6, 13.6, 13.8, 18.8, 19)
     ]
     assert counts == [0, 1, 1, 2, 2, 3, 3, 4]
     for axis in "xz":
@@ -159,26 +167,35 @@ def test_the_racket_flips_about_its_middle_axis_only():
 
 def errors_at(time=6.0, **settings):
     """The angle by which each description is wrong, against SciPy's orientation."""
-    settings = {"moments": MOMENTS["racket"], "axis": "y", "disturbance": 0.01, "step": 0.01} | settings
+    settings = {
+        "moments": MOMENTS["racket"],
+        "axis": "y",
+        "disturbance": 0.01,
+        "step": 0.01,
+    } | settings
     moments = np.array(settings["moments"])
 
     def rate(_, state):
         omega, q = state[:3], state[3:]
-        return np.concatenate([-np.cross(omega, moments * omega) / moments, quaternion_rate(q, omega)])
+        return np.concatenate(
+            [-np.cross(omega, moments * omega) / moments, quaternion_rate(q, omega)]
+        )
 
     start = [0.01, SPIN, 0.01, 1, 0, 0, 0]
     q = solve_ivp(rate, (0, time), start, "DOP853", rtol=1e-13, atol=1e-14).y[3:, -1]
     truth = dcm_from_quaternion(q / np.linalg.norm(q))
     return {
-        name: axis_angle_from_dcm(nearest_dcm(MotionFigure(**settings, time=time, description=name).dcm @ truth.T).dcm)[
-            1
-        ]
+        name: axis_angle_from_dcm(
+            nearest_dcm(MotionFigure(**settings, time=time, description=name).dcm @ truth.T).dcm
+        )[1]
         for name in COLOURS
     }
 
 
 def test_each_description_is_given_the_same_angular_velocity():
-    """What the book says of Euler's method at 10 milliseconds: the descriptions are far from equal."""
+    """What the book says of Euler's method at 10 milliseconds: the descriptions are far from
+    equal.
+    """
     errors = errors_at()
     assert errors == {
         "matrix": pytest.approx(0.0144, rel=0.05),
@@ -186,11 +203,16 @@ def test_each_description_is_given_the_same_angular_velocity():
         "angles": pytest.approx(0.10, rel=0.1),
     }
     exponential = errors_at(method="exponential")
-    assert exponential["matrix"] == pytest.approx(exponential["quaternion"], rel=1e-3) and exponential["matrix"] < 4e-6
+    assert (
+        exponential["matrix"] == pytest.approx(exponential["quaternion"], rel=1e-3)
+        and exponential["matrix"] < 4e-6
+    )
 
 
 def test_restoring_does_not_lessen_the_error_of_the_orientation():
-    plain, restored = (errors_at(method="Runge-Kutta", step=0.05, restored=restored) for restored in (False, True))
+    plain, restored = (
+        errors_at(method="Runge-Kutta", step=0.05, restored=restored) for restored in (False, True)
+    )
     for name in ("matrix", "quaternion"):
         assert plain[name] > 1e-6 and restored[name] == pytest.approx(plain[name], rel=1e-2)
 
@@ -206,7 +228,9 @@ def test_drift_and_what_restoring_restores():
         restored = MotionFigure(restored=True, description=description).dcm
         assert fault(restored) < 1e-14
         assert axis_angle_from_dcm(restored @ truth.T)[1] > 1e-3, "valid is not yet right"
-        assert fault(MotionFigure(method="exponential", description=description).dcm) < 1e-13, "never leaves them"
+        assert fault(MotionFigure(method="exponential", description=description).dcm) < 1e-13, (
+            "never leaves them"
+        )
     assert fault(MotionFigure(method="Runge-Kutta").dcm) < 1e-6
 
 
@@ -218,7 +242,7 @@ def test_a_run_ends_where_its_numbers_have_no_meaning():
     assert "<svg" in figure.still()
 
 
-# ---- the widget ----------------------------------------------------------------------------------------
+# ---- the widget ----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -232,7 +256,11 @@ def test_a_run_ends_where_its_numbers_have_no_meaning():
         ("method", "euler", "Euler"),
         ("axis", 0, "axis"),
         ("moments", (1, 2), "shape"),
-        ("moments", (1, 2, 4), "no body has such moments.*the largest, 4, is more than the sum of the others, 3"),
+        (
+            "moments",
+            (1, 2, 4),
+            "no body has such moments.*the largest, 4, is more than the sum of the others, 3",
+        ),
         ("moments", (-1, 2, 2), "from 0.1 to 20"),
         ("moments", (16, 17, 21), "from 0.1 to 20"),
         ("description", "dcm", "matrix"),
@@ -273,18 +301,22 @@ def test_the_still_shows_and_tells(body, moments, time):
     lengths = np.linalg.norm(figure.dcm, axis=1)
     assert ", ".join(f"{length:.2f}" for length in lengths) in drawn
     margins = np.degrees(
-        gimbal_lock_margin(body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy")
+        gimbal_lock_margin(
+            body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy"
+        )
     )
     assert f"at the least {margins.min():.0f} degrees" in plotted
     assert figure.still() == MotionFigure(moments=moments, time=time).still()
 
 
-# ---- the browser's language ----------------------------------------------------------------------------
+# ---- the browser's language ----------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
-    """``node(code, data)``: what the code returns of the data, with everything of the figure in scope."""
+    """``node(code, data)``: what the code returns of the data, with everything of the figure in
+    scope.
+    """
     module = "".join(map(bundle.body, bundle.SHARED)) + bundle.whole("motion")
 
     def run(code, data):
@@ -292,10 +324,13 @@ def node(tmp_path_factory):
         script.write_text(
             "import { readFileSync } from 'node:fs';\n"
             + module
-            + f"\nconst data = JSON.parse(readFileSync(0));\nconsole.log(JSON.stringify({code}));\n",
+            + "\nconst data = JSON.parse(readFileSync(0));\n"
+            f"console.log(JSON.stringify({code}));\n",
             "utf8",
         )
-        done = subprocess.run([NODE, script], input=json.dumps(data), capture_output=True, text=True)
+        done = subprocess.run(
+            [NODE, script], input=json.dumps(data), capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
 
@@ -325,7 +360,9 @@ def as_runs(answer):
 
 @pytest.mark.parametrize("settings", RUNS, ids=str)
 def test_trajectories_agree_to_twelve_digits(node, settings):
-    answer = node(TRAJECTORY, {"settings": settings, "count": round(FEW_SECONDS / settings["step"])})
+    answer = node(
+        TRAJECTORY, {"settings": settings, "count": round(FEW_SECONDS / settings["step"])}
+    )
     theirs = as_runs(answer)
     figure = MotionFigure(**settings, time=FEW_SECONDS)
     expected = figure.run()
@@ -365,7 +402,7 @@ def test_both_end_a_hopeless_run_at_the_same_step(node):
     assert len(answer["states"]) == len(MotionFigure(**settings, time=20).run()["time"])
 
 
-# ---- in a browser --------------------------------------------------------------------------------------
+# ---- in a browser --------------------------------------------------------------------------------
 
 
 def time_of(page):
@@ -378,7 +415,9 @@ def set_time(page, seconds):
 
 
 def curves(page):
-    return page.eval_on_selector_all(".plot .axis", "(paths) => paths.map((path) => path.getAttribute('d'))")
+    return page.eval_on_selector_all(
+        ".plot .axis", "(paths) => paths.map((path) => path.getAttribute('d'))"
+    )
 
 
 def table(page):
@@ -471,7 +510,10 @@ def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
     before = curves(page), drawing(page)
     type_number(page, field["z"], 20)
     said = words(page)
-    assert said.startswith("No body has the moments of inertia 1.2, 16, 20") and "sum of the others, 17.2" in said
+    assert (
+        said.startswith("No body has the moments of inertia 1.2, 16, 20")
+        and "sum of the others, 17.2" in said
+    )
     assert "Still drawn: 1.2, 16, 17" in said and (curves(page), drawing(page)) == before
     assert page.locator(".slider.refused").count() == 3
     assert page.get_by_label(field["z"]).input_value() == "20", "the reader's number is taken away"
@@ -483,7 +525,10 @@ def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
     assert table(page)[0][1] == f"{float(f'{fault:.2g}'):g}" and "the block" in words(page)
     type_number(page, field["z"], 0.5)
     page.get_by_role("button", name="a racket").click()
-    assert "the racket has flipped once" in words(page) and page.locator(".slider.refused").count() == 0
+    assert (
+        "the racket has flipped once" in words(page)
+        and page.locator(".slider.refused").count() == 0
+    )
     assert (curves(page), drawing(page)) == before
 
 
@@ -511,11 +556,30 @@ def test_keyboard_alone(open_figure):
                 return e.getAttribute('aria-label') ?? (e.labels?.length ? e.labels[0].innerText : e.innerText) }"""
             ).strip()
         )
-    expected = ["Play", "Time", "Time in seconds", "Reset", "Matrix", "Restore after every step", "Method", "Step"]
-    expected += ["Step in milliseconds", "Disturbance", "Disturbance in radians per second", "a racket", "a book"]
+    expected = [
+        "Play",
+        "Time",
+        "Time in seconds",
+        "Reset",
+        "Matrix",
+        "Restore after every step",
+        "Method",
+        "Step",
+    ]
+    expected += [
+        "Step in milliseconds",
+        "Disturbance",
+        "Disturbance in radians per second",
+        "a racket",
+        "a book",
+    ]
     expected += [
         "Spin about",
-        *(f"Moment of inertia about {axis}{unit}" for axis in "xyz" for unit in ("", " in gram square metres")),
+        *(
+            f"Moment of inertia about {axis}{unit}"
+            for axis in "xyz"
+            for unit in ("", " in gram square metres")
+        ),
     ]
     found = [name for name in names if name in expected]
     assert found[: len(expected)] == expected
@@ -527,7 +591,9 @@ def test_keyboard_alone(open_figure):
     page.wait_for_function("document.querySelector('.words').textContent.includes('quaternion')")
     page.get_by_label("Restore after every step").focus()
     page.keyboard.press("Space")
-    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
+    page.wait_for_function(
+        "document.querySelector('.words').textContent.includes('stays orthogonal')"
+    )
     page.get_by_role("button", name="Play").focus()
     page.keyboard.press("Enter")
     page.wait_for_function("document.querySelector('.player input').value > 6.3")
@@ -536,7 +602,9 @@ def test_keyboard_alone(open_figure):
     triad = page.locator(".stage .marks").inner_html()
     page.locator(".stage .sheet").focus()
     page.keyboard.press("ArrowLeft")
-    page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=triad)
+    page.wait_for_function(
+        "(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=triad
+    )
 
 
 def test_sliders_tell_their_values_and_units(open_figure):
@@ -549,14 +617,18 @@ def test_sliders_tell_their_values_and_units(open_figure):
     ):
         slider = page.locator(f'input[type=range][aria-label="{name}"]')
         assert slider.get_attribute("aria-valuetext") == told
-    page.wait_for_function("document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')")
+    page.wait_for_function(
+        "document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')"
+    )
 
 
 def test_touch_on_a_phone(open_figure):
     page = open_figure("motion", viewport=NARROW, has_touch=True, is_mobile=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= 380
     page.get_by_label("Restore after every step").tap()
-    page.wait_for_function("document.querySelector('.words').textContent.includes('stays orthogonal')")
+    page.wait_for_function(
+        "document.querySelector('.words').textContent.includes('stays orthogonal')"
+    )
     page.evaluate("window.scrollTo(0, 0)")
     page.locator(".plot").scroll_into_view_if_needed()
     box = page.locator(".plot").bounding_box()
@@ -582,9 +654,14 @@ def test_dragging_in_the_plot_goes_through_time(open_figure):
 
 def test_dragging_the_drawing_turns_the_view(open_figure):
     page = open_figure("motion")
-    before, box = page.locator(".stage .marks").inner_html(), page.locator(".stage .sheet").bounding_box()
+    before, box = (
+        page.locator(".stage .marks").inner_html(),
+        page.locator(".stage .sheet").bounding_box(),
+    )
     page.mouse.move(box["x"] + 100, box["y"] + 100)
     page.mouse.down()
     page.mouse.move(box["x"] + 160, box["y"] + 100)
     page.mouse.up()
-    page.wait_for_function("(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=before)
+    page.wait_for_function(
+        "(before) => document.querySelector('.stage .marks').innerHTML !== before", arg=before
+    )

@@ -14,8 +14,8 @@ from orientation import body_fixed_from_dcm, dcm_from_body_fixed, dcm_from_quate
 from orientation_figures.moving import PhoneFigure, bundle
 from orientation_recordings import x_imu
 
-# What a phone at these angles reports: on Android from north and with the force that it feels, on iOS from
-# anywhere, with a compass beside it, and with the opposite sign.
+# What a phone at these angles reports: on Android from north and with the force that it feels, on
+# iOS from anywhere, with a compass beside it, and with the opposite sign.
 SEND = """([maker, angles, force, rate, from, to]) => {
   const [alpha, beta, gamma] = angles, [x, y, z] = force, android = maker === 'android';
   const kind = android ? 'deviceorientationabsolute' : 'deviceorientation', start = 40;
@@ -32,14 +32,17 @@ SEND = """([maker, angles, force, rate, from, to]) => {
     window.dispatchEvent(moved);
   }
 }"""
-# Chromium asks too by now, and without windows it has nobody to ask and refuses: here the answer is set.
+# Chromium asks too by now, and without windows it has nobody to ask and refuses: here the answer is
+# set.
 ASKED = """
   for (const kind of [DeviceOrientationEvent, DeviceMotionEvent])
     kind.requestPermission = async () => window.permission ?? 'granted';
 """
 ANDROID = f"() => {{ {ASKED} }}"
 IOS = f"() => {{ delete window.ondeviceorientationabsolute; {ASKED} }}"
-ANSWERED = "/Waiting for the sensors|refused/.test(document.querySelector('.live .words').innerText)"
+ANSWERED = (
+    "/Waiting for the sensors|refused/.test(document.querySelector('.live .words').innerText)"
+)
 ANGLES, RATE = (70, 15, -10), (5.0, -20.0, 30.0)
 
 
@@ -62,16 +65,20 @@ def test_both_makers_are_read_alike(open_figure, maker):
     force = 9.81 * dcm[:, 2]
     page.evaluate(SEND, [maker, ANGLES, force.tolist(), RATE, 0, 3])
     settle(page)
-    assert numbers(page, "Direction cosine matrix of the phone with respect to the ground") == pytest.approx(
-        dcm.ravel().tolist(), abs=6e-4
-    )
-    assert numbers(page, "Specific force along the phone, in metres per second squared") == pytest.approx(
-        force, abs=0.006
-    )
-    assert numbers(page, "Angular velocity along the phone, in degrees per second") == pytest.approx(RATE, abs=0.06)
+    assert numbers(
+        page, "Direction cosine matrix of the phone with respect to the ground"
+    ) == pytest.approx(dcm.ravel().tolist(), abs=6e-4)
+    assert numbers(
+        page, "Specific force along the phone, in metres per second squared"
+    ) == pytest.approx(force, abs=0.006)
+    assert numbers(
+        page, "Angular velocity along the phone, in degrees per second"
+    ) == pytest.approx(RATE, abs=0.06)
     assert "magnetic north" in page.locator(".live .words").inner_text()
     page.get_by_role("button", name="Record").click()
-    page.evaluate("window.dispatchEvent(new DeviceMotionEvent('devicemotion'))")  # tells nothing, and is no sample
+    page.evaluate(
+        "window.dispatchEvent(new DeviceMotionEvent('devicemotion'))"
+    )  # tells nothing, and is no sample
     page.evaluate(SEND, [maker, ANGLES, force.tolist(), RATE, 10, 110])
     settle(page)
     with page.expect_download() as download:
@@ -79,7 +86,9 @@ def test_both_makers_are_read_alike(open_figure, maker):
     rows = list(csv.DictReader(io.StringIO(download.value.path().read_text("utf8"))))
     assert len(rows) == 101 and float(rows[-1]["time_s"]) == pytest.approx(10)
     last = {name: float(value) for name, value in rows[-1].items()}
-    assert [last[f"{name}_deg"] for name in ("alpha", "beta", "gamma")] == pytest.approx(ANGLES, abs=1e-3)
+    assert [last[f"{name}_deg"] for name in ("alpha", "beta", "gamma")] == pytest.approx(
+        ANGLES, abs=1e-3
+    )
     assert [last[f"force_{axis}"] for axis in "xyz"] == pytest.approx(force, abs=1e-4)
     assert [last[f"rate_{axis}"] for axis in "xyz"] == pytest.approx(np.radians(RATE), abs=1e-4)
 
@@ -91,7 +100,9 @@ def test_a_refusal_and_a_missing_sensor_are_told(open_figure):
     page.wait_for_function("document.querySelector('.live .words').textContent.includes('refused')")
     page = open_figure("phone")
     use(page, "android")
-    page.wait_for_function("document.querySelector('.live .words').textContent.includes('recording')", timeout=30_000)
+    page.wait_for_function(
+        "document.querySelector('.live .words').textContent.includes('recording')", timeout=30_000
+    )
     assert page.get_by_role("button", name="Record").is_disabled()
 
 
@@ -102,7 +113,9 @@ def test_the_recording_is_the_one_of_the_book(open_figure):
     for time in (2.0, 7.5, 12.0):
         page.get_by_role("spinbutton", name="time of the recording in seconds").fill(str(time))
         settle(page)
-        shown = np.reshape(numbers(page, "Direction cosine matrix of the phone with respect to the ground"), (3, 3))
+        shown = np.reshape(
+            numbers(page, "Direction cosine matrix of the phone with respect to the ground"), (3, 3)
+        )
         true = dcms[np.searchsorted(recording.quaternion_time, time)]
         assert np.abs(shown - true).max() < 0.03, "whole degrees are kept"
 

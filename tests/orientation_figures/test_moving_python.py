@@ -44,7 +44,10 @@ FIGURES = [
 
 
 def test_the_module_alone_loads_no_widgets():
-    check = "import sys, orientation; assert not {'anywidget', 'ipywidgets', 'matplotlib'} & set(sys.modules)"
+    check = (
+        "import sys, orientation; assert not {'anywidget', 'ipywidgets', 'matplotlib'} & "
+        "set(sys.modules)"
+    )
     subprocess.run([sys.executable, "-c", check], check=True)
 
 
@@ -102,14 +105,18 @@ print(gimbal)
 
 def test_figures_are_alive_without_numpy():
     changes = {kind: change[:2] for kind, change in CHANGES.items()}
-    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMPY, repr(changes)], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_NUMPY, repr(changes)], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
     assert done.stdout == "GimbalFigure(angles=(0.1, 0.2, 0.3), sequence='zxy')\n"
 
 
 def test_the_labels_are_kept_as_they_are_set():
     kept = glyphs.FILE.read_text("utf8")
-    assert kept == glyphs.glyphs(), f"{glyphs.FILE.name} is not what its generator makes: run `{glyphs.COMMAND}`"
+    assert kept == glyphs.glyphs(), (
+        f"{glyphs.FILE.name} is not what its generator makes: run `{glyphs.COMMAND}`"
+    )
 
 
 def test_the_pictures_are_what_python_describes():
@@ -145,12 +152,20 @@ def texts_of(source):
 
 @pytest.mark.parametrize("kind", [figure.kind for figure in FIGURES])
 def test_every_formula_of_a_figure_can_be_set(kind):
-    source = "".join(map(bundle.source, (kind, f"{kind}_picture") if kind in bundle.PICTURES else (kind,)))
+    source = "".join(
+        map(bundle.source, (kind, f"{kind}_picture") if kind in bundle.PICTURES else (kind,))
+    )
     found = [formula for text in texts_of(source) for formula in text.split("$")[1::2]]
     patterns = {formula: "[^ ]+".join(map(re.escape, formula.split("\0"))) for formula in found}
     assert patterns, "no formulas were found"
-    missing = [formula for formula in found if not any(re.fullmatch(patterns[formula], one) for one in glyphs.LABELS)]
-    assert missing == [], f"add them to LABELS in orientation/moving/glyphs.py, then run `{glyphs.COMMAND}`"
+    missing = [
+        formula
+        for formula in found
+        if not any(re.fullmatch(patterns[formula], one) for one in glyphs.LABELS)
+    ]
+    assert missing == [], (
+        f"add them to LABELS in orientation/moving/glyphs.py, then run `{glyphs.COMMAND}`"
+    )
 
 
 def test_every_top_of_the_plot_of_speeds_can_be_set():
@@ -159,7 +174,9 @@ def test_every_top_of_the_plot_of_speeds_can_be_set():
 
 def bundle_of(figure):
     data, _ = figure._repr_mimebundle_()
-    return data, BeautifulSoup(data["text/html"], "html.parser").select_one("figure.orientation-figure.moving")
+    return data, BeautifulSoup(data["text/html"], "html.parser").select_one(
+        "figure.orientation-figure.moving"
+    )
 
 
 @pytest.mark.parametrize("figure", FIGURES)
@@ -172,7 +189,9 @@ def test_what_a_cell_puts_out(figure):
     assert "<script" not in data["text/html"]
     # Nothing of it differs from run to run.
     again, _ = bundle_of(figure())
-    assert {key: again[key] for key in again if key != WIDGET} == {key: data[key] for key in data if key != WIDGET}
+    assert {key: again[key] for key in again if key != WIDGET} == {
+        key: data[key] for key in data if key != WIDGET
+    }
 
 
 @pytest.mark.parametrize("figure", FIGURES)
@@ -180,7 +199,9 @@ def test_state_goes_to_the_page_and_back(figure):
     first = figure()
     _, still = bundle_of(first)
     state = json.loads(still["data-state"])
-    told = {name: state.pop(name) for name in first.trait_names(told=True)}  # constants of the front end
+    told = {
+        name: state.pop(name) for name in first.trait_names(told=True)
+    }  # constants of the front end
     assert told == {name: getattr(first, name) for name in told}
     assert state and set(state) == set(first.state())
     second = figure(**state)
@@ -203,7 +224,10 @@ def test_front_end_is_one_module_that_needs_nothing(figure, tmp_path):
     subprocess.run([NODE, "-e", check], check=True)
     script_file.write_text(bundle.shared_script() + bundle.script(figure.kind), "utf8")
     subprocess.run([NODE, "--check", script_file], check=True)
-    assert not any(word in text for word in ("http://", "https://")) or "http://www.w3.org/2000/svg" in text
+    assert (
+        not any(word in text for word in ("http://", "https://"))
+        or "http://www.w3.org/2000/svg" in text
+    )
     assert text.count("http") == 1
 
 
@@ -211,7 +235,10 @@ def test_front_end_is_one_module_that_needs_nothing(figure, tmp_path):
 def test_a_misspelt_attribute_is_an_error(figure):
     name = next(iter(figure().state()))
     misspelt = name[:-2] + name[-1] + name[-2] + "e"
-    message = rf"{figure.__name__} has no {misspelt} \(did you mean {name}\?\); what can be set is .*{name}"
+    message = (
+        rf"{figure.__name__} has no {misspelt} \(did you mean {name}\?\); what can be set is "
+        rf".*{name}"
+    )
     with pytest.raises(TypeError, match=message):
         figure(**{misspelt: 1})
     one = figure()
@@ -275,7 +302,12 @@ def test_angel_is_not_angle():
         (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, 0], [0, 0, None]], "real numbers"),
         (NineNumbersFigure, "matrix", 100 * np.eye(3), "from -10 to 10"),
         (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1], [0, 0, 1]], "regular shape"),
-        (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, math.nan], [0, 0, 1]], r"matrix\[1, 2\] is nan"),
+        (
+            NineNumbersFigure,
+            "matrix",
+            [[1, 0, 0], [0, 1, math.nan], [0, 0, 1]],
+            r"matrix\[1, 2\] is nan",
+        ),
         (NineNumbersFigure, "matrix", np.eye(3, dtype=bool), "real numbers"),
         (NineNumbersFigure, "matrix", sm.diag(1, 1, sm.Symbol("x")), "holds x, .* needs numbers"),
         (GimbalFigure, "angles", np.array((0, 1j, 0)), "real numbers"),
@@ -377,9 +409,15 @@ def test_stills_of_extreme_states_can_be_drawn():
 
 def test_a_stored_notebook_holds_the_still_and_no_widget():
     data, metadata = TriadFigure()._repr_mimebundle_()
-    output = nbformat.v4.new_output("execute_result", data=data, metadata=metadata, execution_count=1)
-    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("TriadFigure()", outputs=[output])])
-    notebook.metadata["widgets"] = {"application/vnd.jupyter.widget-state+json": {"state": {"a": {}}}}
+    output = nbformat.v4.new_output(
+        "execute_result", data=data, metadata=metadata, execution_count=1
+    )
+    notebook = nbformat.v4.new_notebook(
+        cells=[nbformat.v4.new_code_cell("TriadFigure()", outputs=[output])]
+    )
+    notebook.metadata["widgets"] = {
+        "application/vnd.jupyter.widget-state+json": {"state": {"a": {}}}
+    }
     stored = nbformat.writes(normalise(notebook))
     assert "vnd.jupyter.widget" not in stored
     assert 'data-figure=\\"triad\\"' in stored

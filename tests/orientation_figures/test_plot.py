@@ -36,7 +36,9 @@ def test_the_svg_is_well_formed_and_speaks():
 
 
 def test_a_plot_leaves_the_other_figures_of_a_page_alone():
-    for rule in re.findall(r"([^{}<>]+)\{", "".join(re.findall(r"<style[^>]*>(.*?)</style>", example(), re.DOTALL))):
+    for rule in re.findall(
+        r"([^{}<>]+)\{", "".join(re.findall(r"<style[^>]*>(.*?)</style>", example(), re.DOTALL))
+    ):
         assert all(".orientation-figure" in selector for selector in rule.split(",")), rule
 
 
@@ -59,7 +61,9 @@ def test_the_same_plot_has_the_same_bytes_and_two_plots_share_no_id():
 def test_words_are_11_pixels_high_on_a_telephone():
     """A telephone of 380 pixels leaves 348 for a figure."""
     for width in (400, 560, 640):
-        set_wide = float(re.search(r'viewBox="0 0 ([\d.]+)', Plot(ALT, width=width)._repr_html_())[1])
+        set_wide = float(
+            re.search(r'viewBox="0 0 ([\d.]+)', Plot(ALT, width=width)._repr_html_())[1]
+        )
         assert SETTINGS["font.size"] * 348 / set_wide >= 11
 
 
@@ -70,13 +74,17 @@ def test_matplotlib_is_left_as_it_was():
 
 
 def points(path):
-    """The points of a path with steps or places of any kind, one list for each line that it draws."""
+    """The points of a path with steps or places of any kind, one list for each line that it
+    draws.
+    """
     lines, here = [], np.zeros(2)
     for letter, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
         if letter in "zZ":
             here = lines[-1][0]
             continue
-        values = np.array([float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)])
+        values = np.array(
+            [float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
+        )
         size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter.upper()]
         for group in values.reshape(-1, size // 2, 2):
             group = group + here if letter.islower() else group
@@ -92,7 +100,11 @@ def test_short_paths_lead_along_the_same_points():
     random = np.random.default_rng(2)
     for count, tolerance in ((5, 0.0051), (400, 0.051)):
         way = np.cumsum(random.normal(scale=3, size=(count, 2)), axis=0)
-        path = "M 0 0 \n" + "".join(f"L {x:.6f} {y:.6f} \n" for x, y in way) + "z\nM 5 5 \nQ 6 6 7 4.123456 \n"
+        path = (
+            "M 0 0 \n"
+            + "".join(f"L {x:.6f} {y:.6f} \n" for x, y in way)
+            + "z\nM 5 5 \nQ 6 6 7 4.123456 \n"
+        )
         short = _short_path(path)
         assert len(short) < 0.7 * len(path)
         for found, expected in zip(points(short), points(path), strict=True):
@@ -101,7 +113,8 @@ def test_short_paths_lead_along_the_same_points():
 
 def test_steps_along_one_axis_become_one_and_turning_back_does_not():
     assert _short_path("M 1 1 \nL 2 1 \nL 4 1 \nL 3 1 \nL 3 5 \nL 3 9 \n") == "M1 1l3 0-1 0 0 8"
-    # A point twice, as at the ends of a band: the step up to it had been lost, and every band was drawn too low.
+    # A point twice, as at the ends of a band: the step up to it had been lost, and every band was
+    # drawn too low.
     assert _short_path("M 1 1 \nL 1 6 \nL 1 6 \nL 4 4 \nL 1 1 \nz\n") == "M1 1l0 5 3-2-3-3z"
 
 
@@ -109,4 +122,8 @@ def test_nothing_is_kept_that_nothing_needs():
     html = example(rows=2)
     ids = re.findall(r' id="([^"]+)"', html)
     assert all(f"#{name})" in html or f'"#{name}"' in html for name in ids)
-    assert "<g>" not in html and "metadata" not in html and not re.search(r"\d\.\d{4,}", html.replace("0.015625", ""))
+    assert (
+        "<g>" not in html
+        and "metadata" not in html
+        and not re.search(r"\d\.\d{4,}", html.replace("0.015625", ""))
+    )

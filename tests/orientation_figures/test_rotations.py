@@ -1,4 +1,6 @@
-"""The essay's world: its mathematics against the book's own, its stills, and the page as a reader meets it."""
+"""The essay's world: its mathematics against the book's own, its stills, and the page as a reader
+meets it.
+"""
 
 import json
 import re
@@ -42,7 +44,9 @@ def test_what_is_written_down_is_what_the_page_shows():
     kept = scenes()
     assert [still["id"] for still in fresh["stills"]] == list(STILLS)
     for one, other in zip(fresh["stills"], kept["stills"]):
-        assert len(one["items"]) == len(other["items"]), f"{one['id']}: run `python -m tools.rotations`"
+        assert len(one["items"]) == len(other["items"]), (
+            f"{one['id']}: run `python -m tools.rotations`"
+        )
         for shape, known in zip(one["items"], other["items"]):
             assert shape[0] == known[0] and shape[5] == known[5]
             for k in (1, 2, 3, 4, 6):
@@ -57,7 +61,9 @@ def test_every_frame_of_every_stop_is_that_of_the_book(number):
     psi, theta, phi = state["angles"]
     assert frames["A"] == pytest.approx(np.eye(3))
     for rows in frames.values():
-        assert rows @ rows.T == pytest.approx(np.eye(3), abs=1e-9) and np.linalg.det(rows) == pytest.approx(1)
+        assert rows @ rows.T == pytest.approx(np.eye(3), abs=1e-9) and np.linalg.det(
+            rows
+        ) == pytest.approx(1)
     D = frames["D"]
     # However it came about, the machine can hold the camera so: its three joints fit.
     for inner, outer, axis in (("B", "A", 2), ("C", "B", 0), ("D", "C", 1)):
@@ -90,9 +96,12 @@ def test_what_the_text_says_is_true():
     apart = [axis_angle_from_dcm(b @ a.T)[1] for k, a in enumerate(dcms) for b in dcms[:k]]
     assert len(apart) == 66 and min(apart) > np.radians(5)
     # Stop 9: at 90 degrees what the first motor gives, the third takes back.
-    locked = [dcm_from_body_fixed((psi, np.pi / 2, 0.4 - psi), "zxy") for psi in np.linspace(-3, 3, 7)]
+    locked = [
+        dcm_from_body_fixed((psi, np.pi / 2, 0.4 - psi), "zxy") for psi in np.linspace(-3, 3, 7)
+    ]
     assert np.ptp(locked, axis=0) == pytest.approx(np.zeros((3, 3)), abs=1e-12)
-    # Near it, a star that passes half a degree beside the zenith sends the first motor round nearly half a turn.
+    # Near it, a star that passes half a degree beside the zenith sends the first motor round nearly
+    # half a turn.
     path = np.array([(x, np.radians(0.5), 1) for x in np.linspace(-0.3, 0.3, 101)])
     heading = np.unwrap(np.arctan2(-path[:, 0], path[:, 1]))
     assert np.radians(170) < abs(heading[-1] - heading[0]) < np.pi
@@ -101,7 +110,9 @@ def test_what_the_text_says_is_true():
     second = first * (1, -1, 1) + np.pi
     assert dcm_from_body_fixed(second, "zxy") == pytest.approx(dcm_from_body_fixed(first, "zxy"))
     # Stop 14: the way in angles turns farther than the one turn.
-    poses = [dcm_from_body_fixed(FROM + part * (TO - FROM), "zxy") for part in np.linspace(0, 1, 200)]
+    poses = [
+        dcm_from_body_fixed(FROM + part * (TO - FROM), "zxy") for part in np.linspace(0, 1, 200)
+    ]
     way = sum(axis_angle_from_dcm(b @ a.T)[1] for a, b in zip(poses, poses[1:]))
     assert way > 1.5 * axis_angle_from_dcm(poses[-1] @ poses[0].T)[1]
 
@@ -123,9 +134,15 @@ def test_the_mirrors_turn_by_twice_their_angle():
 
 
 def test_the_cable_hangs_on_camera_and_wall_and_after_two_turns_it_is_flat():
-    ribbons = [np.reshape(item[1], (-1, 2, 3)) for item in STILLS["not-home"]["items"] if item[0] == "ribbon"]
+    ribbons = [
+        np.reshape(item[1], (-1, 2, 3))
+        for item in STILLS["not-home"]["items"]
+        if item[0] == "ribbon"
+    ]
     across = ribbons[0][:, 0] - ribbons[1][:, 1]
-    assert np.allclose(across[0], across[-1], atol=1e-2), "after one turn both ends stand as they did"
+    assert np.allclose(across[0], across[-1], atol=1e-2), (
+        "after one turn both ends stand as they did"
+    )
     assert np.linalg.norm(across - across[0], axis=1).max() > 0.3, "and between them it is twisted"
 
 
@@ -134,9 +151,9 @@ def test_paper_and_page_see_every_point_at_the_same_place():
     paper = painter.Paper(STILLS["which-way"]["view"], world)
     for point, (x, y, depth) in tried()["seen"]:
         place, far = paper.place(point)
-        assert place == pytest.approx(np.array((x, -y)) * world["size"] / 2, abs=0.05) and far == pytest.approx(
-            depth, abs=1e-3
-        )
+        assert place == pytest.approx(
+            np.array((x, -y)) * world["size"] / 2, abs=0.05
+        ) and far == pytest.approx(depth, abs=1e-3)
 
 
 @pytest.mark.parametrize("name", STILLS)
@@ -174,7 +191,7 @@ def test_a_stop_that_there_is_not():
         Stop("loock")
 
 
-# ---- the page ------------------------------------------------------------------------------------------------
+# ---- the page ------------------------------------------------------------------------------------
 
 PAGE = """<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>The essay</title>
 <link rel="icon" href="data:,"><style>{style} body {{ margin: 0; font: 16px sans-serif; }}
@@ -191,7 +208,10 @@ def essay(tmp_path_factory):
 
     folder = tmp_path_factory.mktemp("essay")
     (folder / "world.js").write_text(built(bundle.BUILT["rotations"]), "utf8")
-    sections = "".join(f'<section id="{name}"><h2>{name}</h2><i data-stop="{name}"></i></section>' for name in STILLS)
+    sections = "".join(
+        f'<section id="{name}"><h2>{name}</h2><i data-stop="{name}"></i></section>'
+        for name in STILLS
+    )
     text = PAGE.format(
         style=STYLE + style() + bundle.built_style("rotations"),
         gimbal=Gimbal("which-way")._repr_html_(),
@@ -206,8 +226,11 @@ def open_essay(browser, essay):
     contexts, faults = [], []
 
     def open_page(fragment="", **options):
-        # Without motion every picture is the last one: nothing to wait for, where graphics are drawn by the processor.
-        context = browser.new_context(viewport={"width": 640, "height": 420}, reduced_motion="reduce", **options)
+        # Without motion every picture is the last one: nothing to wait for, where graphics are
+        # drawn by the processor.
+        context = browser.new_context(
+            viewport={"width": 640, "height": 420}, reduced_motion="reduce", **options
+        )
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: faults.append(str(error)))
@@ -230,7 +253,9 @@ def rest(page):
 
 def scroll_to(page, name):
     page.evaluate("name => document.getElementById(name).scrollIntoView()", name)
-    page.wait_for_function("name => document.querySelector('.world').dataset.state === name", arg=name)
+    page.wait_for_function(
+        "name => document.querySelector('.world').dataset.state === name", arg=name
+    )
     rest(page)
 
 
@@ -263,7 +288,9 @@ def test_the_text_moves_the_gimbal_and_the_reader_may_take_it(open_essay):
     )
     page.wait_for_function("document.querySelector('.world [role=status]').textContent.length > 20")
     scroll_to(page, "same-numbers")
-    assert np.degrees(body_fixed_from_dcm(camera(page), "zxy")) == pytest.approx((35, 50, 65), abs=0.2)
+    assert np.degrees(body_fixed_from_dcm(camera(page), "zxy")) == pytest.approx(
+        (35, 50, 65), abs=0.2
+    )
 
 
 def test_a_drag_turns_the_front_the_way_the_pointer_goes(open_essay):
@@ -279,7 +306,9 @@ def test_a_drag_turns_the_front_the_way_the_pointer_goes(open_essay):
     rest(page)
     after = camera(page) @ view.T
     lens = after[1] - before[1]
-    assert lens[0] > 0.15 and abs(lens[1]) < 0.08, "the lens, which looked at the reader, has gone to the right"
+    assert lens[0] > 0.15 and abs(lens[1]) < 0.08, (
+        "the lens, which looked at the reader, has gone to the right"
+    )
 
 
 FLICK = """() => {
@@ -293,7 +322,9 @@ FLICK = """() => {
 
 
 def free_body(dcm, rate, seconds, off=0.0):
-    """Where a body ends that is let go at this rate, by Euler's equations; or where an instrument in it believes so."""
+    """Where a body ends that is let go at this rate, by Euler's equations; or where an instrument
+    in it believes so.
+    """
     inertia = np.array((1.1, 0.8, 1.25))
 
     def change(_, state):
@@ -367,7 +398,7 @@ def test_an_address_opens_the_gimbal_as_it_was(open_essay):
         assert not page.evaluate("document.querySelector('.world').world.state.free")
 
 
-# ---- in somebody else's page ---------------------------------------------------------------------------------
+# ---- in somebody else's page ---------------------------------------------------------------------
 
 PLAIN = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Mine</title><link rel="icon" href="data:,">
 </head><body><h1>My page</h1>{frame}
@@ -376,7 +407,9 @@ PLAIN = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Min
 
 
 def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
-    """A frame, and an element that leaves no other name: both show the figure as the address says."""
+    """A frame, and an element that leaves no other name: both show the figure as the address
+    says.
+    """
     from notebook_pages.moving import scripts_and_styles
     from orientation_figures.moving import embedding
 
@@ -429,7 +462,9 @@ def test_the_link_of_a_caption_carries_how_the_figure_stands(browser, tmp_path):
     texts, _ = scripts_and_styles(["simple"])
     for name, text in texts.items():
         (tmp_path / name).write_text(text, "utf8")
-    (tmp_path / "index.html").write_text(CAPTIONED.format(still=SimpleFigure(axis="z", angle=0.5).still()), "utf8")
+    (tmp_path / "index.html").write_text(
+        CAPTIONED.format(still=SimpleFigure(axis="z", angle=0.5).still()), "utf8"
+    )
     page = browser.new_page()
     page.goto((tmp_path / "index.html").as_uri())
     link, angle = page.locator("a.headerlink"), page.locator(".live input[type=number]").first
@@ -462,7 +497,9 @@ def test_on_a_telephone_the_gimbal_turns_with_it(open_essay):
     page.wait_for_function("document.querySelector('.look').textContent.includes('Waiting')")
     page.evaluate(PHONE, [[70, 15, -10]])
     rest(page)
-    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)
+    assert camera(page) == pytest.approx(
+        dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6
+    )
     # Upright it is locked; once round, the numbers are back with the other sign.
     page.evaluate(PHONE, [[70, 88, -10]])
     rest(page)
@@ -470,4 +507,6 @@ def test_on_a_telephone_the_gimbal_turns_with_it(open_essay):
     page.evaluate(PHONE, [[(70 + 20 * k) % 360, 15, -10] for k in range(19)])
     rest(page)
     assert "q is now" in page.locator(".look").inner_text()
-    assert camera(page) == pytest.approx(dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6)
+    assert camera(page) == pytest.approx(
+        dcm_from_body_fixed(np.radians((70, 15, -10)), "zxy"), abs=1e-6
+    )

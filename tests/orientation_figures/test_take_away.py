@@ -10,7 +10,8 @@ from orientation_workbench.formulas import FORMULAS
 from orientation_workbench.languages import LANGUAGES, formula_in
 
 PLACE = (
-    '<dl><dt class="sig" id="orientation.body_fixed_from_dcm">body_fixed_from_dcm</dt><dd>Its words.</dd>'
+    '<dl><dt class="sig" id="orientation.body_fixed_from_dcm">body_fixed_from_dcm</dt><dd>Its '
+    "words.</dd>"
     '<dt class="sig" id="orientation.check_dcm">check_dcm</dt><dd>No formula.</dd></dl>'
     "<figure class='orientation-figure moving' data-figure='formula' data-state='{}'></figure>"
 )
@@ -41,16 +42,21 @@ def run_in_page(page, text, name, *arguments):
 def test_a_formula_is_taken_from_the_reference(open_figure):
     page = open_figure(Formula())
     page.locator("button.take-formula").wait_for()
-    assert page.locator("button.take-formula").count() == 1  # nothing is offered of what is no formula
+    assert (
+        page.locator("button.take-formula").count() == 1
+    )  # nothing is offered of what is no formula
     page.click("button.take-formula")
     assert page.locator("select[aria-label=Language] option").all_text_contents() == [*LANGUAGES]
     page.select_option("select[aria-label=Language]", "JavaScript")
     page.select_option("select[aria-label=Sequence]", "zyx")
     page.select_option("select[aria-label=Matrix]", "transposed")
     page.select_option("select[aria-label='Angles in']", "degrees")
-    wanted = formula_in("JavaScript", "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees")
+    wanted = formula_in(
+        "JavaScript", "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees"
+    )
     page.wait_for_function(
-        "(text) => document.querySelector('.taken output').textContent.trim() === text", arg=wanted.strip()
+        "(text) => document.querySelector('.taken output').textContent.trim() === text",
+        arg=wanted.strip(),
     )
     assert page.locator("dd .taken").count() == 1  # where the reader is
     text = page.text_content(".taken output")
@@ -65,7 +71,9 @@ def test_a_formula_is_taken_from_the_reference(open_figure):
 def test_the_converter_gives_the_formulas_that_it_uses(open_figure):
     page = open_figure("converter")
     page.select_option("select[aria-label=Language]", "JavaScript")
-    page.wait_for_function("document.querySelector('.taken output').textContent.includes('body_fixed_from_dcm_zxy')")
+    page.wait_for_function(
+        "document.querySelector('.taken output').textContent.includes('body_fixed_from_dcm_zxy')"
+    )
     text = page.text_content(".taken output")
     # From SciPy's quaternion, scalar last, to this book's angles.
     quaternion = page.evaluate("document.querySelector('.moving').model.get('quaternion')")

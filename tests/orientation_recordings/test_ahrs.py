@@ -1,7 +1,9 @@
-"""Orientation from sensors, motion and means, against the package ahrs, which others wrote for the same purposes.
+"""Orientation from sensors, motion and means, against the package ahrs, which others wrote for the
+same purposes.
 
-Four of its parts are no judges, as of 0.3.1: its QUEST squares a matrix entry by entry and never begins Newton's
-method, its ``sarabandi`` and ``angular_distance`` disagree with SciPy, and its Mahony filter loses the recording.
+Four of its parts are no judges, as of 0.3.1: its QUEST squares a matrix entry by entry and never
+begins Newton's method, its ``sarabandi`` and ``angular_distance`` disagree with SciPy, and its
+Mahony filter loses the recording.
 """
 
 import warnings
@@ -46,7 +48,9 @@ def test_two_directions_as_its_triad(seed):
     seen = noisy(TURNS[seed], known, seed, 0.05)
     theirs = TRIAD(v1=known[0], v2=known[1]).estimate(*seen)
     assert abs(dcm_from_two_directions(seen, known) - theirs).max() < 1e-14
-    assert abs(dcm_from_two_directions(seen[::-1], known[::-1]) - theirs).max() > 1e-3  # the order counts
+    assert (
+        abs(dcm_from_two_directions(seen[::-1], known[::-1]) - theirs).max() > 1e-3
+    )  # the order counts
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -69,12 +73,16 @@ def test_its_matrices_are_transposes_and_its_quaternions_ours():
         assert abs(ahrs.Quaternion(quaternion).to_DCM().T - dcm).max() < 1e-14
         for back in (shepperd, itzhack, hughes):
             found = np.real(back(dcm))
-            assert angle_between(dcm_from_quaternion(found / np.linalg.norm(found)), dcm) < 1e-6, back.__name__
+            assert angle_between(dcm_from_quaternion(found / np.linalg.norm(found)), dcm) < 1e-6, (
+                back.__name__
+            )
 
 
 def test_a_gyroscope_is_integrated_as_it_does():
     rates, step = np.random.default_rng(4).normal(size=(300, 3)), 0.01
-    theirs = AngularRate(gyr=rates, frequency=1 / step, method="closed", q0=np.array([1.0, 0, 0, 0])).Q
+    theirs = AngularRate(
+        gyr=rates, frequency=1 / step, method="closed", q0=np.array([1.0, 0, 0, 0])
+    ).Q
     ours = dcms_after_turns(np.eye(3), step * rates[1:])  # of the first sample it keeps the start
     assert angle_between(dcm_from_quaternion(theirs), ours).max() < 1e-12
 
@@ -84,9 +92,14 @@ def test_distances_means_and_ways_between():
     angles = angle_between(first, second)
     q, p = quaternion_from_dcm(first), quaternion_from_dcm(second)
     for k, angle in enumerate(angles):
-        assert metrics.chordal(first[k], second[k]) == pytest.approx(np.sqrt(8) * np.sin(angle / 2), abs=1e-12)
+        assert metrics.chordal(first[k], second[k]) == pytest.approx(
+            np.sqrt(8) * np.sin(angle / 2), abs=1e-12
+        )
         assert metrics.qdist(q[k], p[k]) == pytest.approx(2 * np.sin(angle / 4), abs=1e-12)
-    scattered = dcm_from_rotation_vector(np.random.default_rng(5).normal(scale=0.4, size=(20, 3))) @ TURNS[0]
+    scattered = (
+        dcm_from_rotation_vector(np.random.default_rng(5).normal(scale=0.4, size=(20, 3)))
+        @ TURNS[0]
+    )
     mean = ahrs.QuaternionArray(quaternion_from_dcm(scattered)).average()
     assert angle_between(dcm_from_quaternion(mean), mean_orientation(scattered)) < 1e-12
     shares = np.linspace(0, 1, 11)
@@ -97,14 +110,20 @@ def test_distances_means_and_ways_between():
 
 
 def test_the_kalman_filter_follows_the_recording_as_madgwicks_filter_does():
-    """Two filters of quite different kinds, from one start, stay within some degrees while it is carried about."""
+    """Two filters of quite different kinds, from one start, stay within some degrees while it is
+    carried about.
+    """
     x_imu, step = recordings.x_imu(), 1 / recordings.X_IMU_RATE
     force, field = x_imu.specific_force[:128].mean(axis=0), x_imu.magnetic_field[:128].mean(axis=0)
     level = np.cross(force, np.cross(field, force))
     start = dcm_from_two_directions([force, level], [[0, 0, 1], [1, 0, 0]])
-    estimate = MultiplicativeKalmanFilter(start, np.diag([0.03**2] * 3 + [0.02**2] * 3), 0.005, 1e-4)
+    estimate = MultiplicativeKalmanFilter(
+        start, np.diag([0.03**2] * 3 + [0.02**2] * 3), 0.005, 1e-4
+    )
     ours = []
-    for rate, force, field in zip(x_imu.angular_velocity, x_imu.specific_force, x_imu.magnetic_field, strict=True):
+    for rate, force, field in zip(
+        x_imu.angular_velocity, x_imu.specific_force, x_imu.magnetic_field, strict=True
+    ):
         estimate.turn(rate, step)
         estimate.observe(force, (0, 0, 1), np.hypot(0.1, np.linalg.norm(force) - 1))
         x, y, z = estimate.dcm.T @ field

@@ -14,7 +14,9 @@ def body_from_earth(recording, conjugated):
 
 
 def disagreement_with_gyroscope(recording, conjugated):
-    """How badly the turns between successive quaternions follow the gyroscope, as a share of the turning."""
+    """How badly the turns between successive quaternions follow the gyroscope, as a share of the
+    turning.
+    """
     dcms = body_from_earth(recording, conjugated)
     turned = rotation_vector_from_dcm(dcms[1:] @ dcms[:-1].swapaxes(-1, -2))
     steps = np.diff(recording.time, prepend=recording.time[0])[:, None] * recording.angular_velocity
@@ -35,10 +37,14 @@ def test_the_gyroscope_tells_in_which_convention_the_quaternion_is(name, conjuga
 
 
 def test_the_x_imu_contradicts_itself():
-    """Its matrix is that of its quaternion in the book's reading; its angles, body fixed z-y-x, give the transpose."""
+    """Its matrix is that of its quaternion in the book's reading; its angles, body fixed z-y-x,
+    give the transpose.
+    """
     recording = recordings.x_imu()
     time, matrices = recordings.x_imu_rotation_matrix()
-    which = np.searchsorted(recordings.table("x_imu_quaternion")[:, 0], recordings.table("x_imu_rotation_matrix")[:, 0])
+    which = np.searchsorted(
+        recordings.table("x_imu_quaternion")[:, 0], recordings.table("x_imu_rotation_matrix")[:, 0]
+    )
     dcms = dcm_from_quaternion(recording.quaternion)
     assert np.abs(dcms[which] - matrices).max() < 1e-6
     angles = np.radians(recordings.x_imu_euler_angles()[:, ::-1])
@@ -66,7 +72,8 @@ def test_what_the_files_hold_is_licensed():
     assert "Brandon Rhodes" in licence and "MIT" in licence
 
 
-# Hours, minutes and seconds, degrees, minutes and seconds, as tables of the sky print them for the epoch 2000.
+# Hours, minutes and seconds, degrees, minutes and seconds, as tables of the sky print them for the
+# epoch 2000.
 KNOWN = {
     "Sirius": (6, 45, 8.9, -1, 16, 42, 58),
     "Vega": (18, 36, 56.3, 1, 38, 47, 1),

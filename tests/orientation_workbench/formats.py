@@ -1,7 +1,8 @@
 """One recording as many instruments, telephones, drones and robots write it down.
 
-After what their makers document and what people have published, headings and odd lines included. Each gives text or
-bytes, and what it says of each sensor: in how many of its units one radian per second, one m/s² or one microtesla is.
+After what their makers document and what people have published, headings and odd lines included.
+Each gives text or bytes, and what it says of each sensor: in how many of its units one radian per
+second, one m/s² or one microtesla is.
 """
 
 import io
@@ -30,7 +31,10 @@ def recording():
 
 
 def _table(names, columns, separator=",", number="{:.7g}", head=(), end="", comma=False):
-    rows = [separator.join(number.format(value) for value in row) + end for row in np.column_stack(columns)]
+    rows = [
+        separator.join(number.format(value) for value in row) + end
+        for row in np.column_stack(columns)
+    ]
     if comma:
         rows = [row.replace(".", ",") for row in rows]
     return "\n".join([*head, *([separator.join(names)] if names else []), *rows, ""]).encode()
@@ -38,7 +42,9 @@ def _table(names, columns, separator=",", number="{:.7g}", head=(), end="", comm
 
 def _parts():
     found = recording()
-    return found, *(found[kind] for kind in ("time", "gyroscope", "accelerometer", "magnetometer", "quaternion"))
+    return found, *(
+        found[kind] for kind in ("time", "gyroscope", "accelerometer", "magnetometer", "quaternion")
+    )
 
 
 def _gravity(found):
@@ -81,14 +87,20 @@ def phyphox_table():
     """Blanks and units in the headings, semicolons and decimal commas."""
     _, time, gyr, acc, mag, _ = _parts()
     units = {"Gyroscope": "rad/s", "Acceleration": "m/s^2", "Magnetic field": "µT"}
-    names = ["Time (s)", *(f"{one} {axis} ({unit})" for one, unit in units.items() for axis in "xyz")]
+    names = [
+        "Time (s)",
+        *(f"{one} {axis} ({unit})" for one, unit in units.items() for axis in "xyz"),
+    ]
     return Form(
-        _table(names, (time, gyr, acc, mag), ";", comma=True), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+        _table(names, (time, gyr, acc, mag), ";", comma=True),
+        {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1},
     )
 
 
 def sensor_logger():
-    """A zip of one table for each sensor, z before y before x; the accelerometer without gravity; beside settings."""
+    """A zip of one table for each sensor, z before y before x; the accelerometer without gravity;
+    beside settings.
+    """
     found, time, gyr, acc, mag, quaternion = _parts()
     clock = (1.7e18 + 1e9 * time, time)
     gravity = _gravity(found)
@@ -110,7 +122,8 @@ def sensor_logger():
                 "TotalAcceleration.csv": one(acc[:, ::-1]),
                 "Magnetometer.csv": one(mag[:, ::-1]),
                 "Orientation.csv": one(
-                    np.column_stack([quaternion[:, ::-1], angles]), ["qz", "qy", "qx", "qw", "roll", "pitch", "yaw"]
+                    np.column_stack([quaternion[:, ::-1], angles]),
+                    ["qz", "qy", "qx", "qw", "roll", "pitch", "yaw"],
                 ),
                 "Metadata.csv": "version,device name,recording epoch time\n3,phone,1700000000000\n",
                 "Annotation.csv": "time,seconds_elapsed,text,millisecond_press_duration\n",
@@ -126,7 +139,9 @@ def sensor_logger_json():
         for sensor in ("gyroscope", "accelerometer", "magnetometer"):
             x, y, z = found[sensor][k].round(6)
             entries.append({"sensor": sensor, "seconds_elapsed": time, "x": x, "y": y, "z": z})
-    return Form(json.dumps(entries).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
+    return Form(
+        json.dumps(entries).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+    )
 
 
 def lists_in_json():
@@ -142,15 +157,32 @@ def lists_in_json():
 
 
 def sensor_log():
-    """SensorLog of the App Store: everything in one table, times of several clocks, and gravity in its own columns."""
+    """SensorLog of the App Store: everything in one table, times of several clocks, and gravity in
+    its own columns.
+    """
     found, time, gyr, acc, mag, quaternion = _parts()
     gravity = _gravity(found) / GRAVITY
     names = ["loggingTime(txt)", "loggingSample(N)", "accelerometerTimestamp_sinceReboot(s)"]
-    names += [f"accelerometerAcceleration{axis}(G)" for axis in "XYZ"] + ["gyroTimestamp_sinceReboot(s)"]
+    names += [f"accelerometerAcceleration{axis}(G)" for axis in "XYZ"] + [
+        "gyroTimestamp_sinceReboot(s)"
+    ]
     names += [f"gyroRotation{axis}(rad/s)" for axis in "XYZ"] + ["motionTimestamp_sinceReboot(s)"]
-    names += [f"motionUserAcceleration{axis}(G)" for axis in "XYZ"] + [f"motionGravity{axis}(G)" for axis in "XYZ"]
-    names += [f"motionMagneticField{axis}(µT)" for axis in "XYZ"] + [f"motionQuaternion{axis}(R)" for axis in "XYZW"]
-    columns = [7e4 + time, acc / GRAVITY, 7e4 + time, gyr, 7e4 + time, acc / GRAVITY - gravity, gravity, mag]
+    names += [f"motionUserAcceleration{axis}(G)" for axis in "XYZ"] + [
+        f"motionGravity{axis}(G)" for axis in "XYZ"
+    ]
+    names += [f"motionMagneticField{axis}(µT)" for axis in "XYZ"] + [
+        f"motionQuaternion{axis}(R)" for axis in "XYZW"
+    ]
+    columns = [
+        7e4 + time,
+        acc / GRAVITY,
+        7e4 + time,
+        gyr,
+        7e4 + time,
+        acc / GRAVITY - gravity,
+        gravity,
+        mag,
+    ]
     columns.append(np.roll(quaternion, -1, axis=1))
     body = _table(None, columns, number="{:.9f}").decode().splitlines()
     rows = [f"2024-02-06T10:11:{int(t) % 60:02}.{int(1000 * t) % 1000:03}+01:00,{k},{row}"
@@ -168,34 +200,52 @@ def andro_sensor():
                        ("GYROSCOPE", "rad/s"), ("MAGNETIC FIELD", "μT")):  # fmt: skip
         names += [f"{stem} {axis} ({unit})" for axis in "XYZ"]
     names += ["SOUND LEVEL (dB)", "Time since start in ms ", "YYYY-MO-DD HH-MI-SS_SSS"]
-    columns = [acc, gravity, acc - gravity, gyr, mag, np.full(len(time), 41.3), np.round(1000 * time)]
+    columns = [
+        acc,
+        gravity,
+        acc - gravity,
+        gyr,
+        mag,
+        np.full(len(time), 41.3),
+        np.round(1000 * time),
+    ]
     text = _table(None, columns, ";", "{:.6f}").decode().splitlines()
     text = [
-        f"{row};2014-01-12 15:20:{int(t) % 60:02}_{int(1000 * t) % 1000:03}" for t, row in zip(time, text, strict=True)
+        f"{row};2014-01-12 15:20:{int(t) % 60:02}_{int(1000 * t) % 1000:03}"
+        for t, row in zip(time, text, strict=True)
     ]
     scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
     return Form("\n".join([";".join(names), *text]).encode(), scales)
 
 
 def physics_toolbox():
-    """Physics Toolbox Sensor Suite: g-force, linear acceleration, turning and field, in short names."""
+    """Physics Toolbox Sensor Suite: g-force, linear acceleration, turning and field, in short
+    names.
+    """
     found, time, gyr, acc, mag, _ = _parts()
     names = "time;gFx;gFy;gFz;ax;ay;az;wx;wy;wz;p;Bx;By;Bz".split(";")
     columns = [time, acc / GRAVITY, acc - _gravity(found), gyr, np.full(len(time), 1013.2), mag]
     return Form(
-        _table(names, columns, ";", "{:.6f}"), {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1}
+        _table(names, columns, ";", "{:.6f}"),
+        {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1},
     )
 
 
 def motion_sense():
-    """Core Motion in a data set: a column without a name that counts, angles, gravity, turning, acceleration."""
+    """Core Motion in a data set: a column without a name that counts, angles, gravity, turning,
+    acceleration.
+    """
     found, time, gyr, acc, _, _ = _parts()
     gravity = _gravity(found) / GRAVITY
     names = [""] + [f"attitude.{one}" for one in ("roll", "pitch", "yaw")]
-    names += [f"{one}.{axis}" for one in ("gravity", "rotationRate", "userAcceleration") for axis in "xyz"]
+    names += [
+        f"{one}.{axis}" for one in ("gravity", "rotationRate", "userAcceleration") for axis in "xyz"
+    ]
     angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
     columns = [np.arange(len(time)), angles, gravity, gyr, acc / GRAVITY - gravity]
-    return Form(_table(names, columns), {"gyroscope": 1, "accelerometer": 1 / GRAVITY}, counted=True)
+    return Form(
+        _table(names, columns), {"gyroscope": 1, "accelerometer": 1 / GRAVITY}, counted=True
+    )
 
 
 def meta_wear():
@@ -211,14 +261,24 @@ def meta_wear():
         )
         return "\n".join([f"{head},x-axis ({unit}),y-axis ({unit}),z-axis ({unit})", *rows])
 
-    files = {"MetaWear_2018_F1_A.csv": one(acc / GRAVITY, "g"), "MetaWear_2018_F1_G.csv": one(DEG * gyr, "deg/s")}
+    files = {
+        "MetaWear_2018_F1_A.csv": one(acc / GRAVITY, "g"),
+        "MetaWear_2018_F1_G.csv": one(DEG * gyr, "deg/s"),
+    }
     return Form(_zipped(files), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY})
 
 
 def xsens_mtw():
-    """MT Manager: remarks, tabs, columns that hold nothing, a counter, and the rate among the remarks."""
+    """MT Manager: remarks, tabs, columns that hold nothing, a counter, and the rate among the
+    remarks.
+    """
     _, time, gyr, acc, mag, quaternion = _parts()
-    head = ["// Start Time: Unknown", "// Sample rate: 100.0Hz", "// Scenario: 4.9", "// Firmware Version: 4.0.2"]
+    head = [
+        "// Start Time: Unknown",
+        "// Sample rate: 100.0Hz",
+        "// Scenario: 4.9",
+        "// Firmware Version: 4.0.2",
+    ]
     names = ["PacketCounter", "SampleTimeFine", "Year", "Month", "Day", "Second", "UTC_Valid"]
     names += [f"{stem}_{axis}" for stem in ("Acc", "Gyr", "Mag") for axis in "XYZ"]
     names += [f"Quat_q{k}" for k in range(4)]
@@ -231,14 +291,35 @@ def xsens_mtw():
 
 
 def movella_dot():
-    """Its settings above the table, a comma at each end, microseconds that are called SampleTimeFine, degrees."""
+    """Its settings above the table, a comma at each end, microseconds that are called
+    SampleTimeFine, degrees.
+    """
     _, time, gyr, acc, mag, quaternion = _parts()
-    head = ["sep=,", "DeviceTag:,DOT-1", "FirmwareVersion:,2.0.0", "AppVersion:,v2021.0", "SyncStatus:,Synced",
-            "OutputRate:,100Hz", "FilterProfile:,General", "Measurement Mode:,Custom Mode 1",
-            "StartTime:,2023-05-09_10-24-58-310_CET", "© Xsens Technologies B. V. 2005-2023", ""]  # fmt: skip
+    head = [
+        "sep=,",
+        "DeviceTag:,DOT-1",
+        "FirmwareVersion:,2.0.0",
+        "AppVersion:,v2021.0",
+        "SyncStatus:,Synced",
+        "OutputRate:,100Hz",
+        "FilterProfile:,General",
+        "Measurement Mode:,Custom Mode 1",
+        # fmt: skip
+        "StartTime:,2023-05-09_10-24-58-310_CET",
+        "© Xsens Technologies B. V. 2005-2023",
+        "",
+    ]
     names = ["PacketCounter", "SampleTimeFine", *(f"Quat_{axis}" for axis in "WXYZ")]
     names += [f"{stem}_{axis}" for stem in ("Acc", "Gyr", "Mag") for axis in "XYZ"] + ["Status"]
-    columns = [np.arange(len(time)), np.round(3.1e8 + 1e6 * time), quaternion, acc, DEG * gyr, mag / 45, 0 * time]
+    columns = [
+        np.arange(len(time)),
+        np.round(3.1e8 + 1e6 * time),
+        quaternion,
+        acc,
+        DEG * gyr,
+        mag / 45,
+        0 * time,
+    ]
     return Form(
         _table(names, columns, number="{:.10g}", head=head, end=","),
         {"gyroscope": DEG, "accelerometer": 1, "magnetometer": 1 / 45, "quaternion": 1},
@@ -248,7 +329,9 @@ def movella_dot():
 def x_io():
     _, time, gyr, acc, mag, _ = _parts()
     names = ["Packet number", *(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")]
-    names += [f"Accelerometer {axis} (g)" for axis in "XYZ"] + [f"Magnetometer {axis} (G)" for axis in "XYZ"]
+    names += [f"Accelerometer {axis} (g)" for axis in "XYZ"] + [
+        f"Magnetometer {axis} (G)" for axis in "XYZ"
+    ]
     columns = [4711 + np.arange(len(time)), DEG * gyr, acc / GRAVITY, mag / 100]
     scales = {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 0.01}
     return Form(_table(names, columns, number="{:.9g}"), scales, counted=True)
@@ -257,7 +340,9 @@ def x_io():
 def shimmer():
     """Three lines above the numbers: names with what they are at their ends, kinds, and units."""
     _, time, gyr, acc, mag, _ = _parts()
-    names = [f"Shimmer_4F_{kind}_{axis}_CAL" for kind in ("Gyro", "Accel_LN", "Mag") for axis in "XYZ"]
+    names = [
+        f"Shimmer_4F_{kind}_{axis}_CAL" for kind in ("Gyro", "Accel_LN", "Mag") for axis in "XYZ"
+    ]
     head = ["sep=\t", "\t".join(["Shimmer_4F_Timestamp_CAL", *names]), "\t".join(["CAL"] * 10)]
     head.append("\t".join(["ms", *["deg/s"] * 3, *["m/(s^2)"] * 3, *["local_flux"] * 3]))
     return Form(
@@ -269,8 +354,11 @@ def shimmer():
 def pico_quake():
     """Remarks with signs of numbers, short names without units, and a column that counts."""
     _, time, gyr, acc, _, _ = _parts()
-    head = ["# PLab PicoQuake Data", "# Time: 2024-04-21 15:54:46.333682, Device: D4E9 (E6632891E36F2029)",
-            "# Num. samples: 10000, Duration: 5.0 s", "# Config: data_rate = 100.0 Hz, filter = 42 Hz, acc_range = 4 g",
+    head = ["# PLab PicoQuake Data", "# Time: 2024-04-21 15:54:46.333682, Device: D4E9 "
+        "(E6632891E36F2029)",
+            "# Num. samples: 10000, Duration: 5.0 s", "# Config: data_rate = 100.0 Hz, "
+                "filter = 42 Hz, "
+                "acc_range = 4 g",
             "# Integrity: True, Skipped samples: 0"]  # fmt: skip
     names = ["count", "a_x", "a_y", "a_z", "g_x", "g_y", "g_z"]
     columns = [np.arange(1, len(time) + 1), acc / GRAVITY, DEG * gyr]
@@ -291,11 +379,18 @@ def gyroflow():
 
 
 def betaflight():
-    """Blackbox as its decoder writes it: settings in quotes, then very many columns, of which six are wanted."""
+    """Blackbox as its decoder writes it: settings in quotes, then very many columns, of which six
+    are wanted.
+    """
     _, time, gyr, acc, _, _ = _parts()
     head = ['"Product","Blackbox flight data recorder by Nicholas Sherlock"', '"firmwareType","Cleanflight"',
             '"acc_1G","2048"', '"gyro_scale","0x3f800000"']  # fmt: skip
-    names = ["loopIteration", "time", *(f"axisP[{k}]" for k in range(3)), *(f"rcCommand[{k}]" for k in range(4))]
+    names = [
+        "loopIteration",
+        "time",
+        *(f"axisP[{k}]" for k in range(3)),
+        *(f"rcCommand[{k}]" for k in range(4)),
+    ]
     names += [*(f"gyroADC[{k}]" for k in range(3)), *(f"accSmooth[{k}]" for k in range(3))]
     names += [*(f"motor[{k}]" for k in range(4)), "flightModeFlags (flags)"]
     random = np.random.default_rng(1)
@@ -304,11 +399,16 @@ def betaflight():
                np.tile([3, -2, 0, 1200], (count, 1)), DEG * gyr, 2048 * acc / GRAVITY,
                random.integers(1100, 1900, (count, 4)), 0 * time]  # fmt: skip
     names = [f'"{name}"' for name in names]
-    return Form(_table(names, columns, ", ", "{:.9g}", head=head), {"gyroscope": DEG, "accelerometer": 2048 / GRAVITY})
+    return Form(
+        _table(names, columns, ", ", "{:.9g}", head=head),
+        {"gyroscope": DEG, "accelerometer": 2048 / GRAVITY},
+    )
 
 
 def ardupilot():
-    """Lines of several kinds, each beginning with its name; two instruments take turns, and angles that were wanted."""
+    """Lines of several kinds, each beginning with its name; two instruments take turns, and angles
+    that were wanted.
+    """
     found, time, gyr, acc, mag, _ = _parts()
     lines = ["FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns",
              "FMT, 1, 2, IMU, QBffffffIIf, TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T",
@@ -323,7 +423,9 @@ def ardupilot():
             six = ", ".join(f"{one:.6f}" for one in np.concatenate([gyr[k], acc[k]]) + other)
             lines.append(f"IMU, {1e6 * t:.0f}, {number}, {six}, 0, 0, 41.2")
         lines.append(f"MAG, {1e6 * t:.0f}, 0, " + ", ".join(f"{10 * one:.1f}" for one in mag[k]))
-        lines.append(f"ATT, {1e6 * t:.0f}, 0, {roll[k]:.3f}, 0, {pitch[k]:.3f}, 0, {yaw[k] % 360:.3f}")
+        lines.append(
+            f"ATT, {1e6 * t:.0f}, 0, {roll[k]:.3f}, 0, {pitch[k]:.3f}, 0, {yaw[k] % 360:.3f}"
+        )
     scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 10, "angles": 1}
     return Form("\n".join(lines).encode(), scales)
 
@@ -335,11 +437,17 @@ def px4():
     combined = ["timestamp", *(f"gyro_rad[{k}]" for k in range(3)), "gyro_integral_dt",
                 "accelerometer_timestamp_relative", *(f"accelerometer_m_s2[{k}]" for k in range(3)),
                 "accelerometer_integral_dt", "accelerometer_clipping"]  # fmt: skip
-    attitude = ["timestamp", *(f"q[{k}]" for k in range(4)), *(f"delta_q_reset[{k}]" for k in range(4))]
+    attitude = [
+        "timestamp",
+        *(f"q[{k}]" for k in range(4)),
+        *(f"delta_q_reset[{k}]" for k in range(4)),
+    ]
     attitude.append("quat_reset_counter")
     dt, none = np.full(len(time), 5000.0), 0 * time
     files = {
-        "log_sensor_combined_0.csv": _table(combined, [stamp, gyr, dt, none, acc, dt, none], number="{:.10g}"),
+        "log_sensor_combined_0.csv": _table(
+            combined, [stamp, gyr, dt, none, acc, dt, none], number="{:.10g}"
+        ),
         "log_vehicle_magnetometer_0.csv": _table(
             [
                 "timestamp",
@@ -354,16 +462,24 @@ def px4():
         "log_vehicle_attitude_0.csv": _table(
             attitude, [stamp, quaternion, none + 1, none, none, none, none], number="{:.10g}"
         ),
-        "log_cpuload_0.csv": _table(["timestamp", "load", "ram_usage"], [stamp, dt / 1e4, dt / 2e4], number="{:.10g}"),
+        "log_cpuload_0.csv": _table(
+            ["timestamp", "load", "ram_usage"], [stamp, dt / 1e4, dt / 2e4], number="{:.10g}"
+        ),
     }
-    return Form(_zipped(files), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01, "quaternion": 1})
+    return Form(
+        _zipped(files), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01, "quaternion": 1}
+    )
 
 
 def rostopic():
-    """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and covariances between the vectors."""
+    """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and covariances between the
+    vectors.
+    """
     _, time, gyr, acc, _, quaternion = _parts()
     names = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id"]
-    names += [f"field.orientation.{one}" for one in "xyzw"] + [f"field.orientation_covariance{k}" for k in range(9)]
+    names += [f"field.orientation.{one}" for one in "xyzw"] + [
+        f"field.orientation_covariance{k}" for k in range(9)
+    ]
     names += [f"field.angular_velocity.{axis}" for axis in "xyz"]
     names += [f"field.angular_velocity_covariance{k}" for k in range(9)]
     names += [f"field.linear_acceleration.{axis}" for axis in "xyz"]
@@ -372,20 +488,38 @@ def rostopic():
     lines = [",".join(names)]
     for k, t in enumerate(time):
         stamp = f"{1_700_000_000 * 10**9 + round(1e9 * t)}"
-        vectors = [",".join(f"{one:.8f}" for one in row[k]) for row in (np.roll(quaternion, -1, axis=1), gyr, acc)]
-        lines.append(f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors))
+        vectors = [
+            ",".join(f"{one:.8f}" for one in row[k])
+            for row in (np.roll(quaternion, -1, axis=1), gyr, acc)
+        ]
+        lines.append(
+            f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors)
+        )
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
 
 def rostopic_in_blocks():
-    """As `rostopic echo` and `ros2 topic echo` print messages: one after another, parted by three hyphens."""
+    """As `rostopic echo` and `ros2 topic echo` print messages: one after another, parted by three
+    hyphens.
+    """
     _, time, gyr, acc, _, quaternion = _parts()
     lines = []
     for k, t in enumerate(time):
-        lines += ["header:", "  stamp:", f"    sec: {1_700_000_000 + int(t)}", f"    nanosec: {round(1e9 * (t % 1))}"]
+        lines += [
+            "header:",
+            "  stamp:",
+            f"    sec: {1_700_000_000 + int(t)}",
+            f"    nanosec: {round(1e9 * (t % 1))}",
+        ]
         lines += ["  frame_id: imu_link", "orientation:"]
-        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyzw", np.roll(quaternion[k], -1).tolist(), strict=True)]
-        lines += ["orientation_covariance: [0.0025, 0.0, 0.0, 0.0, 0.0025, 0.0, 0.0, 0.0, 0.0025]", "angular_velocity:"]
+        lines += [
+            f"  {axis}: {part!r}"
+            for axis, part in zip("xyzw", np.roll(quaternion[k], -1).tolist(), strict=True)
+        ]
+        lines += [
+            "orientation_covariance: [0.0025, 0.0, 0.0, 0.0, 0.0025, 0.0, 0.0, 0.0, 0.0025]",
+            "angular_velocity:",
+        ]
         lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", gyr[k].tolist(), strict=True)]
         lines += ["angular_velocity_covariance:", *["- 0.02"] * 9, "linear_acceleration:"]
         lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", acc[k].tolist(), strict=True)]
@@ -396,8 +530,12 @@ def rostopic_in_blocks():
 def bagpy():
     _, time, gyr, acc, _, quaternion = _parts()
     names = ["Time", "header.seq", "header.stamp.secs", "header.stamp.nsecs", "header.frame_id"]
-    names += [f"orientation.{one}" for one in "xyzw"] + [f"orientation_covariance_{k}" for k in range(9)]
-    names += [f"{one}.{axis}" for one in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
+    names += [f"orientation.{one}" for one in "xyzw"] + [
+        f"orientation_covariance_{k}" for k in range(9)
+    ]
+    names += [
+        f"{one}.{axis}" for one in ("angular_velocity", "linear_acceleration") for axis in "xyz"
+    ]
     lines = [",".join(names)]
     for k, t in enumerate(time):
         numbers = [*np.roll(quaternion[k], -1), *[0.0] * 9, *gyr[k], *acc[k]]
@@ -415,34 +553,47 @@ def euroc():
         *(f"a_RS_S_{axis} [m s^-2]" for axis in "xyz"),
     ]
     rows = [
-        f"{1_403_636_579_758_555_392 + round(1e9 * t)}," + ",".join(f"{one:.16g}" for one in (*g, *a))
+        f"{1_403_636_579_758_555_392 + round(1e9 * t)},"
+        + ",".join(f"{one:.16g}" for one in (*g, *a))
         for t, g, a in zip(time, gyr, acc, strict=True)
     ]
-    return Form("\r\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1})
+    return Form(
+        "\r\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1}
+    )
 
 
 def uzh_fpv():
     _, time, gyr, acc, _, _ = _parts()
     names = "# id timestamp ang_vel_x ang_vel_y ang_vel_z lin_acc_x lin_acc_y lin_acc_z"
     columns = [np.arange(len(time)), 1.54e9 + time, gyr, acc]
-    return Form(_table(None, columns, " ", "{:.15g}", head=[names]), {"gyroscope": 1, "accelerometer": 1})
+    return Form(
+        _table(None, columns, " ", "{:.15g}", head=[names]), {"gyroscope": 1, "accelerometer": 1}
+    )
 
 
 def tum():
-    """A remark with the names, blanks between numbers, seconds since 1970; turning before pushes."""
+    """A remark with the names, blanks between numbers, seconds since 1970; turning before
+    pushes.
+    """
     _, time, gyr, acc, _, _ = _parts()
     head = ["# IMU of a table in motion", "# file: 'desk.bag'", "# timestamp wx wy wz ax ay az"]
-    return Form(_table(None, [1.3e9 + time, gyr, acc], " ", "{:.14g}", head=head), {"gyroscope": 1, "accelerometer": 1})
+    return Form(
+        _table(None, [1.3e9 + time, gyr, acc], " ", "{:.14g}", head=head),
+        {"gyroscope": 1, "accelerometer": 1},
+    )
 
 
 def oxiod():
-    """No headings: time, three angles, turning, gravity of length one, the rest of the acceleration, the field."""
+    """No headings: time, three angles, turning, gravity of length one, the rest of the
+    acceleration, the field.
+    """
     found, time, gyr, acc, mag, _ = _parts()
     gravity = _gravity(found) / GRAVITY
     angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
     columns = [time, angles, gyr, gravity, acc / GRAVITY - gravity, mag]
     return Form(
-        _table(None, columns, number="{:.6f}"), {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1}
+        _table(None, columns, number="{:.6f}"),
+        {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1},
     )
 
 
@@ -453,7 +604,8 @@ def gnss_logger():
     kinds = {"Accel": ("Mps2", acc), "Gyro": ("RadPerSec", gyr), "Mag": ("MicroT", mag)}
     for name, (unit, _) in kinds.items():
         lines.append(
-            f"# {name},utcTimeMillis,elapsedRealtimeNanos," + ",".join(f"{name}{axis}{unit}" for axis in "XYZ")
+            f"# {name},utcTimeMillis,elapsedRealtimeNanos,"
+            + ",".join(f"{name}{axis}{unit}" for axis in "XYZ")
         )
     for k, t in enumerate(time):
         for name, (_, values) in kinds.items():
@@ -467,7 +619,10 @@ def repo_imu():
     _, time, gyr, acc, mag, quaternion = _parts()
     names = ["Time", *(f"Quat {one}" for one in "WXYZ")]
     names += [f"{stem} {axis}" for stem in ("Acc", "Gyro", "Magn") for axis in "XYZ"]
-    head = [";".join(names), ";".join(["s", *["-"] * 4, *["m/s^2"] * 3, *["rad/s"] * 3, *["uT"] * 3])]
+    head = [
+        ";".join(names),
+        ";".join(["s", *["-"] * 4, *["m/s^2"] * 3, *["rad/s"] * 3, *["uT"] * 3]),
+    ]
     columns = [time, quaternion, acc, gyr, mag]
     scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1}
     return Form(_table(None, columns, ";", "{:.8f}", head=head), scales)
@@ -485,9 +640,16 @@ def arduino():
     counts = np.column_stack([acc / GRAVITY * 16384, DEG * gyr * 131]).round()
     rows = ["a/g:\t" + "\t".join(f"{one:.0f}" for one in row) for row in counts]
     text = "\n".join(
-        ["Initializing I2C devices...", "Testing device connections...", "MPU6050 connection successful", *rows]
+        [
+            "Initializing I2C devices...",
+            "Testing device connections...",
+            "MPU6050 connection successful",
+            *rows,
+        ]
     )
-    return Form(text.encode(), {"gyroscope": DEG * 131, "accelerometer": 16384 / GRAVITY}, counted=True)
+    return Form(
+        text.encode(), {"gyroscope": DEG * 131, "accelerometer": 16384 / GRAVITY}, counted=True
+    )
 
 
 def matlab_mobile():
@@ -495,19 +657,27 @@ def matlab_mobile():
     _, time, gyr, acc, mag, _ = _parts()
     names = [
         "Timestamp",
-        *(f"{stem}_{axis}" for stem in ("AngularVelocity", "Acceleration", "MagneticField") for axis in "XYZ"),
+        *(
+            f"{stem}_{axis}"
+            for stem in ("AngularVelocity", "Acceleration", "MagneticField")
+            for axis in "XYZ"
+        ),
     ]
     rows = [
-        f"2024-03-01 12:{int(t) // 60:02}:{t % 60:06.3f};" + ";".join(f"{one:.6f}".replace(".", ",") for one in row)
+        f"2024-03-01 12:{int(t) // 60:02}:{t % 60:06.3f};"
+        + ";".join(f"{one:.6f}".replace(".", ",") for one in row)
         for t, row in zip(time, np.column_stack([gyr, acc, mag]), strict=True)
     ]
     return Form(
-        "\n".join([";".join(names), *rows]).encode("utf-16"), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
+        "\n".join([";".join(names), *rows]).encode("utf-16"),
+        {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1},
     )
 
 
 def flight_test():
-    """As those who fly name it: p, q and r about the axes, angles as Greek letters, the time of the day."""
+    """As those who fly name it: p, q and r about the axes, angles as Greek letters, the time of the
+    day.
+    """
     found, time, gyr, acc, _, _ = _parts()
     angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
     names = ["TIME", "P (deg/s)", "Q (deg/s)", "R (deg/s)", "AX (g)", "AY (g)", "AZ (g)", "PHI (deg)", "THETA (deg)",
@@ -518,45 +688,90 @@ def flight_test():
         for t, row in zip(time, np.column_stack([DEG * gyr, acc / GRAVITY, angles]), strict=True)
     ]
     return Form(
-        "\n".join([",".join(names), *rows]).encode(), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "angles": 1}
+        "\n".join([",".join(names), *rows]).encode(),
+        {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "angles": 1},
     )
 
 
 def rates_called_after_angles():
     _, time, gyr, acc, _, _ = _parts()
     names = ["time_ms", "yaw_rate", "pitch_rate", "roll_rate", "accel_x", "accel_y", "accel_z"]
-    return Form(_table(names, [np.round(1000 * time), gyr[:, ::-1], acc]), {"gyroscope": 1, "accelerometer": 1})
+    return Form(
+        _table(names, [np.round(1000 * time), gyr[:, ::-1], acc]),
+        {"gyroscope": 1, "accelerometer": 1},
+    )
 
 
 def ros2_table():
-    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is left of them, covariances between."""
+    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is left of them,
+    covariances between.
+    """
     _, time, gyr, acc, _, quaternion = _parts()
     lines = []
     for k, t in enumerate(time):
-        vectors = [",".join(f"{one:.9f}" for one in row[k]) for row in (np.roll(quaternion, -1, axis=1), gyr, acc)]
+        vectors = [
+            ",".join(f"{one:.9f}" for one in row[k])
+            for row in (np.roll(quaternion, -1, axis=1), gyr, acc)
+        ]
         stamp = f"{1_700_000_000 + int(t)},{round(1e9 * (t % 1))},imu_link,"
-        lines.append(stamp + ",".join(f"{one},{','.join(['0.02', '0.0', '0.0'] * 3)}" for one in vectors))
+        lines.append(
+            stamp + ",".join(f"{one},{','.join(['0.02', '0.0', '0.0'] * 3)}" for one in vectors)
+        )
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
 
 def witmotion():
-    """Tabs, a clock of its own whose parts have no zeros before them, angles called AngleX, a field without a unit."""
+    """Tabs, a clock of its own whose parts have no zeros before them, angles called AngleX, a field
+    without a unit.
+    """
     found, time, gyr, acc, mag, quaternion = _parts()
     angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
-    names = ["Time(s)", "ChipTime", "ax(g)", "ay(g)", "az(g)", "wx(deg/s)", "wy(deg/s)", "wz(deg/s)", "AngleX(deg)",
-             "AngleY(deg)", "AngleZ(deg)", "T(°)", "hx", "hy", "hz", "q0", "q1", "q2", "q3"]  # fmt: skip
+    names = [
+        "Time(s)",
+        "ChipTime",
+        "ax(g)",
+        "ay(g)",
+        "az(g)",
+        "wx(deg/s)",
+        "wy(deg/s)",
+        "wz(deg/s)",
+        "AngleX(deg)",
+        # fmt: skip
+        "AngleY(deg)",
+        "AngleZ(deg)",
+        "T(°)",
+        "hx",
+        "hy",
+        "hz",
+        "q0",
+        "q1",
+        "q2",
+        "q3",
+    ]
     columns = [acc / GRAVITY, DEG * gyr, angles, np.full(len(time), 25), mag, quaternion]
     body = _table(None, columns, "\t", "{:.4f}").decode().splitlines()
     rows = [
-        f"10:11:{t % 60:06.3f}\t2020-1-1 0:{int(t) // 60}:{int(t) % 60}.{round(1000 * t) % 1000:03}\t{row}"
+        f"10:11:{t % 60:06.3f}\t2020-1-1 "
+        f"0:{int(t) // 60}:{int(t) % 60}.{round(1000 * t) % 1000:03}\t{row}"
         for t, row in zip(time, body, strict=True)
     ]
-    scales = {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 1, "angles": DEG, "quaternion": 1}
-    return Form("\r\n".join(["StartTime：2020-12-21 10:11:00.000", "\t".join(names), *rows]).encode(), scales)
+    scales = {
+        "gyroscope": DEG,
+        "accelerometer": 1 / GRAVITY,
+        "magnetometer": 1,
+        "angles": DEG,
+        "quaternion": 1,
+    }
+    return Form(
+        "\r\n".join(["StartTime：2020-12-21 10:11:00.000", "\t".join(names), *rows]).encode(),
+        scales,
+    )
 
 
 def polar():
-    """A table for each sensor with the same three headings; [G] is gauss, as only the name of its table says."""
+    """A table for each sensor with the same three headings; [G] is gauss, as only the name of its
+    table says.
+    """
     _, time, gyr, acc, mag, _ = _parts()
 
     def one(unit, values):
@@ -568,32 +783,59 @@ def polar():
         )
         return "\n".join([head, *rows])
 
-    files = {"ACC": one("mg", 1000 * acc / GRAVITY), "GYRO": one("dps", DEG * gyr), "MAGN": one("G", mag / 100)}
+    files = {
+        "ACC": one("mg", 1000 * acc / GRAVITY),
+        "GYRO": one("dps", DEG * gyr),
+        "MAGN": one("G", mag / 100),
+    }
     return Form(
-        _zipped({f"Polar_Sense_B36B5B28_20240305_{name}.txt": text for name, text in files.items()}),
+        _zipped(
+            {f"Polar_Sense_B36B5B28_20240305_{name}.txt": text for name, text in files.items()}
+        ),
         {"gyroscope": DEG, "accelerometer": 1000 / GRAVITY, "magnetometer": 0.01},
     )
 
 
 def dat_con():
-    """A drone's log: a clock that counts ticks before the one in seconds, and a word at the end of each row."""
+    """A drone's log: a clock that counts ticks before the one in seconds, and a word at the end of
+    each row.
+    """
     found, time, gyr, acc, mag, quaternion = _parts()
     names = ["Clock:Tick#", "Clock:offsetTime", *(f"IMU_ATTI(0):accel{axis}" for axis in "XYZ")]
     names += ["IMU_ATTI(0):accelComposite:C", *(f"IMU_ATTI(0):gyro{axis}" for axis in "XYZ")]
-    names += [*(f"IMU_ATTI(0):mag{axis}" for axis in "XYZ"), *(f"IMU_ATTI(0):quat{axis}:D" for axis in "WXYZ")]
+    names += [
+        *(f"IMU_ATTI(0):mag{axis}" for axis in "XYZ"),
+        *(f"IMU_ATTI(0):quat{axis}:D" for axis in "WXYZ"),
+    ]
     lengths = np.linalg.norm(acc, axis=1) / GRAVITY
-    columns = [3e9 + 4.5e6 * time, time - 3, acc / GRAVITY, lengths, DEG * gyr, 10 * mag, quaternion]
+    columns = [
+        3e9 + 4.5e6 * time,
+        time - 3,
+        acc / GRAVITY,
+        lengths,
+        DEG * gyr,
+        10 * mag,
+        quaternion,
+    ]
     rows = _table(None, columns, number="{:.10g}").decode().splitlines()
     text = "\n".join([",".join([*names, "flyCState"]), *(f"{row},Manual" for row in rows)])
-    return Form(text.encode(), {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 10, "quaternion": 1})
+    return Form(
+        text.encode(),
+        {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "magnetometer": 10, "quaternion": 1},
+    )
 
 
 def kalibr():
     """Its acceleration is called alpha."""
     _, time, gyr, acc, _, _ = _parts()
-    names = ["timestamp", *(f"omega_{axis}" for axis in "xyz"), *(f"alpha_{axis}" for axis in "xyz")]
+    names = [
+        "timestamp",
+        *(f"omega_{axis}" for axis in "xyz"),
+        *(f"alpha_{axis}" for axis in "xyz"),
+    ]
     rows = [
-        f"{1_385_030_208_736_607_488 + round(1e9 * t)}," + ",".join(f"{one:.8f}" for one in (*g, *a))
+        f"{1_385_030_208_736_607_488 + round(1e9 * t)},"
+        + ",".join(f"{one:.8f}" for one in (*g, *a))
         for t, g, a in zip(time, gyr, acc, strict=True)
     ]
     return Form("\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1})
@@ -628,7 +870,10 @@ def core_motion():
 def mavlogdump():
     """Two instruments take turns in one table; a column says which."""
     _, time, gyr, acc, _, _ = _parts()
-    random, lines = np.random.default_rng(2), ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T"]
+    random, lines = (
+        np.random.default_rng(2),
+        ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T"],
+    )
     for k, t in enumerate(time):
         for number in (0, 1):
             other = 0.01 * random.normal(size=6) * number
@@ -638,9 +883,15 @@ def mavlogdump():
 
 
 def one_sensor_a_line():
-    """What many small telephone programs write: a line for each sensor, and its name in the second column."""
+    """What many small telephone programs write: a line for each sensor, and its name in the second
+    column.
+    """
     found, lines = recording(), ["timestamp,sensor,x,y,z"]
-    kinds = {"ACCELEROMETER": "accelerometer", "GYROSCOPE": "gyroscope", "MAGNETIC_FIELD": "magnetometer"}
+    kinds = {
+        "ACCELEROMETER": "accelerometer",
+        "GYROSCOPE": "gyroscope",
+        "MAGNETIC_FIELD": "magnetometer",
+    }
     for k, t in enumerate(found["time"]):
         for name, kind in kinds.items():
             numbers = ",".join(f"{one:.6f}" for one in found[kind][k])
@@ -651,11 +902,18 @@ def one_sensor_a_line():
 def plot_juggler():
     """Headings are paths, and a counter stands before the acceleration."""
     _, time, gyr, acc, _, quaternion = _parts()
-    names = ["__time", *(f"/imu/data/angular_velocity/{axis}" for axis in "xyz"), "/imu/data/header/seq"]
+    names = [
+        "__time",
+        *(f"/imu/data/angular_velocity/{axis}" for axis in "xyz"),
+        "/imu/data/header/seq",
+    ]
     names += [*(f"/imu/data/linear_acceleration/{axis}" for axis in "xyz")]
     names += [*(f"/imu/data/orientation/{axis}" for axis in "wxyz")]
     columns = [1.7e9 + time, gyr, np.arange(len(time)), acc, quaternion]
-    return Form(_table(names, columns, number="{:.13g}"), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
+    return Form(
+        _table(names, columns, number="{:.13g}"),
+        {"gyroscope": 1, "accelerometer": 1, "quaternion": 1},
+    )
 
 
 def vector_nav():
@@ -664,21 +922,35 @@ def vector_nav():
     angles = found["truth"].as_euler("ZYX", degrees=True)
     rows = _table(None, [angles, mag / 100, acc, gyr], number="{:+.6f}").decode().splitlines()
     text = "\r\n".join(f"$VNYMR,{row}*{k % 256:02X}" for k, row in enumerate(rows))
-    return Form(text.encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01}, counted=True)
+    return Form(
+        text.encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01}, counted=True
+    )
 
 
 def increments():
-    """What many navigation programs read: seconds of the week, and by how much angle and speed have grown."""
+    """What many navigation programs read: seconds of the week, and by how much angle and speed have
+    grown.
+    """
     _, time, gyr, acc, _, _ = _parts()
     columns = [456_300 + time, 0.01 * gyr, 0.01 * acc]
     return Form(_table(None, columns, " ", "{:.10f}"), {"gyroscope": 0.01, "accelerometer": 0.01})
 
 
 def xsens_mtw_with_a_clock():
-    """Its clock counts ten thousandths of a second, which nothing says but the rate above the table."""
+    """Its clock counts ten thousandths of a second, which nothing says but the rate above the
+    table.
+    """
     _, time, gyr, acc, mag, _ = _parts()
-    head = ["// MT Manager version: 2022.2.0", "// Update Rate: 100.0Hz", "// Coordinate system: ENU"]
-    names = ["PacketCounter", "SampleTimeFine", *(f"{one}_{axis}" for one in ("Acc", "Gyr", "Mag") for axis in "XYZ")]
+    head = [
+        "// MT Manager version: 2022.2.0",
+        "// Update Rate: 100.0Hz",
+        "// Coordinate system: ENU",
+    ]
+    names = [
+        "PacketCounter",
+        "SampleTimeFine",
+        *(f"{one}_{axis}" for one in ("Acc", "Gyr", "Mag") for axis in "XYZ"),
+    ]
     columns = [np.arange(len(time)) + 65_400, 99 + np.round(1e4 * time), acc, gyr, mag / 45]
     return Form(
         _table(None, columns, "\t", head=[*head, "\t".join(names)]),
@@ -686,9 +958,51 @@ def xsens_mtw_with_a_clock():
     )
 
 
-FORMS = [phyphox_zip, phyphox_table, sensor_logger, sensor_logger_json, lists_in_json, sensor_log, andro_sensor,
-         physics_toolbox, motion_sense, meta_wear, xsens_mtw, movella_dot, x_io, shimmer, pico_quake, gyroflow,
-         betaflight, ardupilot, px4, rostopic, rostopic_in_blocks, bagpy, euroc, uzh_fpv, tum, oxiod, gnss_logger,
-         repo_imu, no_headings, arduino, matlab_mobile,
-         flight_test, rates_called_after_angles, ros2_table, witmotion, polar, dat_con, kalibr, core_motion, mavlogdump,
-         one_sensor_a_line, plot_juggler, vector_nav, increments, xsens_mtw_with_a_clock]  # fmt: skip
+FORMS = [
+    phyphox_zip,
+    phyphox_table,
+    sensor_logger,
+    sensor_logger_json,
+    lists_in_json,
+    sensor_log,
+    andro_sensor,
+    physics_toolbox,
+    motion_sense,
+    meta_wear,
+    xsens_mtw,
+    movella_dot,
+    x_io,
+    shimmer,
+    pico_quake,
+    gyroflow,
+    betaflight,
+    ardupilot,
+    px4,
+    rostopic,
+    rostopic_in_blocks,
+    bagpy,
+    euroc,
+    uzh_fpv,
+    tum,
+    oxiod,
+    gnss_logger,
+    repo_imu,
+    no_headings,
+    arduino,
+    matlab_mobile,
+    flight_test,
+    rates_called_after_angles,
+    ros2_table,
+    witmotion,
+    polar,
+    dat_con,
+    kalibr,
+    core_motion,
+    mavlogdump,
+    # fmt: skip
+    one_sensor_a_line,
+    plot_juggler,
+    vector_nav,
+    increments,
+    xsens_mtw_with_a_clock,
+]

@@ -1,10 +1,22 @@
-"""Threads and pasted numbers that no reading, relation or cost was chosen for: looked for when the table was done.
+"""Threads and pasted numbers that no reading, relation or cost was chosen for: looked for when the
+table was done.
 
-``MORE_THREADS`` is like ``THREADS``. ``PASTED`` holds what people really pasted: numbers with the brackets, names and
-digits that stand in the thread.
+``MORE_THREADS`` is like ``THREADS``. ``PASTED`` holds what people really pasted: numbers with the
+brackets, names and digits that stand in the thread.
 """
 
-from threads import FLIP, LAST_FOR_FIRST, MATRIX, NED, OTHER_HAND, OTHER_WAY, SPACE_FOR_BODY, VECTOR, angles, quaternion
+from threads import (
+    FLIP,
+    LAST_FOR_FIRST,
+    MATRIX,
+    NED,
+    OTHER_HAND,
+    OTHER_WAY,
+    SPACE_FOR_BODY,
+    VECTOR,
+    angles,
+    quaternion,
+)
 from threads import thread as _thread
 
 XYZW, WXYZ = quaternion("xyzw"), quaternion()
@@ -33,28 +45,79 @@ MORE_THREADS = [
     thread("simonfuhrmann/mve 306", "written out column by column", WXYZ, MATRIX),
     thread("microsoft/WinObjC 549", "the transpose", angles("xyz"), MATRIX),
     thread("moble/quaternion 145", "the transpose of MATLAB's", MATRIX, MATRIX, inverse=True),
-    thread("tyrex-team/benchmarks-attitude-smartphones 2", "of the transpose", MATRIX, WXYZ, inverse=True),
-    thread("IlyaKuprov/Spinach 325", "the transpose of an axis and an angle", MATRIX, MATRIX, inverse=True),
+    thread(
+        "tyrex-team/benchmarks-attitude-smartphones 2",
+        "of the transpose",
+        MATRIX,
+        WXYZ,
+        inverse=True,
+    ),
+    thread(
+        "IlyaKuprov/Spinach 325",
+        "the transpose of an axis and an angle",
+        MATRIX,
+        MATRIX,
+        inverse=True,
+    ),
     thread("ArduPilot/ardupilot 17090", OTHER_WAY, WXYZ, WXYZ, inverse=True),
     thread("rpng/open_vins 100", "JPL's quaternion for Hamilton's", XYZW, XYZW, inverse=True),
     thread("ethz-asl/kalibr 161", "JPL's quaternion for Hamilton's", MATRIX, WXYZ, inverse=True),
-    thread("ceres-solver/ceres-solver 211", "degrees expected", angles("zyx"), angles("zyx", **DEGREES)),
-    thread("snowkit/old-haxe-alpha 382", "degrees out, radians in", angles("xyz", **DEGREES), angles("xyz")),
+    thread(
+        "ceres-solver/ceres-solver 211", "degrees expected", angles("zyx"), angles("zyx", **DEGREES)
+    ),
+    thread(
+        "snowkit/old-haxe-alpha 382",
+        "degrees out, radians in",
+        angles("xyz", **DEGREES),
+        angles("xyz"),
+    ),
     thread("g-truc/glm 128", "degrees out, radians in", WXYZ, angles("zyx", **DEGREES)),
     thread("IlyaKuprov/Spinach 395", "degrees for radians", angles("zyz", **DEGREES), MATRIX),
     thread("dartsim/dart 250", SPACE_FOR_BODY, angles("xyz"), angles("xyz", "space fixed")),
-    thread("PickNikRobotics/rosparam_shortcuts 22", SPACE_FOR_BODY, angles("xyz"), angles("xyz", "space fixed")),
+    thread(
+        "PickNikRobotics/rosparam_shortcuts 22",
+        SPACE_FOR_BODY,
+        angles("xyz"),
+        angles("xyz", "space fixed"),
+    ),
     thread("godotengine/godot 105115", SPACE_FOR_BODY, angles("yxz"), angles("yxz", "space fixed")),
     thread("moveit/moveit_calibration 132", SPACE_FOR_BODY, XYZW, angles("xyz")),
-    thread("dronecrew/px4tools 45", "space fixed z-y-x for x-y-z", WXYZ, angles("zyx", "space fixed")),
-    thread("DeepMotionEditing/deep-motion-editing 195", SPACE_FOR_BODY, WXYZ, angles("zxy", "space fixed", "degrees")),
+    thread(
+        "dronecrew/px4tools 45", "space fixed z-y-x for x-y-z", WXYZ, angles("zyx", "space fixed")
+    ),
+    thread(
+        "DeepMotionEditing/deep-motion-editing 195",
+        SPACE_FOR_BODY,
+        WXYZ,
+        angles("zxy", "space fixed", "degrees"),
+    ),
     thread("ORB-HD/rbdl-orb 88", "z-y-x for x-y-z", angles("xyz"), angles("zyx", places="321")),
     thread("fan-ziqi/robot_viewer 16", "x-y-z for z-y-x", WXYZ, angles("xyz")),
     thread("KhronosGroup/glTF-Blender-IO 1343", "z-x-y read as x-y-z", XYZW, angles("xyz")),
-    thread("bulletphysics/bullet3 4407", "yaw, pitch, roll printed the other way", XYZW, angles("zyx", places="321")),
-    thread("ros/geometry 231", "roll, pitch, yaw against yaw, pitch, roll", angles("zyx"), angles("zyx", places="321")),
-    thread("Mayitzin/ahrs 65", "roll, pitch, yaw read backwards", angles("zyx"), angles("zyx", places="321")),
-    thread("rawify/Quaternion.js 12", "Unity's angles", WXYZ, angles("yxz", unit="degrees", places="213")),
+    thread(
+        "bulletphysics/bullet3 4407",
+        "yaw, pitch, roll printed the other way",
+        XYZW,
+        angles("zyx", places="321"),
+    ),
+    thread(
+        "ros/geometry 231",
+        "roll, pitch, yaw against yaw, pitch, roll",
+        angles("zyx"),
+        angles("zyx", places="321"),
+    ),
+    thread(
+        "Mayitzin/ahrs 65",
+        "roll, pitch, yaw read backwards",
+        angles("zyx"),
+        angles("zyx", places="321"),
+    ),
+    thread(
+        "rawify/Quaternion.js 12",
+        "Unity's angles",
+        WXYZ,
+        angles("yxz", unit="degrees", places="213"),
+    ),
     thread(
         "carla-simulator/carla 4693",
         "pitch and yaw reversed",
@@ -62,17 +125,48 @@ MORE_THREADS = [
         angles("zyx", unit="degrees", signs="--+"),
     ),
     thread(
-        "microsoft/AirSim 4902", "yaw reversed", angles("zyx", **DEGREES), angles("zyx", unit="degrees", signs="-++")
+        "microsoft/AirSim 4902",
+        "yaw reversed",
+        angles("zyx", **DEGREES),
+        angles("zyx", unit="degrees", signs="-++"),
     ),
     thread("naval-group/LOTUSim 33", "the body's side not converted", WXYZ, WXYZ, world=NED),
-    thread("ros-drivers/microstrain_mips 4", "x and y exchanged, z reversed", XYZW, XYZW, body=NED, world=NED),
+    thread(
+        "ros-drivers/microstrain_mips 4",
+        "x and y exchanged, z reversed",
+        XYZW,
+        XYZW,
+        body=NED,
+        world=NED,
+    ),
     thread("dawonn/vectornav 143", "NED and FRD to ENU and FLU", XYZW, XYZW, body=FLIP, world=NED),
-    thread("Auterion/px4-ros2-interface-lib 168", "NED and FRD to ENU and FLU", WXYZ, WXYZ, body=FLIP, world=NED),
+    thread(
+        "Auterion/px4-ros2-interface-lib 168",
+        "NED and FRD to ENU and FLU",
+        WXYZ,
+        WXYZ,
+        body=FLIP,
+        world=NED,
+    ),
     thread("nex-mpi/nex-code 13", "OpenGL's camera for OpenCV's", MATRIX, MATRIX, world=FLIP),
     thread("NVlabs/dex-ycb-toolkit 40", "OpenCV's camera for OpenGL's", MATRIX, MATRIX, body=FLIP),
-    thread("nianticlabs/ace 31", "OpenCV to OpenGL on both sides", MATRIX, MATRIX, body=FLIP, world=FLIP),
+    thread(
+        "nianticlabs/ace 31",
+        "OpenCV to OpenGL on both sides",
+        MATRIX,
+        MATRIX,
+        body=FLIP,
+        world=FLIP,
+    ),
     thread("heheyas/V3D 20", "camera to world, for OpenGL", WXYZ, MATRIX, world=FLIP),
-    thread("kwea123/nerf_pl 135", "OpenCV's camera for OpenGL's", MATRIX, MATRIX, inverse=True, world=FLIP),
+    thread(
+        "kwea123/nerf_pl 135",
+        "OpenCV's camera for OpenGL's",
+        MATRIX,
+        MATRIX,
+        inverse=True,
+        world=FLIP,
+    ),
     thread("nerfstudio-project/gsplat 180", OTHER_WAY, MATRIX, MATRIX, inverse=True),
     thread(
         "microsoft/MixedReality-SceneUnderstanding-Samples 17",
@@ -86,14 +180,30 @@ MORE_THREADS = [
     thread("siemens/ros-sharp 126", "ROS to Unity", XYZW, XYZW, body="-y z x", world="-y z x"),
     thread("atteneder/glTFast 200", "half a turn about y", XYZW, XYZW, world="-x y -z"),
     thread("STAR-Center/VINS-RGBD 16", "half a turn about x", XYZW, XYZW, body=FLIP),
-    thread("facontidavide/LeGO-LOAM-BOR 10", "axes of the camera", XYZW, XYZW, body="-y -z x", world="-y -z x"),
-    thread("EnoxSoftware/OpenCVForUnity 36", OTHER_HAND, VECTOR, XYZW, body="x -y z", world="x -y z"),
+    thread(
+        "facontidavide/LeGO-LOAM-BOR 10",
+        "axes of the camera",
+        XYZW,
+        XYZW,
+        body="-y -z x",
+        world="-y -z x",
+    ),
+    thread(
+        "EnoxSoftware/OpenCVForUnity 36", OTHER_HAND, VECTOR, XYZW, body="x -y z", world="x -y z"
+    ),
     thread("materializr-cad/materializr 46", "y up for z up", MATRIX, MATRIX, world="x -z y"),
 ]
 
 
 def pasted(where, first, second, verdict, *words, known=({}, {})):
-    return {"thread": where, "first": first, "second": second, "verdict": verdict, "words": words, "known": known}
+    return {
+        "thread": where,
+        "first": first,
+        "second": second,
+        "verdict": verdict,
+        "words": words,
+        "known": known,
+    }
 
 
 SQUAD = """# Result:
@@ -170,14 +280,16 @@ AFTER = """AFTER tensor([[[ 0.8888,  0.0357, -0.4569],
 PASTED = [
     pasted(
         "moble/quaternion 118",
-        "x=0.46072492003440857\ny=0.0038165694568306208\nz=0.00735193956643343\nw=0.8875043392181396",
+        "x=0.46072492003440857\ny=0.0038165694568306208\nz=0.00735193956643343\n"
+        "w=0.8875043392181396",
         SQUAD,
         "named",
         "scalar part stands last",
     ),
     pasted(
         "moble/quaternion 118 (comment)",
-        "[quaternion(0.460724920034409, 0.00381656945683062, 0.00735193956643343, 0.88750433921814)]",
+        "[quaternion(0.460724920034409, 0.00381656945683062, 0.00735193956643343, "
+        "0.88750433921814)]",
         SQUAD,
         "same",
     ),
@@ -197,7 +309,10 @@ PASTED = [
         "(0.0035234877615449344, -0.09913217272764203, 1.7720752160631836)",
         "named",
         "space fixed",
-        known=({"kind": "Euler angles", "sequence": "xyz"}, {"kind": "Euler angles", "sequence": "xyz"}),
+        known=(
+            {"kind": "Euler angles", "sequence": "xyz"},
+            {"kind": "Euler angles", "sequence": "xyz"},
+        ),
     ),
     pasted(
         "KieranWynn/pyquaternion 21",
@@ -228,11 +343,20 @@ PASTED = [
         "scalar part stands last",
     ),
     pasted(
-        "kornia/kornia 950 matrix", KORNIA, "ans =\n    0.9990    0.0146   -0.0372   -0.0194", "named", "the conjugate"
+        "kornia/kornia 950 matrix",
+        KORNIA,
+        "ans =\n    0.9990    0.0146   -0.0372   -0.0194",
+        "named",
+        "the conjugate",
     ),
     pasted("scipy/scipy 17464", EXTRINSIC, "[30, 20, 45] degrees", "undecided", "space fixed"),
     pasted("facebookresearch/pytorch3d 155", AFTER, BEFORE, "unrelated"),
-    pasted("whoenig/crazyflie_ros 160", TF, "0.999211948416 0.0172112712763 0.0116523005586 0.0338153541435", "same"),
+    pasted(
+        "whoenig/crazyflie_ros 160",
+        TF,
+        "0.999211948416 0.0172112712763 0.0116523005586 0.0338153541435",
+        "same",
+    ),
     pasted("KhronosGroup/glTF-Blender-IO 438", GLTF, BLENDER, "named", "y up"),
     pasted(
         "rawify/Quaternion.js 12",
@@ -265,7 +389,8 @@ PASTED = [
         "        [0.00000000e00, 1.00000000e00, -0.00000000e00],\n"
         "        [1.00000000e00, 0.00000000e00, 6.12323400e-17],\n"
         "    ]\n)",
-        "[[ 6.123234e-17  0.000000e+00  1.000000e+00]\n [ 0.000000e+00  1.000000e+00  0.000000e+00]\n"
+        "[[ 6.123234e-17  0.000000e+00  1.000000e+00]\n"
+        " [ 0.000000e+00  1.000000e+00  0.000000e+00]\n"
         " [-1.000000e+00 -0.000000e+00  6.123234e-17]]",
         "undecided",
         "the transpose",
@@ -280,8 +405,10 @@ PASTED = [
     pasted(
         "j96w/DenseFusion 78",
         "quaternion_matrix([0.99810947, 0.06146124, 0, 0])",
-        "[[ 1.          0.          0.          0.        ]\n [ 0.          0.99244503 -0.12269009  0.        ]\n"
-        " [ 0.          0.12269009  0.99244503  0.        ]\n [ 0.          0.          0.          1.        ]]",
+        "[[ 1.          0.          0.          0.        ]\n"
+        " [ 0.          0.99244503 -0.12269009  0.        ]\n"
+        " [ 0.          0.12269009  0.99244503  0.        ]\n"
+        " [ 0.          0.          0.          1.        ]]",
         "undecided",
         "the transpose",
     ),

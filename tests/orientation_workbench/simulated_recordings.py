@@ -1,4 +1,6 @@
-"""Recordings of an instrument that is turned from pose to pose, with the truth, and with one thing wrong if wanted."""
+"""Recordings of an instrument that is turned from pose to pose, with the truth, and with one thing
+wrong if wanted.
+"""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -13,7 +15,9 @@ def unit(vectors):
 
 
 def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
-    """Arrays of what an honest instrument says: gyroscope in rad/s, acceleration in m/s², field in microtesla."""
+    """Arrays of what an honest instrument says: gyroscope in rad/s, acceleration in m/s², field in
+    microtesla.
+    """
     random = np.random.default_rng(seed)
     step = 1 / rate
     rates, accelerations = [], []
@@ -29,12 +33,18 @@ def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
             wobble = np.sin(2 * np.pi * np.outer(share, [1, 1.5, 2]))
             wobble = wobble * random.normal(scale=0.3, size=3) * (4 * share * (1 - share))[:, None]
             rates.append(bell[:, None] * way + wobble)
-            pushes = np.sin(2 * np.pi * np.outer(share, random.uniform(1, 3, 3)) + random.uniform(0, 6, 3))
-            accelerations.append(0.6 * random.normal(size=3) * pushes * (4 * share * (1 - share))[:, None])
+            pushes = np.sin(
+                2 * np.pi * np.outer(share, random.uniform(1, 3, 3)) + random.uniform(0, 6, 3)
+            )
+            accelerations.append(
+                0.6 * random.normal(size=3) * pushes * (4 * share * (1 - share))[:, None]
+            )
     rates, accelerations = np.concatenate(rates), np.concatenate(accelerations)
     count = len(rates)
     turns = Rotation.from_rotvec((rates[1:] + rates[:-1]) / 2 * step)
-    ground = [Rotation.random(random_state=seed)]  # SciPy's rotations turn components of the body into the ground's
+    ground = [
+        Rotation.random(random_state=seed)
+    ]  # SciPy's rotations turn components of the body into the ground's
     for turn in turns:
         ground.append(ground[-1] * turn)
     ground = Rotation.concatenate(ground)
@@ -44,10 +54,14 @@ def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
     return {
         "time": np.arange(count) * step,
         "gyroscope": rates + bias + np.radians(0.07) * random.normal(size=(count, 3)),
-        "accelerometer": ground.inv().apply([0, 0, GRAVITY] + accelerations) + 0.02 * random.normal(size=(count, 3)),
+        "accelerometer": ground.inv().apply([0, 0, GRAVITY] + accelerations)
+        + 0.02 * random.normal(size=(count, 3)),
         "magnetometer": ground.inv().apply(field) + 0.3 * random.normal(size=(count, 3)),
-        # As scikit-kinematics and SciPy have them, the ground from the body, here with the scalar first.
-        "quaternion": np.roll((ground * Rotation.from_rotvec(np.radians(0.3) * slow)).as_quat(), 1, axis=1),
+        # As scikit-kinematics and SciPy have them, the ground from the body, here with the scalar
+        # first.
+        "quaternion": np.roll(
+            (ground * Rotation.from_rotvec(np.radians(0.3) * slow)).as_quat(), 1, axis=1
+        ),
         "truth": ground,
     }
 
@@ -88,7 +102,9 @@ def _assignment(random, without_sign=False):
     """Signed axes that are not the plain ones; ``without_sign``: nor their opposites."""
     while True:
         matrix = np.eye(3)[random.permutation(3)] * random.choice([-1, 1], size=3)[:, None]
-        if not np.allclose(matrix, np.eye(3)) and not (without_sign and np.allclose(matrix, -np.eye(3))):
+        if not np.allclose(matrix, np.eye(3)) and not (
+            without_sign and np.allclose(matrix, -np.eye(3))
+        ):
             return matrix
 
 
@@ -98,7 +114,9 @@ def _disturbed(recording, random):
     start = random.uniform(0.25, 0.45) * time[-1]
     near = (time > start) & (time < start + 0.35 * time[-1])
     steel = unit(random.normal(size=3)) * random.uniform(25, 40)
-    found["magnetometer"] = recording["magnetometer"] + near[:, None] * recording["truth"].inv().apply(steel)
+    found["magnetometer"] = recording["magnetometer"] + near[:, None] * recording[
+        "truth"
+    ].inv().apply(steel)
     return found
 
 
@@ -118,33 +136,50 @@ def _soft(values, random):
 FAULTS = {
     "gaps": ("gaps", _lost),
     "repeated rows": ("repeated rows", _repeated),
-    "unit of the gyroscope": ("unit of the gyroscope", _with("gyroscope", lambda values, random: np.degrees(values))),
+    "unit of the gyroscope": (
+        "unit of the gyroscope",
+        _with("gyroscope", lambda values, random: np.degrees(values)),
+    ),
     "axes of the gyroscope": (
         "axes of the gyroscope",
         _with("gyroscope", lambda values, random: values @ _assignment(random).T),
     ),
     "scale of the gyroscope": (
         "scale of the gyroscope",
-        _with("gyroscope", lambda values, random: values * random.choice([0.5, 0.7, 0.85, 1.15, 1.3, 1.6, 2.0])),
+        _with(
+            "gyroscope",
+            lambda values, random: values * random.choice([0.5, 0.7, 0.85, 1.15, 1.3, 1.6, 2.0]),
+        ),
     ),
     "bias of the gyroscope": (
         "bias of the gyroscope",
         _with(
-            "gyroscope", lambda values, random: values + np.radians(unit(random.normal(size=3)) * random.uniform(2, 6))
+            "gyroscope",
+            lambda values, random: (
+                values + np.radians(unit(random.normal(size=3)) * random.uniform(2, 6))
+            ),
         ),
     ),
     "accelerometer": (
         "accelerometer",
-        _with("accelerometer", lambda values, random: values + unit(random.normal(size=3)) * random.uniform(0.6, 1.5)),
+        _with(
+            "accelerometer",
+            lambda values, random: values + unit(random.normal(size=3)) * random.uniform(0.6, 1.5),
+        ),
     ),
     "hard iron": (
         "offset of the magnetometer",
-        _with("magnetometer", lambda values, random: values + unit(random.normal(size=3)) * random.uniform(12, 60)),
+        _with(
+            "magnetometer",
+            lambda values, random: values + unit(random.normal(size=3)) * random.uniform(12, 60),
+        ),
     ),
     "soft iron": ("shape of the magnetometer", _with("magnetometer", _soft)),
     "axes of the magnetometer": (
         "axes of the magnetometer",
-        _with("magnetometer", lambda values, random: values @ _assignment(random, without_sign=True).T),
+        _with(
+            "magnetometer", lambda values, random: values @ _assignment(random, without_sign=True).T
+        ),
     ),
     "disturbed field": ("field", _disturbed),
     "order of the quaternion": (
@@ -155,7 +190,9 @@ FAULTS = {
 
 
 def faulty(kind, seed):
-    """The text of a recording with one thing wrong, by the names of ``FAULTS``; and the light that belongs to it."""
+    """The text of a recording with one thing wrong, by the names of ``FAULTS``; and the light that
+    belongs to it.
+    """
     light, spoil = FAULTS[kind]
     recording = spoil(simulate(seed), np.random.default_rng(seed + 1000))
     names = NAMES + QUATERNION

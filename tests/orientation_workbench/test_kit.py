@@ -1,4 +1,6 @@
-"""The kit for tests: five libraries are as their manuals say, and every copy with one thing flipped is caught."""
+"""The kit for tests: five libraries are as their manuals say, and every copy with one thing flipped
+is caught.
+"""
 
 import ahrs
 import numpy as np
@@ -50,7 +52,9 @@ MIRROR = np.diag([1.0, -1, 1])
 
 
 def with_result(change):
-    return lambda function, takes: lambda *arguments: change(np.asarray(function(*arguments), float))
+    return lambda function, takes: (
+        lambda *arguments: change(np.asarray(function(*arguments), float))
+    )
 
 
 def other_hand(result):
@@ -58,7 +62,9 @@ def other_hand(result):
 
 
 def inverted(function, takes):
-    """A copy that gives the transpose; of a quaternion the conjugate, wherever its scalar stands."""
+    """A copy that gives the transpose; of a quaternion the conjugate, wherever its scalar
+    stands.
+    """
     scalar = np.argmax(np.abs(np.ravel(function(*NO_TURN[takes]))))
 
     def flipped(*arguments):
@@ -72,7 +78,11 @@ def in_degrees(function, takes):
     """A copy that reads its angles as degrees, if it takes any."""
     if takes == "axis and angle":
         return lambda axis, angle: function(axis, np.radians(angle))
-    return (lambda angles: function(np.radians(angles))) if takes in ("Euler angles", "rotation vector") else None
+    return (
+        (lambda angles: function(np.radians(angles)))
+        if takes in ("Euler angles", "rotation vector")
+        else None
+    )
 
 
 def other_turns(function, takes):
@@ -106,7 +116,11 @@ def test_every_flipped_copy_is_caught(name, flip):
 
 def test_what_is_found_is_said_in_words():
     found = convention_of(lambda q: Rotation.from_quat(q).as_matrix(), "quaternion")
-    assert found.takes == {"order": "xyzw"} and found.inverse and "scalar part stands last" in str(found)
+    assert (
+        found.takes == {"order": "xyzw"}
+        and found.inverse
+        and "scalar part stands last" in str(found)
+    )
 
 
 def test_no_convention_is_told():

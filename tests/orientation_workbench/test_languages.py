@@ -1,4 +1,6 @@
-"""Formulas that are taken away: compiled and run, they give what the module gives, in any convention."""
+"""Formulas that are taken away: compiled and run, they give what the module gives, in any
+convention.
+"""
 
 import itertools
 import json
@@ -30,11 +32,21 @@ JOBS = list(jobs())
 
 
 def given(name, seed):
-    """Arguments in this book's convention: orientations, at gimbal lock and at half a turn too, and other numbers."""
+    """Arguments in this book's convention: orientations, at gimbal lock and at half a turn too, and
+    other numbers.
+    """
     random = np.random.default_rng(seed)
-    special = [np.eye(3), np.diag([1.0, -1.0, -1.0]), np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])]
+    special = [
+        np.eye(3),
+        np.diag([1.0, -1.0, -1.0]),
+        np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]]),
+    ]
     dcms = [*random_orientations(6, random), *special]
-    vectors = [*random.uniform(-3, 3, (6, 3)), np.array([2.9, 1.2, -3.0]), np.array([0.0, 1e-9, 0.0])]
+    vectors = [
+        *random.uniform(-3, 3, (6, 3)),
+        np.array([2.9, 1.2, -3.0]),
+        np.array([0.0, 1e-9, 0.0]),
+    ]
     if name == "dcm_from_rotation_vector":
         vectors.append(np.zeros(3))
     some = {
@@ -46,7 +58,10 @@ def given(name, seed):
         "number": [0.0, 1.0, *random.uniform(0, 1, 5)],
     }
     kinds = list(FORMULAS[name][0].values())
-    return [[some[kind][(k + 3 * place) % len(some[kind])] for place, kind in enumerate(kinds)] for k in range(9)]
+    return [
+        [some[kind][(k + 3 * place) % len(some[kind])] for place, kind in enumerate(kinds)]
+        for k in range(9)
+    ]
 
 
 def converted(kind, values, convention):
@@ -64,7 +79,9 @@ def expected(name, sequence, convention, arguments):
     function = getattr(orientation, name)
     arguments = [one.tolist() if hasattr(one, "tolist") else one for one in arguments]
     chosen = [sequence] if sequence else []
-    result = function(*chosen, *arguments) if name == "simple_dcm" else function(*arguments, *chosen)
+    result = (
+        function(*chosen, *arguments) if name == "simple_dcm" else function(*arguments, *chosen)
+    )
     return converted(FORMULAS[name][1], np.array(result, float), convention)
 
 
@@ -83,7 +100,10 @@ def close(found, wanted, name, sequence, convention):
     found, wanted = np.array(found), np.array(wanted)
     if name in ("body_fixed_from_dcm", "space_fixed_from_dcm"):
         make = getattr(orientation, "dcm_from_" + name.removesuffix("_from_dcm"))
-        found, wanted = (make(np.radians(one) if convention.get("unit") else one, sequence) for one in (found, wanted))
+        found, wanted = (
+            make(np.radians(one) if convention.get("unit") else one, sequence)
+            for one in (found, wanted)
+        )
     if name in ("quaternion_from_dcm", "rotation_vector_from_dcm") and found @ wanted < 0:
         found = -found
     return np.abs(found - wanted).max() <= 1e-11 * max(1, np.abs(wanted).max())
@@ -98,20 +118,34 @@ def texts(language):
 def hold(outputs):
     for (which, numbers, wanted), found in zip(cases(), outputs, strict=True):
         name, sequence, convention = JOBS[which]
-        assert close(found, wanted, name, sequence, convention), (name, sequence, convention, numbers, found, wanted)
+        assert close(found, wanted, name, sequence, convention), (
+            name,
+            sequence,
+            convention,
+            numbers,
+            found,
+            wanted,
+        )
 
 
 def test_javascript_gives_the_same():
-    functions = ",\n".join(f"(() => {{ {text}\nreturn {own}; }})()" for own, text in texts("JavaScript"))
+    functions = ",\n".join(
+        f"(() => {{ {text}\nreturn {own}; }})()" for own, text in texts("JavaScript")
+    )
     calls = json.dumps([[which, numbers] for which, numbers, _ in cases()])
-    program = f"const all = [{functions}];\nconsole.log(JSON.stringify({calls}.map(([k, a]) => all[k](...a))));"
+    program = (
+        f"const all = [{functions}];\nconsole.log(JSON.stringify({calls}.map(([k, a]) => "
+        "all[k](...a))));"
+    )
     done = subprocess.run([NODE, "-e", program], capture_output=True, text=True, check=True)
     hold(json.loads(done.stdout))
 
 
 def run_compiled(tmp_path, source, command):
     (tmp_path / "source").write_text(source)
-    subprocess.run([*command, "-o", tmp_path / "program"], cwd=tmp_path, check=True, capture_output=True)
+    subprocess.run(
+        [*command, "-o", tmp_path / "program"], cwd=tmp_path, check=True, capture_output=True
+    )
     done = subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True)
     hold([[float(number) for number in line.split()] for line in done.stdout.splitlines()])
 
@@ -123,14 +157,19 @@ def test_c_gives_the_same(tmp_path):
         functions.append(text.replace(own, f"f{which}").replace("#include <math.h>", ""))
     for which, numbers, wanted in cases():
         passed = ", ".join(
-            "(double[]){" + ", ".join(f"{number:.17g}" for number in one) + "}" if isinstance(one, list) else f"{one!r}"
+            "(double[]){" + ", ".join(f"{number:.17g}" for number in one) + "}"
+            if isinstance(one, list)
+            else f"{one!r}"
             for one in numbers
         )
-        call = f"f{which}({passed}, r)" if isinstance(wanted, list) else f"r[0] = f{which}({passed})"
+        call = (
+            f"f{which}({passed}, r)" if isinstance(wanted, list) else f"r[0] = f{which}({passed})"
+        )
         calls.append(f"{call}; show(r, {np.size(wanted)});")
     source = (
         "#include <math.h>\n#include <stdio.h>\n" + "\n".join(functions)
-        + '\nstatic void show(double *r, int n) { for (int k = 0; k < n; k++) printf("%.17g ", r[k]); puts(""); }\n'
+        + '\nstatic void show(double *r, int n) { for (int k = 0; k < n; k++) printf("%.17g ", '
+            'r[k]); puts(""); }\n'
         + "int main(void) { double r[9];\n" + "\n".join(calls) + "\nreturn 0; }\n"
     )  # fmt: skip
     run_compiled(tmp_path, source, ["cc", "-x", "c", "source", "-lm"])
@@ -140,10 +179,14 @@ def test_c_gives_the_same(tmp_path):
 def test_cpp_gives_the_same(tmp_path):
     functions, calls = [], []
     for which, (own, text) in enumerate(texts("C++")):
-        functions.append(text.replace(own, f"f{which}").replace("#include <array>\n#include <cmath>", ""))
+        functions.append(
+            text.replace(own, f"f{which}").replace("#include <array>\n#include <cmath>", "")
+        )
     for which, numbers, _ in cases():
         passed = ", ".join(
-            f"std::array<double, {len(one)}>{{" + ", ".join(f"{number:.17g}" for number in one) + "}"
+            f"std::array<double, {len(one)}>{{"
+            + ", ".join(f"{number:.17g}" for number in one)
+            + "}"
             if isinstance(one, list)
             else f"{one!r}"
             for one in numbers
@@ -166,7 +209,9 @@ def test_rust_gives_the_same(tmp_path):
         functions.append(text.replace(own, f"f{which}"))
     for which, numbers, wanted in cases():
         passed = ", ".join(
-            "&[" + ", ".join(f"{number:.17e}" for number in one) + "]" if isinstance(one, list) else f"{one:.17e}"
+            "&[" + ", ".join(f"{number:.17e}" for number in one) + "]"
+            if isinstance(one, list)
+            else f"{one:.17e}"
             for one in numbers
         )
         result = f"f{which}({passed})"
@@ -181,16 +226,23 @@ def test_every_language_writes_every_formula(language):
     for own, text in texts(language):
         assert own in text and "Not supported" not in text and "warning" not in text.lower(), text
         if language == "GLSL":
-            assert not re.search(r"(?<!e)[-+*/(=] ?\d+(?![\d.\]e])", re.sub(r"\[\d+\]", "", text)), text
+            assert not re.search(
+                r"(?<!e)[-+*/(=] ?\d+(?![\d.\]e])", re.sub(r"\[\d+\]", "", text)
+            ), text
 
 
 def test_derivatives_are_those_of_the_function():
     name, sequence, at = "dcm_from_body_fixed", "zyx", np.array([0.3, -0.8, 1.4])
     text = formula_in("JavaScript", name, sequence, derivative=True)
     program = f"{text}\nconsole.log(JSON.stringify({name}_{sequence}_derivative({at.tolist()})));"
-    found = json.loads(subprocess.run([NODE, "-e", program], capture_output=True, text=True, check=True).stdout)
+    found = json.loads(
+        subprocess.run([NODE, "-e", program], capture_output=True, text=True, check=True).stdout
+    )
     make = orientation.dcm_from_body_fixed
-    wanted = [(make(at + step, sequence) - make(at - step, sequence)).ravel() / 2e-6 for step in 1e-6 * np.eye(3)]
+    wanted = [
+        (make(at + step, sequence) - make(at - step, sequence)).ravel() / 2e-6
+        for step in 1e-6 * np.eye(3)
+    ]
     assert np.abs(np.array(found).reshape(9, 3) - np.transpose(wanted)).max() < 1e-8
 
 

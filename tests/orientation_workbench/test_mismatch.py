@@ -1,4 +1,6 @@
-"""Two programs that disagree: every mix-up is found by the numbers, none is named of unrelated ones."""
+"""Two programs that disagree: every mix-up is found by the numbers, none is named of unrelated
+ones.
+"""
 
 import functools
 import itertools
@@ -36,21 +38,27 @@ from orientation_workbench.mismatch.text import read_poses
 
 #: Every day a few of each; at night ten thousand in ten pieces, and two thousand poses in four.
 FEW_AND_ALL = pytest.mark.parametrize(
-    "count, piece", [(40, 0), *(pytest.param(1_000, piece, marks=pytest.mark.long) for piece in range(1, 11))]
+    "count, piece",
+    [(40, 0), *(pytest.param(1_000, piece, marks=pytest.mark.long) for piece in range(1, 11))],
 )
 FEW_AND_MANY = pytest.mark.parametrize(
-    "count, piece", [(10, 0), *(pytest.param(500, piece, marks=pytest.mark.long) for piece in (1, 2))]
+    "count, piece",
+    [(10, 0), *(pytest.param(500, piece, marks=pytest.mark.long) for piece in (1, 2))],
 )
 
 
 def printed(poses, decimals=5):
-    return "\n".join(" ".join(f"{number:.{decimals}f}" for number in np.ravel(pose)) for pose in poses)
+    return "\n".join(
+        " ".join(f"{number:.{decimals}f}" for number in np.ravel(pose)) for pose in poses
+    )
 
 
 def known(generator):
     """A kind of numbers, and the sequence of its angles as a user would say it."""
     kind = generator.choice(list(table.COUNTS))
-    return {"kind": kind} | ({"sequence": generator.choice(SEQUENCES)} if kind == "Euler angles" else {})
+    return {"kind": kind} | (
+        {"sequence": generator.choice(SEQUENCES)} if kind == "Euler angles" else {}
+    )
 
 
 @functools.cache
@@ -76,19 +84,27 @@ def random_chain(generator, declared, faults):
 def both_sides(chain, dcms):
     """What the two programs give for orientations of the first, by a chain."""
     related = np.swapaxes(dcms, 1, 2) if chain.relation["inverse"] else dcms
-    left, right = (np.array(table.axes_matrix(chain.relation[whose])) for whose in ("body", "world"))
-    return numbers_from_dcms(chain.first, dcms)[0], numbers_from_dcms(chain.second, left @ related @ right.T)[0]
+    left, right = (
+        np.array(table.axes_matrix(chain.relation[whose])) for whose in ("body", "world")
+    )
+    return numbers_from_dcms(chain.first, dcms)[0], numbers_from_dcms(
+        chain.second, left @ related @ right.T
+    )[0]
 
 
 def same_meaning(chains, first, kind):
     """Which chains do the same to whatever is pasted as the first of them."""
-    keys = explanation._predictions(chains, {kind: explanation._samples(kind, read_poses(first, "first", kind))}, 5)
+    keys = explanation._predictions(
+        chains, {kind: explanation._samples(kind, read_poses(first, "first", kind))}, 5
+    )
     return [not keys[0].isdisjoint(key) for key in keys]
 
 
 @FEW_AND_ALL
 def test_mixtures_of_up_to_three_faults(count, piece):
-    """The true chain is always among the answers, first in 95 of 100; elsewhere what is first costs no more."""
+    """The true chain is always among the answers, first in 95 of 100; elsewhere what is first costs
+    no more.
+    """
     generator, orientations = random.Random(500 + piece), np.random.default_rng(500 + piece)
     first_place = 0
     for _ in range(count):
@@ -102,8 +118,15 @@ def test_mixtures_of_up_to_three_faults(count, piece):
         if not same[0]:
             assert found.chains[0].cost <= truth.cost
         if found.verdict == "named":
-            assert mend.tried(found.chains[0], *(read_poses(text, "one", declared[k]["kind"]).numbers
-                                                 for k, text in enumerate((first, second))), 1e-3)  # fmt: skip
+            assert mend.tried(
+                found.chains[0],
+                *(
+                    read_poses(text, "one", declared[k]["kind"]).numbers
+                    # fmt: skip
+                    for k, text in enumerate((first, second))
+                ),
+                1e-3,
+            )
     assert first_place >= 0.95 * count
 
 
@@ -115,7 +138,9 @@ def test_unrelated_poses_get_no_name(count, piece):
         texts = []
         for one in declared:
             (reading,) = by_faults(tuple(sorted(one.items())))[0]
-            texts.append(printed(numbers_from_dcms(reading, random_orientations(2, orientations))[0], 4))
+            texts.append(
+                printed(numbers_from_dcms(reading, random_orientations(2, orientations))[0], 4)
+            )
         found = explain(*texts, first_declared=declared[0], second_declared=declared[1])
         assert found.verdict == "unrelated", (texts, str(found))
 
@@ -144,7 +169,9 @@ def test_the_pose_that_is_asked_for_decides(count, piece, start):
 
 
 def test_what_special_poses_leave_open():
-    """Of the 2,304 relations by signed axes, a turn about one axis leaves eight and rest leaves forty-eight."""
+    """Of the 2,304 relations by signed axes, a turn about one axis leaves eight and rest leaves
+    forty-eight.
+    """
     turned = printed([simple_dcm("z", 0.5)])
     back = printed([simple_dcm("z", -0.5)])
     assert len(explain(turned, back).chains) == 8
@@ -152,17 +179,25 @@ def test_what_special_poses_leave_open():
 
 
 def test_scipy_agrees_with_what_each_name_says():
-    """The other witness: what SciPy makes of the same numbers is found to be what SciPy's manual says."""
+    """The other witness: what SciPy makes of the same numbers is found to be what SciPy's manual
+    says.
+    """
     rotations = Rotation.random(2, rng=np.random.default_rng(3))
     matrices, quaternions = printed(rotations.as_matrix()), printed(rotations.as_quat())
     found = explain(matrices, quaternions)
     assert found.verdict == "named" and found.chains[0].faults == 2
-    assert found.chains[0].second["choices"]["order"] == "xyzw" and found.chains[0].relation["inverse"]
+    assert (
+        found.chains[0].second["choices"]["order"] == "xyzw" and found.chains[0].relation["inverse"]
+    )
     for letters, axes in (("ZYX", "body fixed"), ("zyx", "space fixed")):
         angles = printed(rotations.as_euler(letters))
-        found = explain(printed(rotations.inv().as_matrix()), angles, second_declared={"sequence": "zyx"})
+        found = explain(
+            printed(rotations.inv().as_matrix()), angles, second_declared={"sequence": "zyx"}
+        )
         (chain,) = found.chains
-        assert chain.second["choices"]["axes of the turns"] == axes and not chain.relation["inverse"]
+        assert (
+            chain.second["choices"]["axes of the turns"] == axes and not chain.relation["inverse"]
+        )
 
 
 def test_a_mounting_is_told_by_three_poses_and_two_by_four():
@@ -182,7 +217,11 @@ def test_noise_is_said():
     poses = random_orientations(3, np.random.default_rng(4))
     shaken = random_orientations(3, np.random.default_rng(4))
     shaken = np.array([np.array(simple_dcm("x", 0.02)) @ dcm for dcm in shaken])
-    assert explain(printed(poses), printed(np.swapaxes(shaken, 1, 2)), noise=0.03).faults[0].startswith("one is the tr")
+    assert (
+        explain(printed(poses), printed(np.swapaxes(shaken, 1, 2)), noise=0.03)
+        .faults[0]
+        .startswith("one is the tr")
+    )
 
 
 DCM = random_orientations(1, np.random.default_rng(2))[0]
@@ -210,7 +249,9 @@ def test_spellings_of_a_matrix(spelling):
 QUATERNIONS = {
     "ROS": "pose:\n  position:\n    x: 1.5\n    y: 0.2\n    z: 9.0\n"
     "  orientation:\n    x: {x}\n    y: {y}\n    z: {z}\n    w: {w}",
-    "JSON": '{{"position": {{"x": 3, "y": 1, "z": 2}}, "orientation": {{"w": {w}, "x": {x}, "y": {y}, "z": {z}}}}}',
+    "JSON": '{{"position": {{"x": 3, "y": 1, "z": 2}}, "orientation": {{"w": {w}, "x": '
+    '{x}, "y": {y}, '
+    '"z": {z}}}}}',
     "a trajectory": "1305031102.1758 1.3405 0.6266 1.6575 {x} {y} {z} {w}",
     "Unity": "({x}, {y}, {z}, {w})",
     "minus signs": "({x}, {y}, {z}, {w})",
@@ -237,44 +278,70 @@ def parts(form="{:.6f}"):
 
 #: One orientation as it stands in consoles, logs and files.
 SPELLED = {
-    "PyTorch": "tensor([[{}, {}, {}],\n        [{}, {}, {}],\n        [{}, {}, {}]], device='cuda:0',\n"
+    "PyTorch": "tensor([[{}, {}, {}],\n        [{}, {}, {}],\n"
+    "        [{}, {}, {}]], device='cuda:0',\n"
     "       dtype=torch.float64, grad_fn=<StackBackward0>)".format(*entries()),
     "TensorFlow": "<tf.Tensor: shape=(3, 3), dtype=float32, numpy=\narray("
     "[[{}, {}, {}],\n [{}, {}, {}],\n [{}, {}, {}]], dtype=float32)>".format(*entries()),
     "NumPy 2": "[" + ", ".join(f"np.float64({entry})" for entry in entries()) + "]",
-    "Eigen": "{} {} {}\n{} {} {}\n{} {} {}".format(*(f"{entry:>10}" for entry in entries("{:.6g}"))),
+    "Eigen": "{} {} {}\n{} {} {}\n{} {} {}".format(
+        *(f"{entry:>10}" for entry in entries("{:.6g}"))
+    ),
     "glm": "mat3x3(({}, {}, {}), ({}, {}, {}), ({}, {}, {}))".format(*entries()),
     "by index": "\n".join(f"R[{k // 3}][{k % 3}] = {entry};" for k, entry in enumerate(entries())),
-    "by index in C++": "\n".join(f"R({k // 3},{k % 3}) = {entry};" for k, entry in enumerate(entries())),
-    "MATLAB's console": "R =\n\n    {}    {}    {}\n    {}    {}    {}\n    {}    {}    {}\n".format(*entries()),
-    "MATLAB's live script": "R = 3\u00d73\n    {}    {}    {}\n    {}    {}    {}\n    {}    {}    {}".format(
+    "by index in C++": "\n".join(
+        f"R({k // 3},{k % 3}) = {entry};" for k, entry in enumerate(entries())
+    ),
+    "MATLAB's console": "R =\n\n    {}    {}    {}\n    {}    {}    {}\n    {}    {}    {}\n".format(
         *entries()
     ),
-    "Julia": "3\u00d73 SMatrix{{Float64}} with indices SOneTo(3)\u00d7SOneTo(3):\n {} {} {}\n {} {} {}\n"
+    "MATLAB's live script": "R = 3\u00d73\n    {}    {}    {}\n    {}    {}    {}\n"
+    "    {}    {}    {}".format(*entries()),
+    "Julia": "3\u00d73 SMatrix{{Float64}} with indices SOneTo(3)\u00d7SOneTo(3):\n {} {} {}\n"
+    " {} {} {}\n"
     " {} {} {}".format(*entries()),
-    "Blender": "<Matrix 3x3 ({}, {}, {})\n            ({}, {}, {})\n            ({}, {}, {})>".format(*entries()),
+    "Blender": "<Matrix 3x3 ({}, {}, {})\n            ({}, {}, {})\n            ({}, {}, {})>".format(
+        *entries()
+    ),
     "nalgebra": "  \u250c              \u2510\n  \u2502 {} {} {} \u2502\n  \u2502 {} {} {} \u2502"
     "\n  \u2502 {} {} {} \u2502\n  \u2514         \u2518".format(*entries()),
-    "OpenCV's YAML": "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ {},\n       {}, {}, {},\n       "
+    "OpenCV's YAML": "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ {},\n"
+    "       {}, {}, "
+    "{},\n       "
     "{}, {}, {}, {}, {} ]".format(*entries("{:.10e}")),
-    "TeX": r"\begin{{bmatrix}} {} & {} & {} \\ {} & {} & {} \\ {} & {} & {} \end{{bmatrix}}".format(*entries()),
-    "Markdown": "| {} | {} | {} |\n|---|---|---|\n| {} | {} | {} |\n| {} | {} | {} |".format(*entries()),
-    "quoted": "> {}, {}, {}\n> {}, {}, {}\n> {}, {}, {}".format(*entries()),
-    "decimal commas": "{}; {}; {}\n{}; {}; {}\n{}; {}; {}".format(*(entry.replace(".", ",") for entry in entries())),
-    "Fortran": "{} {} {}\n{} {} {}\n{} {} {}".format(*(entry.replace("e", "D") for entry in entries("{:.10e}"))),
-    "NeRF": '{{"camera_angle_x": 0.6911, "frames": [{{"file_path": "./images/0001.png", "rotation": 0.0125, '
-    '"transform_matrix": [[{}, {}, {}, 1.5], [{}, {}, {}, 2.0], [{}, {}, {}, 0.25], [0.0, 0.0, 0.0, 1.0]]}}]}}'.format(
+    "TeX": r"\begin{{bmatrix}} {} & {} & {} \\ {} & {} & {} \\ {} & {} & {} \end{{bmatrix}}".format(
         *entries()
-    ).replace('"rotation": 0.0125, ', ""),
+    ),
+    "Markdown": "| {} | {} | {} |\n|---|---|---|\n| {} | {} | {} |\n| {} | {} | {} |".format(
+        *entries()
+    ),
+    "quoted": "> {}, {}, {}\n> {}, {}, {}\n> {}, {}, {}".format(*entries()),
+    "decimal commas": "{}; {}; {}\n{}; {}; {}\n{}; {}; {}".format(
+        *(entry.replace(".", ",") for entry in entries())
+    ),
+    "Fortran": "{} {} {}\n{} {} {}\n{} {} {}".format(
+        *(entry.replace("e", "D") for entry in entries("{:.10e}"))
+    ),
+    "NeRF": '{{"camera_angle_x": 0.6911, "frames": [{{"file_path": "./images/0001.png", '
+    '"rotation": '
+    "0.0125, "
+    '"transform_matrix": [[{}, {}, {}, 1.5], [{}, {}, {}, 2.0], [{}, {}, {}, 0.25], [0.0, 0.0, '
+    "0.0, 1.0]]}}]}}".format(*entries()).replace('"rotation": 0.0125, ', ""),
     "KITTI": "{} {} {} 4.7 {} {} {} -1.25 {} {} {} 0.5".format(*entries()),
-    "ROS 2 in Python": "geometry_msgs.msg.Pose(position=geometry_msgs.msg.Point(x=1.0, y=2.0, z=3.0), "
+    "ROS 2 in Python": "geometry_msgs.msg.Pose(position=geometry_msgs.msg.Point(x=1.0, y=2.0, "
+    "z=3.0), "
     "orientation=geometry_msgs.msg.Quaternion(x={x}, y={y}, z={z}, w={w}))".format(**parts()),
-    "an Imu message": "header:\n  seq: 12\n  stamp:\n    secs: 1574817405\n    nsecs: 846164606\n  frame_id: imu_link\n"
-    "orientation:\n  x: {x}\n  y: {y}\n  z: {z}\n  w: {w}\norientation_covariance: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "
-    "0.0, 0.0]\nangular_velocity:\n  x: 0.1\n  y: 0.2\n  z: 0.3\nangular_velocity_covariance: [0.0, 0.0, 0.0]\n"
+    "an Imu message": "header:\n  seq: 12\n  stamp:\n    secs: 1574817405\n    nsecs: 846164606\n"
+    "  frame_id: imu_link\n"
+    "orientation:\n  x: {x}\n  y: {y}\n  z: {z}\n  w: {w}\n"
+    "orientation_covariance: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "
+    "0.0, 0.0]\nangular_velocity:\n  x: 0.1\n  y: 0.2\n  z: 0.3\n"
+    "angular_velocity_covariance: [0.0, 0.0, 0.0]\n"
     "linear_acceleration:\n  x: 0.1\n  y: 0.2\n  z: 9.8\n---".format(**parts()),
-    "tf2_echo": "At time 1641239122.213901124\n- Translation: [1.000, 2.000, 3.000]\n- Rotation: in Quaternion (xyzw) "
-    "[{x}, {y}, {z}, {w}]\n- Rotation: in RPY (radian) [0.1, 0.2, 0.3]\n- Rotation: in RPY (degree) [5.7, 11.4, 17.1]\n"
+    "tf2_echo": "At time 1641239122.213901124\n- Translation: [1.000, 2.000, 3.000]\n"
+    "- Rotation: in Quaternion (xyzw) "
+    "[{x}, {y}, {z}, {w}]\n- Rotation: in RPY (radian) [0.1, 0.2, 0.3]\n"
+    "- Rotation: in RPY (degree) [5.7, 11.4, 17.1]\n"
     "- Matrix:\n  1.000  0.000  0.000  1.000".format(**parts()),
     "three.js": '{{"isQuaternion":true,"_x":{x},"_y":{y},"_z":{z},"_w":{w}}}'.format(**parts()),
     "Blender's quaternion": "<Quaternion (w={w}, x={x}, y={y}, z={z})>".format(**parts()),
@@ -282,24 +349,32 @@ SPELLED = {
     "pyquaternion": "{w} {x}i {y}j {z}k".format(**parts("{:+.6f}")),
     "a sum": "{w} + {x}*i + {y}*j + {z}*k".format(**parts()),
     "URDF": '<origin xyz="0.1 0.2 0.3" quat="{x} {y} {z} {w}"/>'.format(**parts()),
-    "a table": "#timestamp [ns],p_x,p_y,p_z,qw,qx,qy,qz,v_x,v_y,v_z\n1403636580838555648,4.688319,-1.786938,0.783338,"
+    "a table": "#timestamp [ns],p_x,p_y,p_z,qw,qx,qy,qz,v_x,v_y,v_z\n"
+    "1403636580838555648,4.688319,-1.786938,0.783338,"
     "{w},{x},{y},{z},-0.027876,0.033207,0.800006".format(**parts()),
     "COLMAP": "1 {w} {x} {y} {z} -0.737434 1.02973 3.74354 1 P1180141.JPG".format(**parts()),
     "C#": "Debug.Log: ({x}f, {y}f, {z}f, {w}f)".format(**parts()),
     "in words": "x {x} y {y} z {z} w {w}".format(**parts()),
-    "a forum": "My sensor gives w={w} x={x} y={y} z={z} when I hold it at about 45 degrees. Why??".format(**parts()),
-    "in a fence": "```python\n>>> r.as_quat()\narray([{x}, {y}, {z}, {w}])\n```\nThanks!!".format(**parts()),
-    "arguments": "--x 0.1 --y 0 --z 0.2 --qx {x} --qy {y} --qz {z} --qw {w}".format(**parts()),
-    "a trajectory's head": "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.3405 0.6 1.6 {x} {y} {z} {w}".format(
+    "a forum": "My sensor gives w={w} x={x} y={y} z={z} when I hold it at about 45 "
+    "degrees. Why??".format(**parts()),
+    "in a fence": "```python\n>>> r.as_quat()\narray([{x}, {y}, {z}, {w}])\n```\nThanks!!".format(
         **parts()
     ),
+    "arguments": "--x 0.1 --y 0 --z 0.2 --qx {x} --qy {y} --qz {z} --qw {w}".format(**parts()),
+    "a trajectory's head": "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.3405 0.6 1.6 "
+    "{x} {y} {z} {w}".format(**parts()),
     "a serial port": "qW: {w} qX: {x} qY: {y} qZ: {z}\t\tSys:3 G:3 A:0 M:1".format(**parts()),
-    "Godot": "[X: ({}, {}, {}), Y: ({}, {}, {}), Z: ({}, {}, {}), O: (0.0, 1.5, 2.0)]".format(*entries()),
-    "three.js's elements": "elements: Array(16)\n(16) [{}, {}, {}, 0, {}, {}, {}, 0, {}, {}, {}, 0, 0, 0, 0, 1]".format(
+    "Godot": "[X: ({}, {}, {}), Y: ({}, {}, {}), Z: ({}, {}, {}), O: (0.0, 1.5, 2.0)]".format(
         *entries()
     ),
-    "MATLAB's factor": "ans =\n\n   1.0e+00 *\n\n  {} {} {}\n  {} {} {}\n  {} {} {}\n\n>> ".format(*entries()),
-    "rows by number": "row 0: {} {} {}\nrow 1: {} {} {}\nrow 2: {} {} {}\ndet = 1.0000".format(*entries()),
+    "three.js's elements": "elements: Array(16)\n(16) [{}, {}, {}, 0, {}, {}, {}, 0, {}, {}, {}, "
+    "0, 0, 0, 0, 1]".format(*entries()),
+    "MATLAB's factor": "ans =\n\n   1.0e+00 *\n\n  {} {} {}\n  {} {} {}\n  {} {} {}\n\n>> ".format(
+        *entries()
+    ),
+    "rows by number": "row 0: {} {} {}\nrow 1: {} {} {}\nrow 2: {} {} {}\ndet = 1.0000".format(
+        *entries()
+    ),
 }
 
 
@@ -308,7 +383,9 @@ def test_numbers_as_programs_print_them(where):
     """Whatever stands around the numbers, the orientation is the one that was printed."""
     found = explain(printed([DCM], 6), SPELLED[where])
     order = "scalar part stands last"
-    assert found.verdict == "same" or [fault for fault in found.faults if order not in fault] == [], str(found)
+    assert (
+        found.verdict == "same" or [fault for fault in found.faults if order not in fault] == []
+    ), str(found)
 
 
 def test_angles_as_programs_print_them():
@@ -321,7 +398,8 @@ def test_angles_as_programs_print_them():
         f"<pose>1 2 3 {roll:.6f} {pitch:.6f} {yaw:.6f}</pose>",
         f"[INFO] [1641239122.213901124] [node]: r:{roll:.6f} p:{pitch:.6f} y:{yaw:.6f}",
         f"P={degrees[1]:.6f} Y={degrees[0]:.6f} R={degrees[2]:.6f} degrees",
-        f"yaw = {degrees[0]:.6f}\u00b0, pitch = {degrees[1]:.6f}\u00b0, roll = {degrees[2]:.6f}\u00b0",
+        f"yaw = {degrees[0]:.6f}\u00b0, pitch = {degrees[1]:.6f}\u00b0, roll = "
+        f"{degrees[2]:.6f}\u00b0",
         f"{degrees[0]:.6f}deg {degrees[1]:.6f}deg {degrees[2]:.6f}deg yaw, pitch, roll",
     ):
         assert explain(printed([DCM], 6), text).verdict == "same", text
@@ -341,13 +419,17 @@ def test_a_line_that_names_the_columns_is_read():
         ("IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 {w} {x} {y} {z} 1 2 3 1 a.jpg", {"order": "wxyz"}),
         ("quaternion (x, y, z, w): {x} {y} {z} {w}", {"order": "xyzw"}),
         (f"time,roll_deg,pitch_deg,yaw_deg\n0.1,{roll},{pitch},{yaw}", turns | {"places": "321"}),
-        (f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n{yaw}\t{pitch}\t{roll}",
+        (f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n"
+            f"{yaw}\t{pitch}\t{roll}",
          turns | {"places": "123"}),
     ):  # fmt: skip
         text = text.format(**named)
         assert read_poses(text, "first").declared == said, text
         assert (
-            explain("\n".join([printed([DCM], 6)] * len(read_poses(text, "first").numbers)), text).verdict == "same"
+            explain(
+                "\n".join([printed([DCM], 6)] * len(read_poses(text, "first").numbers)), text
+            ).verdict
+            == "same"
         ), text
 
 
@@ -379,15 +461,22 @@ def slug(heading):
 
 
 def test_every_fault_leads_to_a_section_and_to_a_checked_question():
-    """Each fault that can be named has links; each leads to a heading, that of a question to something checked."""
+    """Each fault that can be named has links; each leads to a heading, that of a question to
+    something checked.
+    """
     groups = {group["group"] for groups in table.KINDS.values() for group in groups}
     assert {*FAULTS.values()} == {*table.TAUGHT} == groups | {f"inverse {kind}" for kind in table.COUNTS} | {
         "body", "world", "hand", "turn"}  # fmt: skip
     for section, *questions in table.TAUGHT.values():
         assert questions
-        for (address, title), folder in ((section, "chapters"), *((one, "tests/solutions") for one in questions)):
+        for (address, title), folder in (
+            (section, "chapters"),
+            *((one, "tests/solutions") for one in questions),
+        ):
             page, _, anchor = address.partition("#")
-            cells = json.loads((REPOSITORY / folder / Path(page).with_suffix(".ipynb").name).read_text("utf8"))["cells"]
+            cells = json.loads(
+                (REPOSITORY / folder / Path(page).with_suffix(".ipynb").name).read_text("utf8")
+            )["cells"]
             below, found = False, []
             for cell in cells:
                 source = "".join(cell["source"])
@@ -398,8 +487,15 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
                     found.append(source)
             assert found and title, address
             if folder != "chapters":
-                checked = [name for name in re.findall(r"check\(['\"]([^'\"]+)['\"]", "\n".join(found), re.MULTILINE)]
-                assert checked and all(questions_module.find_question(name, "") for name in checked), address
+                checked = [
+                    name
+                    for name in re.findall(
+                        r"check\(['\"]([^'\"]+)['\"]", "\n".join(found), re.MULTILINE
+                    )
+                ]
+                assert checked and all(
+                    questions_module.find_question(name, "") for name in checked
+                ), address
 
 
 BAD = {
@@ -430,11 +526,17 @@ def test_the_command(tmp_path, capsys):
     files = {
         "here": printed(quaternions),
         "there": printed(quaternions[:, [1, 2, 3, 0]]),
-        "elsewhere": printed(quaternion_from_dcm(random_orientations(2, np.random.default_rng(12)))),
+        "elsewhere": printed(
+            quaternion_from_dcm(random_orientations(2, np.random.default_rng(12)))
+        ),
     }
     for name, text in files.items():
         (tmp_path / name).write_text(text)
-    for second, code, verdict in (("here", 0, "same"), ("there", 1, "named"), ("elsewhere", 2, "unrelated")):
+    for second, code, verdict in (
+        ("here", 0, "same"),
+        ("there", 1, "named"),
+        ("elsewhere", 2, "unrelated"),
+    ):
         with pytest.raises(SystemExit) as left:
             main(["explain", str(tmp_path / "here"), str(tmp_path / second), "--json"])
         answer = json.loads(capsys.readouterr().out)
@@ -465,7 +567,9 @@ def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):
 def test_numbers_that_begin_with_a_minus_are_no_option(capsys):
     with pytest.raises(SystemExit) as left:
         main(["explain", "-0.5,0.5,-0.5,0.5", "-0.5,0.5,-0.5,0.5", "--json"])
-    assert left.value.code == 0 and json.loads(capsys.readouterr().out)["residual in degrees"] == 0.0
+    assert (
+        left.value.code == 0 and json.loads(capsys.readouterr().out)["residual in degrees"] == 0.0
+    )
 
 
 def test_the_command_is_installed():
@@ -477,7 +581,8 @@ def test_the_command_is_installed():
 def test_degrees_are_seen_wherever_the_angle_stands():
     axis, angle = axis_angle_from_dcm(DCM)
     texts = [
-        " ".join(f"{number:.5f}" for number in row) for row in ((*axis, np.degrees(angle)), (np.degrees(angle), *axis))
+        " ".join(f"{number:.5f}" for number in row)
+        for row in ((*axis, np.degrees(angle)), (np.degrees(angle), *axis))
     ]
     known = {"kind": "axis and angle"}
     found = explain(*texts, first_declared=known, second_declared=known)
@@ -500,26 +605,43 @@ def test_every_reading_comes_back():
 
 
 def choices_of(side):
-    return {"kind": side["kind"], "choices": {name: value for name, value in side.items() if name != "kind"}}
+    return {
+        "kind": side["kind"],
+        "choices": {name: value for name, value in side.items() if name != "kind"},
+    }
 
 
 def as_pasted(thread, seed):
     """What both programs of a thread print for two poses, four digits of each number."""
-    relation = {"inverse": thread["inverse"], "body": thread["body"], "world": thread["world"], "hand": False}
-    truth = search.Chain(*(choices_of(thread[side]) for side in ("first", "second")), relation, 0, 0.0, 0.0)
+    relation = {
+        "inverse": thread["inverse"],
+        "body": thread["body"],
+        "world": thread["world"],
+        "hand": False,
+    }
+    truth = search.Chain(
+        *(choices_of(thread[side]) for side in ("first", "second")), relation, 0, 0.0, 0.0
+    )
     return truth, *both_sides(truth, random_orientations(2, np.random.default_rng(seed)))
 
 
 @pytest.mark.parametrize("case", PASTED, ids=lambda case: case["thread"])
 def test_numbers_that_were_pasted_in_threads(case):
-    found = explain(case["first"], case["second"], first_declared=case["known"][0], second_declared=case["known"][1])
+    found = explain(
+        case["first"],
+        case["second"],
+        first_declared=case["known"][0],
+        second_declared=case["known"][1],
+    )
     assert found.verdict == case["verdict"], str(found)
     assert all(words in "; ".join(found.faults) for words in case["words"]), str(found)
 
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize(
-    "threads", [THREADS, MORE_THREADS], ids=["those it was made with", "those found when it was done"]
+    "threads",
+    [THREADS, MORE_THREADS],
+    ids=["those it was made with", "those found when it was done"],
 )
 def test_public_threads_are_named(threads):
     """The sequence of angles is known to whoever asks; what is asked is how it is meant."""
@@ -531,7 +653,10 @@ def test_public_threads_are_named(threads):
         known = [{name: thread[side][name] for name in ("kind", "sequence") if name in thread[side]}
                  for side in ("first", "second")]  # fmt: skip
         found = explain(*texts, first_declared=known[0], second_declared=known[1])
-        same = found.chains and same_meaning([truth, *found.chains], texts[0], thread["first"]["kind"])[1]
+        same = (
+            found.chains
+            and same_meaning([truth, *found.chains], texts[0], thread["first"]["kind"])[1]
+        )
         if found.verdict not in ("named", "same") or not same:
             not_named.append((thread["thread"], str(found)))
     assert len({thread["thread"] for thread in threads}) == len(threads) > 50
@@ -540,15 +665,24 @@ def test_public_threads_are_named(threads):
 
 ANGLES = (0.4, 0.7, -0.3)
 EXPECTED = dcm_from_body_fixed(ANGLES, "zxy")
-#: What is handed in for that orientation, the part of a chain that is the fault, and its words as `diagnose` has them.
+#: What is handed in for that orientation, the part of a chain that is the fault, and its words as
+#: `diagnose` has them.
 HANDED_IN = {
     "transposed": (EXPECTED.T, "inverse", "transpose"),
     "space fixed": (dcm_from_space_fixed(ANGLES, "zxy"), "axes of the turns", "space fixed"),
     "from behind": (dcm_from_body_fixed(ANGLES[::-1], "zxy"), "places", "reverse order"),
     "another sequence": (dcm_from_body_fixed(ANGLES, "xyz"), "sequence", "sequence xyz"),
-    "a sign": (dcm_from_body_fixed((0.4, -0.7, -0.3), "zxy"), "signs", "second turn has the wrong sign"),
+    "a sign": (
+        dcm_from_body_fixed((0.4, -0.7, -0.3), "zxy"),
+        "signs",
+        "second turn has the wrong sign",
+    ),
     "degrees": (dcm_from_body_fixed(np.degrees(ANGLES), "zxy"), "unit", "degrees where radians"),
-    "radians": (dcm_from_body_fixed(np.radians(ANGLES), "zxy"), "unit", "degrees to radians once too often"),
+    "radians": (
+        dcm_from_body_fixed(np.radians(ANGLES), "zxy"),
+        "unit",
+        "degrees to radians once too often",
+    ),
     "scalar last": (np.roll(quaternion_from_dcm(EXPECTED), -1), "order", "scalar part stands last"),
     "conjugate": (quaternion_from_dcm(EXPECTED.T), "inverse", "conjugate"),
 }
@@ -556,15 +690,27 @@ HANDED_IN = {
 
 @pytest.mark.parametrize("fault", HANDED_IN)
 def test_diagnose_and_explain_name_one_mixup(fault):
-    """What `diagnose` calls the only cause is the only fault of the chain that `explain` puts first."""
+    """What `diagnose` calls the only cause is the only fault of the chain that `explain` puts
+    first.
+    """
     given, part, words = HANDED_IN[fault]
     expected = EXPECTED if given.shape == (3, 3) else quaternion_from_dcm(EXPECTED)
-    angles = (ANGLES, "zxy") if part in ("places", "axes of the turns", "sequence", "signs", "unit") else ()
+    angles = (
+        (ANGLES, "zxy")
+        if part in ("places", "axes of the turns", "sequence", "signs", "unit")
+        else ()
+    )
     (cause,) = diagnose(given, expected, *angles).causes
     assert words in cause
     usual = table.BOOK | {"sequence": "zxy"}
-    if angles:  # what was handed in, and the angles that were put in: degrees, where these were taken for radians
-        typed, usual = (np.degrees(ANGLES), usual | {"unit": "degrees"}) if fault == "degrees" else (ANGLES, usual)
+    # what was handed in, and the angles that were put in: degrees, where these were taken for
+    # radians
+    if angles:
+        typed, usual = (
+            (np.degrees(ANGLES), usual | {"unit": "degrees"})
+            if fault == "degrees"
+            else (ANGLES, usual)
+        )
         known = {"kind": "Euler angles"} | ({} if part == "sequence" else {"sequence": "zxy"})
         chain = explain(given, np.array([typed]), second_declared=known).chains[0]
     else:

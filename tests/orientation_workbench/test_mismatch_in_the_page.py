@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 from more_threads import PASTED
 from places import REPOSITORY
-from test_mismatch import BAD, QUATERNIONS, SPELLED, SPELLINGS, both_sides, known, printed, random_chain
+from test_mismatch import (
+    BAD,
+    QUATERNIONS,
+    SPELLED,
+    SPELLINGS,
+    both_sides,
+    known,
+    printed,
+    random_chain,
+)
 
 from notebook_pages.paths import NODE
 from orientation import quaternion_from_dcm, random_orientations, simple_dcm
@@ -37,16 +46,25 @@ console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs
 def in_the_page(cases):
     program = PROGRAM % (SCRIPTS / "mismatch.js").as_uri()
     given = json.dumps({"table": table.whole_table(), "cases": cases})
-    done = subprocess.run([NODE, "--input-type=module", "-e", program], input=given, capture_output=True, text=True)
+    done = subprocess.run(
+        [NODE, "--input-type=module", "-e", program], input=given, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr[-2000:]
     return json.loads(done.stdout)
 
 
 def in_python(case):
     try:
-        found = explain(case["first"], case["second"], first_declared=case["declared"][0],
-                        second_declared=case["declared"][1], noise=case["noise"],
-                        first_program=case["programs"][0], second_program=case["programs"][1])  # fmt: skip
+        found = explain(
+            case["first"],
+            case["second"],
+            first_declared=case["declared"][0],
+            second_declared=case["declared"][1],
+            noise=case["noise"],
+            # fmt: skip
+            first_program=case["programs"][0],
+            second_program=case["programs"][1],
+        )
     except ValueError as error:
         return {"error": str(error)}
     return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
@@ -56,7 +74,13 @@ def in_python(case):
 
 
 def case(first, second, declared=({}, {}), noise=0.0, programs=("", "")):
-    return {"first": first, "second": second, "declared": list(declared), "noise": noise, "programs": programs}
+    return {
+        "first": first,
+        "second": second,
+        "declared": list(declared),
+        "noise": noise,
+        "programs": programs,
+    }
 
 
 def mixtures(count, seed):
@@ -100,7 +124,9 @@ def special():
     for first, second in itertools.product(
         ("ROS tf2 (C++)", "Unity", "COLMAP", "nerfstudio"), ("PX4", "Unreal", "COLMAP")
     ):
-        yield case(printed(quaternion_from_dcm(poses[:2])), printed(poses[:2]), programs=(first, second))
+        yield case(
+            printed(quaternion_from_dcm(poses[:2])), printed(poses[:2]), programs=(first, second)
+        )
     for text, _ in BAD.values():
         yield case(text, "1 0 0 0")
     for text in TABLES:
@@ -110,7 +136,11 @@ def special():
     yield case(printed(poses[:3]), printed(constants[0] @ poses[:3]))
     yield case(printed(poses), printed(constants[0] @ poses @ constants[1]))
     yield case(printed(poses[:2]), printed(poses[2:]))
-    yield case(printed(poses), printed(np.array(simple_dcm("x", 0.02)) @ np.swapaxes(poses, 1, 2)), noise=0.03)
+    yield case(
+        printed(poses),
+        printed(np.array(simple_dcm("x", 0.02)) @ np.swapaxes(poses, 1, 2)),
+        noise=0.03,
+    )
     yield case(printed([dcm]), printed([dcm @ np.diag([1, 1, -1])]))
 
 
@@ -122,11 +152,17 @@ def angles_that_fit_in_many_ways():
 
 @pytest.mark.parametrize("count", [10, pytest.param(2_000, marks=pytest.mark.long)])
 def test_both_say_the_same(count):
-    cases = [*special(), *(angles_that_fit_in_many_ways() if count > 10 else ()), *mixtures(count, seed=8)]
+    cases = [
+        *special(),
+        *(angles_that_fit_in_many_ways() if count > 10 else ()),
+        *mixtures(count, seed=8),
+    ]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)
         if "residual" in wanted and wanted["residual"] is not None:
-            assert found.pop("residual") == pytest.approx(wanted.pop("residual"), rel=1e-6, abs=1e-9), one
+            assert found.pop("residual") == pytest.approx(
+                wanted.pop("residual"), rel=1e-6, abs=1e-9
+            ), one
         assert found == wanted, one
 
 
@@ -145,7 +181,9 @@ BITS = [
 
 
 def broken(generator, text):
-    """A text as it comes out of careless hands: something left out, put in or exchanged in a few places."""
+    """A text as it comes out of careless hands: something left out, put in or exchanged in a few
+    places.
+    """
     for _ in range(generator.randint(1, 6)):
         place, other = sorted(generator.randrange(len(text) + 1) for _ in range(2))
         put = generator.choice([generator.choice(BITS), "", text[other : other + 5]])
@@ -155,7 +193,9 @@ def broken(generator, text):
 
 @pytest.mark.parametrize("count", [80, pytest.param(3_000, marks=pytest.mark.long)])
 def test_both_say_the_same_of_broken_text(count):
-    """Whatever is pasted, there is an answer or a word on what was read, and both languages say the same."""
+    """Whatever is pasted, there is an answer or a word on what was read, and both languages say the
+    same.
+    """
     generator = random.Random(21)
     texts = [
         *TABLES,
@@ -163,11 +203,16 @@ def test_both_say_the_same_of_broken_text(count):
         *SPELLINGS.values(),
         *(one[side] for one in PASTED for side in ("first", "second")),
     ]
-    cases = [case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343") for _ in range(count)]
+    cases = [
+        case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343")
+        for _ in range(count)
+    ]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)
         if wanted.get("residual") is not None:
-            assert found.pop("residual") == pytest.approx(wanted.pop("residual"), rel=1e-6, abs=1e-9), one
+            assert found.pop("residual") == pytest.approx(
+                wanted.pop("residual"), rel=1e-6, abs=1e-9
+            ), one
         assert found == wanted, one
 
 
@@ -175,5 +220,7 @@ def test_every_example_of_the_page_shows_what_it_is_there_for():
     verdicts = []
     for first, second, *sides in EXAMPLES.values():
         programs = [side.get("program") for side in sides] or [None, None]
-        verdicts.append(explain(first, second, first_program=programs[0], second_program=programs[1]).verdict)
+        verdicts.append(
+            explain(first, second, first_program=programs[0], second_program=programs[1]).verdict
+        )
     assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

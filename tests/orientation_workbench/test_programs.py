@@ -1,4 +1,6 @@
-"""What programs promise: numbers made as their manuals and sources say are found to differ by nothing else."""
+"""What programs promise: numbers made as their manuals and sources say are found to differ by
+nothing else.
+"""
 
 import json
 
@@ -21,7 +23,9 @@ SCALAR_FIRST = [3, 0, 1, 2]
 
 def unreal_quaternion(pitch, yaw, roll):
     """``FRotator::Quaternion`` of Unreal's source, in degrees."""
-    (sp, cp), (sy, cy), (sr, cr) = ((np.sin(a), np.cos(a)) for a in np.radians([pitch, yaw, roll]) / 2)
+    (sp, cp), (sy, cy), (sr, cr) = (
+        (np.sin(a), np.cos(a)) for a in np.radians([pitch, yaw, roll]) / 2
+    )
     return [cr * sp * sy - sr * cp * cy, -cr * sp * cy - sr * cp * sy, cr * cp * sy - sr * sp * cy,
             cr * cp * cy + sr * sp * sy]  # fmt: skip
 
@@ -50,7 +54,8 @@ PROMISES = {
     "ROS and Unreal": ("ros", printed(QUATERNIONS), "unreal", printed(QUATERNIONS * [-1, 1, -1, 1])),
     # KhronosGroup/glTF-Blender-IO 438
     "Blender and glTF": ("blender", "0.5709 0.1691 0.2722 0.7559\n0.7805 0.4835 0.2087 0.3369", "gltf",
-                         "0.16907575 0.75588035 -0.27217138 0.57094753\n0.48353603 0.33687159 -0.20870360 0.78048271"),
+                         "0.16907575 0.75588035 -0.27217138 0.57094753\n"
+                         "0.48353603 0.33687159 -0.20870360 0.78048271"),
     "COLMAP and PyTorch3D": ("colmap", printed(MATRICES), "pytorch3d", printed(np.swapaxes(LEFT_UP @ MATRICES, 1, 2))),
     "COLMAP and OpenCV": ("colmap", printed(QUATERNIONS[:, SCALAR_FIRST]), "opencv solvepnp", printed(MATRICES)),
     "OpenCV's Rodrigues": ("opencv", printed(ROTATION.as_rotvec()), "scipy", printed(MATRICES)),
@@ -72,26 +77,39 @@ ANSWERS = json.loads(STORED.read_text("utf8"))
 def test_programs_that_were_run_answered_as_the_table_says(program):
     """``python -m tools.programs`` asks them anew every night."""
     assert PROGRAMS[program]["version"].endswith(ANSWERS[program]["version"])
-    truth = np.array([quaternion_from_axis_angle(np.array(axis), angle) for axis, angle in ORIENTATIONS])
+    truth = np.array(
+        [quaternion_from_axis_angle(np.array(axis), angle) for axis, angle in ORIENTATIONS]
+    )
     for answer in ANSWERS[program]["answers"]:
-        known = {name: answer["form"][name] for name in ("kind", "sequence") if name in answer["form"]}
+        known = {
+            name: answer["form"][name] for name in ("kind", "sequence") if name in answer["form"]
+        }
         found = explain(truth, np.array(answer["numbers"]), first_program="this book", second_program=program,
                         second_declared=known, noise=2e-5)  # fmt: skip
         assert found.verdict == "same", (answer["asked"], str(found))
 
 
 def test_what_claims_to_have_been_run_has_been():
-    assert {name for name, facts in PROGRAMS.items() if facts["version"]} == {*ANSWERS, "SymPy mechanics"}
+    assert {name for name, facts in PROGRAMS.items() if facts["version"]} == {
+        *ANSWERS,
+        "SymPy mechanics",
+    }
 
 
 def test_what_goes_beyond_the_manuals_is_named():
     found = explain(printed(QUATERNIONS), printed(QUATERNIONS * [-1, 1, -1, 1] * [-1, -1, -1, 1]),
                     first_program="ros", second_program="unreal")  # fmt: skip
-    assert found.verdict == "named" and "the conjugate" in found.faults[0] and len(found.faults) == 1
+    assert (
+        found.verdict == "named" and "the conjugate" in found.faults[0] and len(found.faults) == 1
+    )
 
 
 def test_a_program_is_called_by_a_part_of_its_name():
-    assert program_named("ros") == "ROS tf2 (C++)" and program_named("OPENCV") == "OpenCV" and len(PROGRAMS) >= 25
+    assert (
+        program_named("ros") == "ROS tf2 (C++)"
+        and program_named("OPENCV") == "OpenCV"
+        and len(PROGRAMS) >= 25
+    )
     with pytest.raises(ValueError, match="several programs"):
         program_named("matlab")
     with pytest.raises(ValueError, match="no program"):
@@ -99,4 +117,6 @@ def test_a_program_is_called_by_a_part_of_its_name():
 
 
 def test_every_program_says_where_its_manual_stands():
-    assert [name for name, facts in PROGRAMS.items() if not facts["manual"].startswith("https://")] == ["this book"]
+    assert [
+        name for name, facts in PROGRAMS.items() if not facts["manual"].startswith("https://")
+    ] == ["this book"]

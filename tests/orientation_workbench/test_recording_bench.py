@@ -1,4 +1,6 @@
-"""The bench for recordings: what it must find, on simulated instruments with one thing wrong and on real ones."""
+"""The bench for recordings: what it must find, on simulated instruments with one thing wrong and on
+real ones.
+"""
 
 import gzip
 import warnings
@@ -37,7 +39,9 @@ def test_one_wrong_thing_makes_its_light_red(kind):
 @pytest.mark.long
 @pytest.mark.parametrize("first", [200, 204, 208, 212, 216])
 def test_of_two_hundred_wrong_recordings_nearly_all_are_found(first):
-    """Of 240 recordings with one wrong thing in each, its light is red in 95 of 100, a fifth of them at a time."""
+    """Of 240 recordings with one wrong thing in each, its light is red in 95 of 100, a fifth of
+    them at a time.
+    """
     seeds = range(first, first + 4)
     missed = [
         (kind, seed)
@@ -68,7 +72,9 @@ def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
     assert sum(one.still for one in found.still) >= 4
     [judgement] = found.judgements
     true = recording["truth"].inv().as_matrix()[np.searchsorted(recording["time"], judgement.times)]
-    tilt = np.degrees(np.arccos(np.clip(np.einsum("ni,ni->n", true[:, :, 2], judgement.dcms[:, :, 2]), -1, 1)))
+    tilt = np.degrees(
+        np.arccos(np.clip(np.einsum("ni,ni->n", true[:, :, 2], judgement.dcms[:, :, 2]), -1, 1))
+    )
     assert np.sqrt((tilt**2).mean()) < 3 * max(judgement.claimed, judgement.found) < 1
 
 
@@ -86,7 +92,9 @@ REAL = {"x_imu": (256, True), "ngimu": (None, True), "x_imu3": (None, False), "x
 def test_the_convention_of_real_instruments(name):
     rate, conjugate = REAL[name]
     files = (
-        [DATA / "xsens.csv"] if name == "xsens" else [DATA / f"{name}_{part}.csv" for part in ("sensors", "quaternion")]
+        [DATA / "xsens.csv"]
+        if name == "xsens"
+        else [DATA / f"{name}_{part}.csv" for part in ("sensors", "quaternion")]
     )
     reading = examine(files, rate=rate, judged=False).facts["convention of the quaternion"]
     assert (reading.order, reading.conjugate) == ("scalar first", conjugate)
@@ -110,15 +118,21 @@ def scrambled(ways, seed):
         for _ in range(ways):
             axes, mounting = ASSIGNMENTS[random.integers(48)], ASSIGNMENTS[random.integers(24)]
             turned = mounting @ ours
-            flipped, order = bool(random.integers(2)), ("scalar first", "scalar last")[random.integers(2)]
+            flipped, order = (
+                bool(random.integers(2)),
+                ("scalar first", "scalar last")[random.integers(2)],
+            )
             printed = quaternions(turned.swapaxes(-1, -2) if flipped else turned)
             printed = np.roll(printed, -1, axis=1) if order == "scalar last" else printed
-            candidates = {one: dcm_of_quaternions(printed, one) for one in ("scalar first", "scalar last")}
+            candidates = {
+                one: dcm_of_quaternions(printed, one) for one in ("scalar first", "scalar last")
+            }
             found = readings(gyroscope.time, rates @ axes.T, quaternion.time, candidates)
             best = [one for one in found if one.disagreement < found[0].disagreement + 1e-6]
             yield (
                 any(
-                    (one.order, one.conjugate) == (order, flipped) and np.allclose(one.mounting, mounting @ axes.T)
+                    (one.order, one.conjugate) == (order, flipped)
+                    and np.allclose(one.mounting, mounting @ axes.T)
                     for one in best
                 ),
                 len(best),
@@ -135,8 +149,9 @@ def quaternions(dcms):
 def test_scrambled_conventions_are_found(ways):
     """Axes, signs, order, conjugate and mounting: the right reading is among those that fit best.
 
-    There are two of these always: with the scalar moved to the other end, the conjugate and another mounting give the
-    same orientations, but for one turn of the ground. Only gravity tells them apart.
+    There are two of these always: with the scalar moved to the other end, the conjugate and another
+    mounting give the same orientations, but for one turn of the ground. Only gravity tells them
+    apart.
     """
     found = list(scrambled(ways, ways))
     assert all(right for right, _, _ in found)
@@ -144,16 +159,20 @@ def test_scrambled_conventions_are_found(ways):
     assert min(margin for _, _, margin in found) > 1.4
 
 
-# --- reading ----------------------------------------------------------------------------------------
+# --- reading --------------------------------------------------------------------------------------
 
 
 @pytest.mark.sampled(12)
 @pytest.mark.parametrize("form", FORMS)
 def test_many_forms_hold_one_recording(form):
-    """Loaded without a word to help, each sensor is the one that it is, along the right axes, sample by sample."""
+    """Loaded without a word to help, each sensor is the one that it is, along the right axes,
+    sample by sample.
+    """
     given, true = form(), recording()
     found = read_content(given.content, "recording")
-    assert set(found.groups) == set(given.scales), {kind: group.names for kind, group in found.groups.items()}
+    assert set(found.groups) == set(given.scales), {
+        kind: group.names for kind, group in found.groups.items()
+    }
     assert found.counted == given.counted
     if not given.counted:
         assert np.median(np.diff(found.groups["gyroscope"].time)) == pytest.approx(0.01, rel=1e-3)
@@ -163,7 +182,9 @@ def test_many_forms_hold_one_recording(form):
             assert np.abs(off).max() < allowed, (kind, found.groups[kind].names)
     if "quaternion" in given.scales:
         values = found.groups["quaternion"].values
-        first, last = (np.abs(np.roll(values, k, axis=1) - true["quaternion"]).max() for k in (0, 1))
+        first, last = (
+            np.abs(np.roll(values, k, axis=1) - true["quaternion"]).max() for k in (0, 1)
+        )
         assert min(first, last) < 1e-3
 
 
@@ -197,7 +218,10 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     text = as_text(simulate(4)).splitlines()
     broken = [*text[:400], text[400].replace(text[400].split(",")[4], "ERR"), *text[401:]]
     [table] = read_tables("\n".join(broken))
-    assert "line 401, column 5 (acc_x): 'ERR'" in table.remarks[0] and len(table.values) == len(text) - 2
+    assert (
+        "line 401, column 5 (acc_x): 'ERR'" in table.remarks[0]
+        and len(table.values) == len(text) - 2
+    )
     bad = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(text)]
     with pytest.raises(RecordingError, match="line 10, column 2"):
         read_tables("\n".join(bad))
@@ -213,8 +237,14 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         with pytest.raises(RecordingError, match=words):
             read_tables(content, "file")
     with pytest.raises(RecordingError, match="no instrument"):
-        read_content("\n".join(["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]))
-    with pytest.raises(RecordingError, match="sought among right ascension"):  # as long as the Earth's field
+        read_content(
+            "\n".join(
+                ["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]
+            )
+        )
+    with pytest.raises(
+        RecordingError, match="sought among right ascension"
+    ):  # as long as the Earth's field
         examine(DATA / "bright_stars.csv")
     (tmp_path / "empty.csv").write_bytes(b"")
     with pytest.raises(SystemExit) as ended:
@@ -223,18 +253,24 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
 
 
 def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path):
-    """A zip in a folder, packed tables, settings beside them: what holds no numbers is passed over, not the rest."""
+    """A zip in a folder, packed tables, settings beside them: what holds no numbers is passed over,
+    not the rest.
+    """
     given = simulate(5, poses=2)
     files = {}
     for kind in ("gyroscope", "accelerometer", "magnetometer"):
         rows = np.column_stack([given["time"], given[kind]])
-        files[f"{kind}.csv"] = "\n".join(["time,x,y,z", *(",".join(f"{one:.6f}" for one in row) for row in rows)])
+        files[f"{kind}.csv"] = "\n".join(
+            ["time,x,y,z", *(",".join(f"{one:.6f}" for one in row) for row in rows)]
+        )
     (tmp_path / "deep").mkdir()
     with zipfile.ZipFile(tmp_path / "deep" / "walk.zip", "w") as archive:
         archive.writestr("today/gyroscope.csv", files["gyroscope.csv"])
         archive.writestr("__MACOSX/today/._gyroscope.csv", b"\0\5\x16\7" * 9)
         archive.writestr("device.json", '{"model": "phone"}')
-    (tmp_path / "accelerometer.csv.gz").write_bytes(gzip.compress(files["accelerometer.csv"].encode()))
+    (tmp_path / "accelerometer.csv.gz").write_bytes(
+        gzip.compress(files["accelerometer.csv"].encode())
+    )
     lines = files["magnetometer.csv"].splitlines()
     torn = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(lines)]
     (tmp_path / "magnetometer.csv").write_text("\n".join(torn))
@@ -256,14 +292,20 @@ def spoilt(kind, change):
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"}, "too few"),
+        (
+            {kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"},
+            "too few",
+        ),
         (spoilt("time", lambda values: values[::-1]), "goes back"),
         (spoilt("time", lambda values: 0 * values), "no column of time"),
         (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
         (spoilt("accelerometer", lambda values: 0 * values), "never change"),
         (spoilt("gyroscope", lambda values: 1e12 * values), "turns so fast"),
         (
-            spoilt("magnetometer", lambda values: np.where(np.arange(len(values))[:, None] % 3, values, np.nan)),
+            spoilt(
+                "magnetometer",
+                lambda values: np.where(np.arange(len(values))[:, None] % 3, values, np.nan),
+            ),
             "magnetometer: µT",
         ),
     ],
@@ -301,7 +343,7 @@ def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
     assert np.abs(names["rates"] - simulate(6)["gyroscope"]).max() < np.radians(5)
 
 
-# --- numbers ----------------------------------------------------------------------------------------
+# --- numbers --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
@@ -332,7 +374,9 @@ def test_soft_and_hard_iron_are_taken_away_to_a_degree_of_heading(count):
         level = np.einsum("nji,nj->ni", recording["truth"].inv().as_matrix(), found.field)
         off = np.degrees(np.arctan2(level[:, 1], level[:, 0]))
         by_pose = [np.mean(off[one.first : one.last]) for one in found.still]
-        assert found.light("offset of the magnetometer") == "wrong" and np.abs(by_pose).max() < 1, seed
+        assert found.light("offset of the magnetometer") == "wrong" and np.abs(by_pose).max() < 1, (
+            seed
+        )
 
 
 def test_iron_is_refused_where_the_turns_do_not_suffice():
@@ -345,14 +389,18 @@ def test_iron_is_refused_where_the_turns_do_not_suffice():
         "time": time,
         "gyroscope": rates,
         "accelerometer": truth.inv().apply([0, 0, 9.81]) + 0.02 * random.normal(size=(2000, 3)),
-        "magnetometer": truth.inv().apply([20, 0, -40]) + [30, 0, 0] + 0.3 * random.normal(size=(2000, 3)),
+        "magnetometer": truth.inv().apply([20, 0, -40])
+        + [30, 0, 0]
+        + 0.3 * random.normal(size=(2000, 3)),
     }
     found = examine(as_text(recording), judged=False)
     assert found.light("offset of the magnetometer") == "cannot tell", str(found)
 
 
 def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused():
-    """As far as lengths can: up to a turn. Gravity, which stands beside it, tells that the dip is one then."""
+    """As far as lengths can: up to a turn. Gravity, which stands beside it, tells that the dip is
+    one then.
+    """
     for seed, poses in ((1, 9), (2, 9), (3, 3)):
         given = spoilt_by_iron(seed, poses, np.random.default_rng(seed))
         rows = np.column_stack([given["time"], given["accelerometer"], given["magnetometer"]])
@@ -363,7 +411,9 @@ def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused()
             assert found.light("offset of the magnetometer") in ("cannot tell", "wrong")
             continue
         ups = given["truth"].inv().apply([0, 0, 1])
-        dips = np.degrees(np.arcsin((found.field * ups).sum(axis=1) / np.linalg.norm(found.field, axis=1)))
+        dips = np.degrees(
+            np.arcsin((found.field * ups).sum(axis=1) / np.linalg.norm(found.field, axis=1))
+        )
         lengths = np.linalg.norm(found.field, axis=1)
         assert lengths.std() < 0.02 and dips.std() < 2.5
         assert found.light("axes of the magnetometer") == "cannot tell"
@@ -397,7 +447,9 @@ def test_allan_deviation_is_that_of_the_formulas():
     walk = np.cumsum(random.normal(size=(40_000, 8)), axis=0) * np.sqrt(step)
     times, deviations = allan_deviation(walk, step)
     some = (times > 10 * step) & (times < 8)
-    assert np.allclose(np.sqrt((deviations[some] ** 2).mean(axis=1)), np.sqrt(times[some] / 3), rtol=0.2)
+    assert np.allclose(
+        np.sqrt((deviations[some] ** 2).mean(axis=1)), np.sqrt(times[some] / 3), rtol=0.2
+    )
     size = round(times[5] / step)
     means = walk[: len(walk) // size * size].reshape(-1, size, 8).mean(axis=1)
     plain = np.sqrt((np.diff(means, axis=0) ** 2).mean(axis=0) / 2)
@@ -409,13 +461,18 @@ def test_noise_is_read_off_where_it_shows_and_not_where_a_hand_is():
     time = step * np.arange(30_000)
     white = 0.05 / np.sqrt(step) * random.normal(size=(len(time), 3))
     noise = noise_of(*allan_deviation(white, step))
-    assert np.allclose(noise.angle_random_walk, 0.05, rtol=0.05) and np.isnan(noise.bias_instability).all()
+    assert (
+        np.allclose(noise.angle_random_walk, 0.05, rtol=0.05)
+        and np.isnan(noise.bias_instability).all()
+    )
     hand = np.sin(2 * np.pi * 3 * time + random.normal(size=(3, 1))).T * 2
     assert np.isnan(noise_of(*allan_deviation(white / 20 + hand, step)).angle_random_walk).all()
 
 
 def test_innovations_of_an_honest_filter_stay_within_their_bounds():
-    """In 95 of 100 runs, give or take two: four hundred runs of twenty seconds, at two directions."""
+    """In 95 of 100 runs, give or take two: four hundred runs of twenty seconds, at two
+    directions.
+    """
     runs, step, random = 400, 0.02, np.random.default_rng(5)
     noise, wander, deviations = 0.01, 0.002, (0.03, 0.08)
     references = np.array([[0, 0, 1.0], [0.6, 0, -0.8]])

@@ -1,4 +1,6 @@
-"""A recording that is dropped onto the workbench: what the cell shows, and that the page hands over the file."""
+"""A recording that is dropped onto the workbench: what the cell shows, and that the page hands over
+the file.
+"""
 
 import base64
 import re
@@ -21,12 +23,15 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
     ).decode()
     assert "<title>walk &lt;1&gt;.csv on the bench</title>" in kept
     for page in (shown, kept):
-        assert re.search(r'<tr class="wrong"><td>wrong</td><th scope="row">offset of the magnetometer', page)
+        assert re.search(
+            r'<tr class="wrong"><td>wrong</td><th scope="row">offset of the magnetometer', page
+        )
         assert "<b>Wrong</b>: offset of the magnetometer." in page
         assert page.count("<svg") >= 3 and "<1>" not in page and "<script" not in page
     assert "offset of the magnetometer" in repr(found)
     rows = re.search(
-        r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"', judged(convention="xyzw")._repr_html_()
+        r'download="corrected.csv" href="data:text/csv;base64,([^"]+)"',
+        judged(convention="xyzw")._repr_html_(),
     )
     corrected = base64.b64decode(rows[1]).decode().splitlines()
     assert corrected[0].endswith("qx,qy,qz,qw") and len(corrected) == 1 + len(found.examined.time)
@@ -34,8 +39,16 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
 
 def test_what_cannot_be_judged_says_why_with_line_and_column(tmp_path):
     (tmp_path / "letter.txt").write_text("Dear all,\nI am here.\nBye\n", "utf8")
-    assert "letter.txt cannot be judged" in repr(judged(tmp_path)) and "Line 2" in repr(judged(tmp_path))
+    assert "letter.txt cannot be judged" in repr(judged(tmp_path)) and "Line 2" in repr(
+        judged(tmp_path)
+    )
     lines = as_text(simulate(2, poses=2)).splitlines()
-    (tmp_path / "letter.txt").write_text("\n".join(line if k % 9 else line.replace(",", ",x", 1)
-                                                   for k, line in enumerate(lines)), "utf8")  # fmt: skip
+    (tmp_path / "letter.txt").write_text(
+        "\n".join(
+            line if k % 9 else line.replace(",", ",x", 1)
+            # fmt: skip
+            for k, line in enumerate(lines)
+        ),
+        "utf8",
+    )
     assert "line 10, column 2" in judged(tmp_path)._repr_html_()

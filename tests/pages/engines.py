@@ -1,6 +1,8 @@
-"""Other engines than Chromium, driven by what their makers ship: Firefox by WebDriver BiDi, WebKitGTK by WebDriver.
+"""Other engines than Chromium, driven by what their makers ship: Firefox by WebDriver BiDi,
+WebKitGTK by WebDriver.
 
-Each gives the same small interface: ``go`` to an address, ``run`` a function in the page, ``wait`` for a condition.
+Each gives the same small interface: ``go`` to an address, ``run`` a function in the page, ``wait``
+for a condition.
 """
 
 import json
@@ -74,7 +76,10 @@ class Firefox(Engine):
             "services.settings.server": "data:,",
             "remote.prefs.recommended": True,
         }
-        lines = [f"user_pref({json.dumps(name)}, {json.dumps(value)});" for name, value in settings.items()]
+        lines = [
+            f"user_pref({json.dumps(name)}, {json.dumps(value)});"
+            for name, value in settings.items()
+        ]
         Path(self.folder.name, "user.js").write_text("\n".join(lines))
         command = [
             program,
@@ -86,7 +91,10 @@ class Firefox(Engine):
             str(port),
         ]
         self.process = subprocess.Popen(
-            command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, env={**os.environ, "HOME": self.folder.name}
+            command,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env={**os.environ, "HOME": self.folder.name},
         )
         end = time.monotonic() + PATIENCE
         while True:
@@ -96,12 +104,18 @@ class Firefox(Engine):
                 )
                 break
             except OSError:
-                assert time.monotonic() < end and self.process.poll() is None, "Firefox does not listen"
+                assert time.monotonic() < end and self.process.poll() is None, (
+                    "Firefox does not listen"
+                )
                 time.sleep(0.1)
         self.number = 0
         self.version = self.send("session.new", capabilities={})["capabilities"]["browserVersion"]
         self.context = self.send("browsingContext.getTree")["contexts"][0]["context"]
-        self.send("browsingContext.setViewport", context=self.context, viewport={"width": 1300, "height": 900})
+        self.send(
+            "browsingContext.setViewport",
+            context=self.context,
+            viewport={"width": 1300, "height": 900},
+        )
 
     def send(self, method, **parameters):
         self.number += 1
@@ -118,7 +132,8 @@ class Firefox(Engine):
     def run(self, function, *arguments):
         answer = self.send(
             "script.callFunction",
-            functionDeclaration=f"async (text) => JSON.stringify((await ({function})(...JSON.parse(text))) ?? null)",
+            functionDeclaration="async (text) => JSON.stringify((await "
+                f"({function})(...JSON.parse(text))) ?? null)",
             arguments=[{"type": "string", "value": json.dumps(arguments)}],
             target={"context": self.context}, awaitPromise=True,
         )  # fmt: skip
@@ -137,10 +152,15 @@ class WebKit(Engine):
         driver = shutil.which("WebKitWebDriver")
         screen = shutil.which("Xvfb")
         if driver is None or screen is None:
-            absent("WebKit is not on this machine (on Debian: sudo apt install webkit2gtk-driver xvfb)")
+            absent(
+                "WebKit is not on this machine (on Debian: sudo apt install webkit2gtk-driver xvfb)"
+            )
         (browser,) = list(Path("/usr/lib").glob("*/webkit2gtk-4.?/MiniBrowser"))[:1] or [None]
         if browser is None:
-            absent("WebKit's MiniBrowser is not on this machine (on Debian: sudo apt install webkit2gtk-driver)")
+            absent(
+                "WebKit's MiniBrowser is not on this machine (on Debian: sudo apt install "
+                "webkit2gtk-driver)"
+            )
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         reading, writing = os.pipe()
         self.screen = subprocess.Popen(
@@ -155,7 +175,8 @@ class WebKit(Engine):
             **os.environ, "DISPLAY": f":{display}", "HOME": self.folder.name, "XDG_RUNTIME_DIR": self.folder.name,
             "WEBKIT_DISABLE_COMPOSITING_MODE": "1", "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1",
             "GDK_BACKEND": "x11", "NO_AT_BRIDGE": "1", "LIBGL_ALWAYS_SOFTWARE": "1",
-            # Safari gives shared memory to isolated pages; this build of its engine does when it is asked to.
+            # Safari gives shared memory to isolated pages; this build of its engine does when it is
+            # asked to.
             "JSC_useSharedArrayBuffer": "1",
         }  # fmt: skip
         environment.pop("WAYLAND_DISPLAY", None)
@@ -172,7 +193,9 @@ class WebKit(Engine):
                 session = self.send("", wanted)
                 break
             except ConnectionError:
-                assert time.monotonic() < end and self.process.poll() is None, "WebKit's driver does not listen"
+                assert time.monotonic() < end and self.process.poll() is None, (
+                    "WebKit's driver does not listen"
+                )
                 time.sleep(0.1)
         self.version = session["capabilities"]["browserVersion"]
         self.address += f"/{session['sessionId']}"
@@ -203,13 +226,17 @@ class WebKit(Engine):
             "(value) => done(JSON.stringify({ value: value ?? null })),"
             "(error) => done(JSON.stringify({ error: String(error) })));"
         )
-        answer = json.loads(self.send("/execute/async", {"script": script, "args": [json.dumps(arguments)]}))
+        answer = json.loads(
+            self.send("/execute/async", {"script": script, "args": [json.dumps(arguments)]})
+        )
         assert "error" not in answer, answer["error"]
         return answer["value"]
 
     def close(self):
         try:
-            urllib.request.urlopen(urllib.request.Request(self.address, method="DELETE"), timeout=20).close()
+            urllib.request.urlopen(
+                urllib.request.Request(self.address, method="DELETE"), timeout=20
+            ).close()
         except OSError:
             pass  # it has gone already
         for process in (self.process, self.screen):

@@ -1,4 +1,6 @@
-"""A small book in many editions, and a server whose network breaks when a test wants it: for what a browser keeps."""
+"""A small book in many editions, and a server whose network breaks when a test wants it: for what a
+browser keeps.
+"""
 
 import json
 import os
@@ -17,7 +19,8 @@ PAGE = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{nam
 <script src="{up}_static/book.js?v={js}" defer></script></head>
 <body><article><section id="{name}"><h1>{name}</h1><p id="edition">{edition}</p></section>
 <section id="same"><h2>What stays</h2><p>The same in all editions.</p></section></article></body></html>"""
-# What a page shows, by its three parts: text, style and script. A page of two editions shows two numbers.
+# What a page shows, by its three parts: text, style and script. A page of two editions shows two
+# numbers.
 SHOWN = """() => [document.querySelector("#edition")?.textContent, window.edition,
   getComputedStyle(document.documentElement).getPropertyValue("--edition").trim()].map(String)"""
 TOOLS = """const said = [], tools = { progress() {}, say: (text) => said.push(text), ask(text, actions) {
@@ -37,7 +40,9 @@ TOLD = f"""async (scripts) => {{ {TOOLS}
   return said.at(-1);
 }}"""
 RESTS = "async () => !(await navigator.locks.query()).held.length"
-NEWEST = "async () => (await (await (await caches.open('book /')).match('/kept.json'))?.json())?.edition"
+NEWEST = (
+    "async () => (await (await (await caches.open('book /')).match('/kept.json'))?.json())?.edition"
+)
 IS_CONTROLLED = "() => Boolean(navigator.serviceWorker.controller)"
 
 
@@ -51,7 +56,9 @@ def sample(folder, with_scripts):
 
 
 def write_edition(folder, number, with_scripts=None):
-    """Write edition ``number`` into ``folder``; ``appendix/three`` and two files of its folder never change."""
+    """Write edition ``number`` into ``folder``; ``appendix/three`` and two files of its folder
+    never change.
+    """
     sample(folder, with_scripts)
     files = {
         "_static/book.css": f":root {{ --edition: {number} }}",
@@ -68,7 +75,11 @@ def write_edition(folder, number, with_scripts=None):
         kind, shown = ("fixed", 0) if name == "appendix/three" else ("book", number)
         up = "../" * name.count("/")
         text = PAGE.format(
-            name=name, up=up, edition=shown, css=version[f"_static/{kind}.css"], js=version[f"_static/{kind}.js"]
+            name=name,
+            up=up,
+            edition=shown,
+            css=version[f"_static/{kind}.css"],
+            js=version[f"_static/{kind}.js"],
         ).replace("/book.", f"/{kind}.")
         (folder / f"{name}.html").parent.mkdir(exist_ok=True)
         (folder / f"{name}.html").write_text(text)
@@ -78,7 +89,9 @@ def write_edition(folder, number, with_scripts=None):
 
 
 class Network(SimpleHTTPRequestHandler):
-    """Serves ``folder`` until ``left`` requests have been answered; then it is as ``broken`` says."""
+    """Serves ``folder`` until ``left`` requests have been answered; then it is as ``broken``
+    says.
+    """
 
     folder, left, broken = None, None, "cut"
     refused, held = 0, threading.Event()

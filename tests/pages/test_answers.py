@@ -1,4 +1,6 @@
-"""What a reader writes in the page: kept in two tabs, through crashes and new editions, handed in, brought back."""
+"""What a reader writes in the page: kept in two tabs, through crashes and new editions, handed in,
+brought back.
+"""
 
 import csv
 import json
@@ -21,7 +23,10 @@ BLANK = "A_C_N = ...  # your answer"
 ANSWER, OTHER = 3, 5  # cells of the exercise, from 1
 CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>
   cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"""
-KEPT = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => / (answer|earlier) /.test(key)))"
+KEPT = (
+    "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => / (answer|earlier) "
+    "/.test(key)))"
+)
 pytestmark = pytest.mark.sampled(2)
 
 
@@ -63,7 +68,8 @@ class Tab:
 
     def wait(self, number, code):
         self.page.wait_for_function(
-            f"([number, code]) => ({CODES})()[number - 1].replace(/\\s/g, '') === code.replace(/\\s/g, '')",
+            f"([number, code]) => ({CODES})()[number - 1].replace(/\\s/g, '') === "
+            "code.replace(/\\s/g, '')",
             arg=[number, code],
         )
 
@@ -96,11 +102,15 @@ class Tab:
         )
 
     def shown(self):
-        """Everything that the page lets its reader see again: editors, offers, what was written before."""
-        return "\n".join([*self.page.evaluate(CODES), *self.page.locator(".live-choice pre").all_text_contents()])
+        """Everything that the page lets its reader see again: editors, offers, what was written
+        before.
+        """
+        return "\n".join(
+            [*self.page.evaluate(CODES), *self.page.locator(".live-choice pre").all_text_contents()]
+        )
 
 
-# --- two tabs, reloads, the book's code -------------------------------------------------------------
+# --- two tabs, reloads, the book's code -----------------------------------------------------------
 
 
 def test_two_tabs_share_their_answers(context, site):
@@ -123,7 +133,9 @@ def test_text_of_a_tab_that_slept_is_set_aside(context, site):
     tab.write(ANSWER, "mine = 1")
     (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
     elsewhere = json.loads(entry) | {"code": "theirs = 2"}
-    tab.page.evaluate("([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(elsewhere)])
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(elsewhere)]
+    )
     tab.write(ANSWER, "mine = 3")
     tab.reload()
     tab.wait(ANSWER, "mine = 3")
@@ -136,7 +148,9 @@ def test_text_of_a_tab_that_slept_is_set_aside(context, site):
 
 def test_keys_carry_the_path_of_the_site(context, site):
     """Two years' editions at one address do not share answers."""
-    context.route("**/2027/**", lambda route: route.continue_(url=route.request.url.replace("/2027/", "/")))
+    context.route(
+        "**/2027/**", lambda route: route.continue_(url=route.request.url.replace("/2027/", "/"))
+    )
     Tab(context, site).edit().write(ANSWER, "of this year = 1")
     other = Tab(context, f"{site}2027/").edit()
     assert other.text(ANSWER) == BLANK
@@ -174,7 +188,9 @@ def test_edits_of_the_first_edition_come_along(context, site):
         {"number": ANSWER, "original": fingerprint_of_code(BLANK), "code": "old = 1"},
         {"number": OTHER, "original": "of code that is gone", "code": "old = 2"},
     ]
-    tab.page.evaluate("([key, text]) => localStorage.setItem(key, text)", [f"code of {EXERCISE}", json.dumps(old)])
+    tab.page.evaluate(
+        "([key, text]) => localStorage.setItem(key, text)", [f"code of {EXERCISE}", json.dumps(old)]
+    )
     tab.reload()
     tab.wait(ANSWER, "old = 1")
     tab.page.locator(".live-choice", has_text="has changed since you edited it").wait_for()
@@ -188,7 +204,9 @@ def test_fingerprints_are_those_of_the_page(context, site):
     for code in ("é = '数'  # 𝐂", "", "x"):
         tab.write(1, f"{code} = 1")
         tab.page.evaluate("null")
-    (entry,) = (json.loads(text) for key, text in tab.page.evaluate(KEPT).items() if " answer " in key)
+    (entry,) = (
+        json.loads(text) for key, text in tab.page.evaluate(KEPT).items() if " answer " in key
+    )
     notebook = nbformat.read(REPOSITORY / "appendix" / "solutions.ipynb", as_version=4)
     source = next(cell.source for cell in notebook.cells if cell.cell_type == "code")
     assert entry["original"] == fingerprint_of_code(source)
@@ -196,7 +214,7 @@ def test_fingerprints_are_those_of_the_page(context, site):
     assert asides == []  # typed over in one tab: nobody else's text
 
 
-# --- hand in and load, back up and restore ----------------------------------------------------------
+# --- hand in and load, back up and restore --------------------------------------------------------
 
 
 def test_page_is_handed_in_and_graded(context, site, tmp_path):
@@ -211,10 +229,16 @@ def test_page_is_handed_in_and_graded(context, site, tmp_path):
     handed_in = tmp_path / "class" / "ada" / "simple-orientations.ipynb"
     handed_in.parent.mkdir(parents=True)
     download.save_as(handed_in)
-    taken, original = (nbformat.read(path, as_version=4) for path in (handed_in, REPOSITORY / f"{EXERCISE}.ipynb"))
+    taken, original = (
+        nbformat.read(path, as_version=4) for path in (handed_in, REPOSITORY / f"{EXERCISE}.ipynb")
+    )
     nbformat.validate(taken)
     assert [cell.metadata for cell in taken.cells] == [cell.metadata for cell in original.cells]
-    changed = [k for k, (mine, theirs) in enumerate(zip(taken.cells, original.cells)) if mine.source != theirs.source]
+    changed = [
+        k
+        for k, (mine, theirs) in enumerate(zip(taken.cells, original.cells))
+        if mine.source != theirs.source
+    ]
     assert [taken.cells[k].source for k in changed] == [who, right]
     coursework(["grade", str(tmp_path / "class"), "--out", str(tmp_path / "out")])
     with open(tmp_path / "out" / "grades.csv", newline="", encoding="utf8") as table:
@@ -232,7 +256,9 @@ def test_notebook_is_loaded_back(context, site, tmp_path):
     tab.bring(path)
     tab.wait(ANSWER, "answer = 'mine'")
     assert "answer = 'newer'" in tab.shown()
-    with_more = nbformat.read(path, as_version=4)  # as from JupyterLab: a cell of one's own among the others
+    with_more = nbformat.read(
+        path, as_version=4
+    )  # as from JupyterLab: a cell of one's own among the others
     with_more.cells.insert(2, nbformat.v4.new_code_cell("scratch = 1"))
     with_more.cells[-1].source += "  # seen"
     nbformat.write(with_more, path)
@@ -278,7 +304,7 @@ def test_everything_is_backed_up_and_restored(context, site, browser, tmp_path):
     other.close()
 
 
-# --- the page and its notebook ----------------------------------------------------------------------
+# --- the page and its notebook --------------------------------------------------------------------
 
 CHANGE_COPY = """async ([path, changes]) => {
   const settled = (request) => new Promise((resolve, reject) => {
@@ -326,7 +352,8 @@ READ_COPY = """async (path) => {
 
 
 def visit_notebook(page, site, name, changes=None, choose="Open the new version"):
-    """What opening the notebook in JupyterLite does with its copy, and saving it with ``changes`` by grade_id.
+    """What opening the notebook in JupyterLite does with its copy, and saving it with ``changes``
+    by grade_id.
 
     The page's own script runs, as before JupyterLite starts; only JupyterLite itself is played.
     """
@@ -336,7 +363,9 @@ def visit_notebook(page, site, name, changes=None, choose="Open the new version"
         served = json.loads((HTML / "lite" / "files" / f"{name}.ipynb").read_text("utf8"))
         start(tab, choose)
         if tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", None]) is None:
-            tab.evaluate(WRITE_COPY, [f"{name}.ipynb", served])  # JupyterLite saves what it was given
+            tab.evaluate(
+                WRITE_COPY, [f"{name}.ipynb", served]
+            )  # JupyterLite saves what it was given
     else:
         start(tab, choose)
     cells = tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", changes])
@@ -347,7 +376,10 @@ def visit_notebook(page, site, name, changes=None, choose="Open the new version"
 def start(tab, choose):
     (folder,) = (HTML / "runtime").glob("scripts-*")
     script = f"/runtime/{folder.name}/notebook.js"
-    tab.evaluate(f"() => {{ window.started = import('{script}').then((m) => m.prepare()).then(() => 'done'); }}")
+    tab.evaluate(
+        f"() => {{ window.started = import('{script}').then((m) => m.prepare()).then(() => "
+        f"'done'); }}"
+    )
     tab.evaluate(
         """(choose) => Promise.race([window.started, new Promise((resolve) => {
           const look = () => {
@@ -396,7 +428,9 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
 
 
 def test_progress_is_one_for_pages_and_notebooks(context, site):
-    """What was right on either side stays right on both, and no wrong answer and no help is forgotten."""
+    """What was right on either side stays right on both, and no wrong answer and no help is
+    forgotten.
+    """
     tab = Tab(context, site)
     path = "exercises/.coursework/progress.json"
     here = {
@@ -421,7 +455,10 @@ def test_progress_is_one_for_pages_and_notebooks(context, site):
         "a/page": "correct", "a/notebook": "correct", "a/both": "correct", "a/tried": "wrong",
     }  # fmt: skip
     assert (sorted(kept["a/both"]["answers"]), kept["a/both"]["help"]) == (["2", "5"], "hint")
-    assert (sorted(kept["a/tried"]["answers"]), kept["a/tried"]["help"]) == (["3", "4", "6"], "solution")
+    assert (sorted(kept["a/tried"]["answers"]), kept["a/tried"]["help"]) == (
+        ["3", "4", "6"],
+        "solution",
+    )
     # The page looks at the notebook's record whenever it is opened.
     notebook.evaluate(WRITE_COPY, [path, {**kept, "a/later": {"outcome": "correct"}}])
     tab.reload()
@@ -442,11 +479,16 @@ def test_both_changed_the_newer_text_stands(context, site):
 
 
 def newer_book(notebook):
-    """The notebook of a new edition: one exercise is worded anew, and one comes before all others."""
+    """The notebook of a new edition: one exercise is worded anew, and one comes before all
+    others.
+    """
     changed = json.loads(json.dumps(notebook).replace(BLANK, "A_C_N = ...  # nine entries"))
     for name, (cell, _) in changed["metadata"]["book"]["cells"].items():
         if cell == CRANK:
-            changed["metadata"]["book"]["cells"][name] = [CRANK, fingerprint_of_code("A_C_N = ...  # nine entries")]
+            changed["metadata"]["book"]["cells"][name] = [
+                CRANK,
+                fingerprint_of_code("A_C_N = ...  # nine entries"),
+            ]
     return changed
 
 
@@ -457,13 +499,17 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
     tab.write(OTHER, "boom = 2")
     visit_notebook(tab.page, site, EXERCISE)
     served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
-    context.route(f"**/lite/files/{EXERCISE}.ipynb", lambda route: route.fulfill(json=newer_book(served)))
+    context.route(
+        f"**/lite/files/{EXERCISE}.ipynb", lambda route: route.fulfill(json=newer_book(served))
+    )
     cells = visit_notebook(tab.page, site, EXERCISE, choose=choice)
     if choice == "Open my copy as it is":
         assert (cells[CRANK], cells[BOOM]) == ("crank = 1", "boom = 2")
     else:
         assert (cells[CRANK], cells[BOOM]) == ("A_C_N = ...  # nine entries", "boom = 2")
-        old = next(content for path, content in tab.page.evaluate(ALL_COPIES) if "my copy of" in path)
+        old = next(
+            content for path, content in tab.page.evaluate(ALL_COPIES) if "my copy of" in path
+        )
         assert "crank = 1" in old and "boom = 2" in old
 
 
@@ -488,7 +534,10 @@ def test_copy_of_the_first_edition_has_no_stamp(context, site):
     served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
     del served["metadata"]["book"]
     tab = Tab(context, site)
-    for wording, expected in ((None, "mine = 1"), ("# Another title", "A_C_N = ...  # your answer")):
+    for wording, expected in (
+        (None, "mine = 1"),
+        ("# Another title", "A_C_N = ...  # your answer"),
+    ):
         copy = json.loads(json.dumps(served))
         for cell in copy["cells"]:
             if cell["metadata"].get("nbgrader", {}).get("grade_id") == CRANK:
@@ -502,7 +551,10 @@ def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
     """Tabs hear of each other late: the other one, played here, changes what it does not know."""
     tab, other = Tab(context, site).edit(), context.new_page()
     other.goto(f"{site}search.html")
-    change = "([key, text]) => text === null ? localStorage.removeItem(key) : localStorage.setItem(key, text)"
+    change = (
+        "([key, text]) => text === null ? localStorage.removeItem(key) : "
+        "localStorage.setItem(key, text)"
+    )
 
     def written(code):
         tab.write(ANSWER, code)
@@ -522,12 +574,15 @@ def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
     assert "mine = 2" in tab.shown()
     key, entry = written("mine = 3")
     late = json.dumps(entry | {"code": "theirs = 2"})
-    tab.page.evaluate("([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))", [key, late])
+    tab.page.evaluate(
+        "([key, newValue]) => dispatchEvent(new StorageEvent('storage', { key, newValue }))",
+        [key, late],
+    )
     assert tab.text(ANSWER) == "mine = 3" and "theirs = 2" in tab.shown()
     assert tab.errors == []
 
 
-# --- where nothing can be kept ----------------------------------------------------------------------
+# --- where nothing can be kept --------------------------------------------------------------------
 
 
 @contextmanager
@@ -537,8 +592,10 @@ def sandboxed(context, site, name, allow):
     outer.on("pageerror", lambda error: errors.append(str(error)))
     outer.goto(f"{site}search.html")
     outer.evaluate(
-        "([address, allow]) => { const frame = document.createElement('iframe'); frame.sandbox = allow;"
-        " frame.style = 'width: 1280px; height: 800px'; frame.src = address; document.body.replaceChildren(frame); }",
+        "([address, allow]) => { const frame = document.createElement('iframe'); "
+        "frame.sandbox = allow;"
+        " frame.style = 'width: 1280px; height: 800px'; frame.src = address; "
+        "document.body.replaceChildren(frame); }",
         [f"{site}{name}.html", allow],
     )
     yield outer.frame_locator("iframe"), errors
@@ -552,7 +609,9 @@ def test_page_lives_in_a_frame_that_forbids_storage(context, site):
         frame.locator("button.theme-switch-button:visible").first.click()
         frame.locator("button.theme-switch-button:visible").first.click()
         assert html.get_attribute("data-mode") in ("light", "dark", "auto") and before
-        frame.locator("button.search-button__button:visible, button.search-button:visible").first.click()
+        frame.locator(
+            "button.search-button__button:visible, button.search-button:visible"
+        ).first.click()
         frame.locator("dialog[open] input[type=search]").wait_for()
         assert errors == []
 
@@ -576,11 +635,13 @@ def fill(tab):
     """Leave no room in the browser's store."""
     tab.page.evaluate(
         "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try {"
-        " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / 2); } } }"
+        " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length "
+        "/ 2); } } }"
     )
 
 
-AWAKE = "() => document.dispatchEvent(new Event('visibilitychange'))"  # as when the reader comes back to the tab
+# as when the reader comes back to the tab
+AWAKE = "() => document.dispatchEvent(new Event('visibilitychange'))"
 EMPTY = """() => Object.keys(localStorage).filter((key) => key.startsWith('filler'))
   .forEach((key) => localStorage.removeItem(key))"""
 
@@ -614,7 +675,8 @@ def test_text_of_another_tab_is_not_overwritten_where_it_cannot_be_set_aside(con
     (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
     theirs = f"theirs = {'3' * 200}"
     tab.page.evaluate(
-        "([key, text]) => localStorage.setItem(key, text)", [key, json.dumps(json.loads(entry) | {"code": theirs})]
+        "([key, text]) => localStorage.setItem(key, text)",
+        [key, json.dumps(json.loads(entry) | {"code": theirs})],
     )
     fill(tab)
     tab.write(ANSWER, "mine = 2")
@@ -635,10 +697,14 @@ def test_books_code_needs_no_room(context, site):
 
 
 def test_stored_number_does_not_stand_under_other_code(context, site):
-    """Where NumPy is absent, the book's result is folded away from below the reader's changed code."""
+    """Where NumPy is absent, the book's result is folded away from below the reader's changed
+    code.
+    """
     page = "chapters/back-from-a-matrix"
     tab = Tab(context, site, page)
-    covered = tab.page.evaluate("[...document.querySelectorAll('div.cell')].map((cell) => !!cell.closest('[inert]'))")
+    covered = tab.page.evaluate(
+        "[...document.querySelectorAll('div.cell')].map((cell) => !!cell.closest('[inert]'))"
+    )
     number = next(
         place
         for place, cell in enumerate(kinds_of_cells()[page], 1)
@@ -656,16 +722,20 @@ def test_stored_number_does_not_stand_under_other_code(context, site):
     assert "The result of the book’s code" in cell.inner_text()
 
 
-# --- everything at once -----------------------------------------------------------------------------
+# --- everything at once ---------------------------------------------------------------------------
 
 
 class Life:
-    """A reader at work: two tabs, crashes, new editions, the notebook. Nothing that was written may be lost."""
+    """A reader at work: two tabs, crashes, new editions, the notebook. Nothing that was written may
+    be lost.
+    """
 
     def __init__(self, context, site, seed):
         self.context, self.site, self.random = context, site, random.Random(seed)
         self.number, self.edition = 0, 0
-        self.written = set()  # what must still be there: not typed over by the reader where it could be seen
+        self.written = (
+            set()
+        )  # what must still be there: not typed over by the reader where it could be seen
         context.route(f"**/{EXERCISE}.html", self.serve_page)
         context.route(f"**/lite/files/{EXERCISE}.ipynb", self.serve_notebook)
         self.tabs = [Tab(context, site).edit(), Tab(context, site).edit()]
@@ -676,7 +746,8 @@ class Life:
         assert text.count(before) == 1
         route.fulfill(
             body=text.replace(
-                before, before + f' <span class="c1"># edition {self.edition}</span>' * bool(self.edition)
+                before,
+                before + f' <span class="c1"># edition {self.edition}</span>' * bool(self.edition),
             ),
             content_type="text/html",
         )
@@ -688,12 +759,23 @@ class Life:
             for cell in notebook["cells"]:
                 if cell["metadata"].get("nbgrader", {}).get("grade_id") == CRANK:
                     cell["source"] = blank
-                    notebook["metadata"]["book"]["cells"][cell["id"]][1] = fingerprint_of_code(blank)
+                    notebook["metadata"]["book"]["cells"][cell["id"]][1] = fingerprint_of_code(
+                        blank
+                    )
         route.fulfill(json=notebook)
 
     def step(self):
         action = self.random.choices(
-            [self.write, self.reload, self.crash, self.new_edition, self.undo, self.choose, self.notebook, self.load],
+            [
+                self.write,
+                self.reload,
+                self.crash,
+                self.new_edition,
+                self.undo,
+                self.choose,
+                self.notebook,
+                self.load,
+            ],
             [8, 2, 1, 1, 1, 2, 3, 1],
         )[0]
         action()
@@ -719,7 +801,10 @@ class Life:
     def crash(self):
         k = self.random.randrange(2)
         page = self.tabs[k].page
-        with page.expect_event("crash"), suppress(Exception):  # the tab is gone before it can answer
+        with (
+            page.expect_event("crash"),
+            suppress(Exception),
+        ):  # the tab is gone before it can answer
             page.goto("chrome://crash")
         page.close()
         self.tabs[k] = Tab(self.context, self.site)
@@ -764,10 +849,14 @@ class Life:
             return  # the notebook to take away is that of the first edition
         tab = self.tab()
         path = tab.take().path()
-        tab.bring({"name": "mine.ipynb", "mimeType": "application/json", "buffer": path.read_bytes()})
+        tab.bring(
+            {"name": "mine.ipynb", "mimeType": "application/json", "buffer": path.read_bytes()}
+        )
 
     def missing(self):
-        """What the reader can find nowhere: not on the page, not in the notebook or a copy of it."""
+        """What the reader can find nowhere: not on the page, not in the notebook or a copy of
+        it.
+        """
         fresh = Tab(self.context, self.site).edit()
         seen = fresh.shown()
         fresh.page.close()
@@ -777,7 +866,8 @@ class Life:
 
 
 @pytest.mark.parametrize(
-    ("seed", "steps"), [(1, 25), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in (2, 3, 4))]
+    ("seed", "steps"),
+    [(1, 25), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in (2, 3, 4))],
 )
 def test_nothing_is_ever_lost(context, site, seed, steps):
     life = Life(context, site, seed)

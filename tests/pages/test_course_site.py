@@ -1,4 +1,6 @@
-"""A course of somebody's own becomes a site in one command, and its pages check what is answered in them."""
+"""A course of somebody's own becomes a site in one command, and its pages check what is answered in
+them.
+"""
 
 import os
 import re
@@ -48,8 +50,15 @@ def test_the_site_holds_all_and_tells_nothing(course):
         assert "exercises/first-steps.ipynb" in box.namelist()
     assert len(list((site / "take-away").glob("*.whl"))) == 2
     solved = nbformat.read(course / "solutions" / "first-steps.ipynb", as_version=4)
-    answers = [cell.source.splitlines()[1] for cell in solved.cells if "BEGIN SOLUTION" in cell.source]
-    said = [path for path in site.rglob("*.html") for answer in answers if answer in path.read_text("utf8")]
+    answers = [
+        cell.source.splitlines()[1] for cell in solved.cells if "BEGIN SOLUTION" in cell.source
+    ]
+    said = [
+        path
+        for path in site.rglob("*.html")
+        for answer in answers
+        if answer in path.read_text("utf8")
+    ]
     assert answers and said == []
     # What may be done with a course is for its author to say, and this one has not.
     assert "CC BY" not in front + page and "orientation" not in (front + page).lower()
@@ -67,15 +76,21 @@ def test_an_answer_is_checked_where_it_is_written(course, browser):
         page.goto(f"http://127.0.0.1:{served.server_port}/{PAGE}.html")
         page.wait_for_selector("button.run-cell", state="attached")
         cells = page.locator("div.cell")
-        for answer, words in (("area = b * h", "triangle is half of it"), ("area = h * b / 2", "Correct")):
-            cells.nth(1).locator("button.run-cell").click() if not cells.nth(1).locator(".cm-content").count() else None
+        for answer, words in (
+            ("area = b * h", "triangle is half of it"),
+            ("area = h * b / 2", "Correct"),
+        ):
+            cells.nth(1).locator("button.run-cell").click() if not cells.nth(1).locator(
+                ".cm-content"
+            ).count() else None
             page.wait_for_selector(".cm-content", state="attached")
             cells.nth(1).locator(".cm-content").focus()
             page.keyboard.press("Control+a")
             page.keyboard.insert_text(answer)
             cells.nth(2).locator("button.run-cell").click()
             page.wait_for_function(
-                "words => document.querySelectorAll('div.cell')[2].innerText.includes(words)", arg=words
+                "words => document.querySelectorAll('div.cell')[2].innerText.includes(words)",
+                arg=words,
             )
         assert elsewhere == []
     finally:

@@ -1,4 +1,6 @@
-"""Which edition the book is, and the edition for exams: without solutions, and without a word that leads to one."""
+"""Which edition the book is, and the edition for exams: without solutions, and without a word that
+leads to one.
+"""
 
 import io
 import json
@@ -34,10 +36,17 @@ def test_the_edition_is_said_in_one_place():
     stated = CITATION["preferred-citation"]
     which = paths.edition(REPOSITORY)
     assert (which.name, which.date) == (stated["edition"], stated["date-released"])
-    assert which.words == "Second edition, 22 November 2026" if which.date == "2026-11-22" else which.day in which.words
+    assert (
+        which.words == "Second edition, 22 November 2026"
+        if which.date == "2026-11-22"
+        else which.day in which.words
+    )
     assert {CITATION["title"], stated["title"]} == {SETTINGS["title"]}
     assert {one["name"] for one in CITATION["authors"] + stated["authors"]} == {SETTINGS["author"]}
-    sources = [*REPOSITORY.glob("*.ipynb"), *(REPOSITORY / "notebook-pages" / "src" / "notebook_pages").rglob("*.py")]
+    sources = [
+        *REPOSITORY.glob("*.ipynb"),
+        *(REPOSITORY / "notebook-pages" / "src" / "notebook_pages").rglob("*.py"),
+    ]
     assert [path.name for path in sources if which.words in path.read_text("utf8")] == []
 
 
@@ -55,12 +64,17 @@ def test_the_front_page_says_how_the_book_is_cited():
     front = BeautifulSoup((HTML / "index.html").read_text("utf8"), "lxml").article
     words, which = " ".join(front.get_text().split()), paths.edition(REPOSITORY)
     assert f"{SETTINGS['author']}, {SETTINGS['title']}. {which.words}." in words
-    assert re.search(rf"@book{{[a-z-]+, title = {{{SETTINGS['title']}}},", words) and f"{{{which.name}}}" in words
+    assert (
+        re.search(rf"@book{{[a-z-]+, title = {{{SETTINGS['title']}}},", words)
+        and f"{{{which.name}}}" in words
+    )
     assert front.select_one('a[href^="appendix/changes.html"]')
 
 
 def test_what_is_new_is_told_of_chapters_that_are_there():
-    """Each chapter that readers of the last edition do not know is named among those that are new."""
+    """Each chapter that readers of the last edition do not know is named among those that are
+    new.
+    """
     page = BeautifulSoup((HTML / "appendix" / "changes.html").read_text("utf8"), "lxml").article
     new = {link["href"] for link in page.select("#chapters-that-are-new dt a[href]")}
     assert new == {
@@ -69,16 +83,19 @@ def test_what_is_new_is_told_of_chapters_that_are_there():
     }
     grown = {link["href"] for link in page.select("#chapters-that-have-grown dt a[href]")}
     chapters = [name for name in paths.pages() if name.startswith("chapters/")]
-    assert {address.partition("#")[0].removeprefix("../").removesuffix(".html") for address in new | grown} <= set(
-        chapters
-    )
+    assert {
+        address.partition("#")[0].removeprefix("../").removesuffix(".html")
+        for address in new | grown
+    } <= set(chapters)
 
 
 # ---- what an earlier edition had an address for -------------------------------
 
 
 SECOND = json.loads(
-    (REPOSITORY / "tests" / "orientation_course" / "editions" / "second" / "addresses.json").read_text("utf8")
+    (
+        REPOSITORY / "tests" / "orientation_course" / "editions" / "second" / "addresses.json"
+    ).read_text("utf8")
 )
 
 
@@ -127,7 +144,9 @@ def test_who_kept_an_address_gets_to_where_it_is_now(tmp_path, browser):
         page.wait_for_url(f"{address}/{new}")
     page.goto(f"{address}/chapter.html#fig-first-line")
     at = "document.getElementById('{}').getBoundingClientRect().top"
-    assert abs(page.evaluate(at.format("fig-first-line")) - page.evaluate(at.format("fig-line"))) < 60
+    assert (
+        abs(page.evaluate(at.format("fig-first-line")) - page.evaluate(at.format("fig-line"))) < 60
+    )
     page.goto(f"{address}/index.html")
     note = page.locator("#fig-old")
     assert not note.is_visible()
@@ -157,8 +176,12 @@ def test_what_leads_nowhere_is_refused(tmp_path, moved):
 
 def test_the_newest_version_is_the_same_everywhere():
     """In the packages, in how the book is cited, and on top of the changelog."""
-    changes = re.findall(r"^## ([0-9.]+)$", (REPOSITORY / "CHANGELOG.md").read_text("utf8"), re.MULTILINE)
-    assert changes == sorted(changes, key=lambda version: list(map(int, version.split("."))), reverse=True)
+    changes = re.findall(
+        r"^## ([0-9.]+)$", (REPOSITORY / "CHANGELOG.md").read_text("utf8"), re.MULTILINE
+    )
+    assert changes == sorted(
+        changes, key=lambda version: list(map(int, version.split("."))), reverse=True
+    )
     assert {orientation.__version__, coursework.__version__, CITATION["version"]} == {changes[0]}
 
 
@@ -166,11 +189,15 @@ def test_the_newest_version_is_the_same_everywhere():
 
 
 def refers(label, kind="ref"):
-    return addnodes.pending_xref("", nodes.inline("", "there"), refdomain="std", reftype=kind, reftarget=label)
+    return addnodes.pending_xref(
+        "", nodes.inline("", "there"), refdomain="std", reftype=kind, reftarget=label
+    )
 
 
 def paragraph(*parts):
-    found = nodes.paragraph("", "", *(nodes.Text(part) if isinstance(part, str) else part for part in parts))
+    found = nodes.paragraph(
+        "", "", *(nodes.Text(part) if isinstance(part, str) else part for part in parts)
+    )
     page = nodes.section("", found)
     exam.strip(None, page)
     return [one.astext() for one in page.children]
@@ -178,13 +205,17 @@ def paragraph(*parts):
 
 def test_only_the_sentence_that_leads_to_a_solution_goes():
     solution, other = refers("solution-door"), refers("/exercises/door", "doc")
-    assert paragraph("Worked solutions: ", solution, " and ", refers("solution-x"), ". More: ", other, ".") == [
-        "More: there."
+    assert paragraph(
+        "Worked solutions: ", solution, " and ", refers("solution-x"), ". More: ", other, "."
+    ) == ["More: there."]
+    assert paragraph("Try first! The solutions are ", refers("solutions"), ". They wait.") == [
+        "Try first! They wait."
     ]
-    assert paragraph("Try first! The solutions are ", refers("solutions"), ". They wait.") == ["Try first! They wait."]
     assert paragraph("See ", refers("solution-door"), ".") == []
     assert paragraph("See ", refers("chapter-door"), ". It solves.") == ["See there. It solves."]
-    assert paragraph("In ", refers("/appendix/solutions-going-further", "doc"), " it is. Good.") == ["Good."]
+    assert paragraph(
+        "In ", refers("/appendix/solutions-going-further", "doc"), " it is. Good."
+    ) == ["Good."]
     assert paragraph("In ", refers("solutions-going-further"), ".") == []
 
 
@@ -205,7 +236,9 @@ def test_the_pages_of_solutions_are_left_out(monkeypatch):
 @pytest.mark.long
 def test_a_page_that_led_to_a_solution_is_built_without(tmp_path, monkeypatch):
     cells = chapter()
-    cells[0].source += "\n\nA worked solution: {ref}`here <solution-one>`. And {ref}`chapter-one` stays.\n"
+    cells[
+        0
+    ].source += "\n\nA worked solution: {ref}`here <solution-one>`. And {ref}`chapter-one` stays.\n"
     (tmp_path / "usual").mkdir()
     code, words = build(tmp_path / "usual", {"chapter": cells})
     assert code != 0 and "solution-one" in words
@@ -222,7 +255,9 @@ def passages():
     for path in sorted((REPOSITORY / "appendix").glob("solutions*.ipynb")):
         for cell in nbformat.read(path, as_version=4).cells:
             if cell.cell_type == "markdown":
-                for run in re.findall(r"[A-Za-z][A-Za-z ,\n]{45,}", re.sub(r"```.*", "", cell.source)):
+                for run in re.findall(
+                    r"[A-Za-z][A-Za-z ,\n]{45,}", re.sub(r"```.*", "", cell.source)
+                ):
                     yield " ".join(run.split())
 
 
@@ -245,7 +280,9 @@ def with_solutions(folder, wanted):
     """The files below ``folder`` that hold one of the passages ``wanted``."""
     pattern = re.compile("|".join(map(re.escape, wanted)))
     files = [path for path in folder.rglob("*") if path.is_file()]
-    found = (one for path in files for one in contents(str(path.relative_to(folder)), path.read_bytes()))
+    found = (
+        one for path in files for one in contents(str(path.relative_to(folder)), path.read_bytes())
+    )
     return {name: match[0] for name, text in found if (match := pattern.search(text))}
 
 
@@ -254,19 +291,36 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
     wanted = set(passages())
     assert len(wanted) > 80
     there = with_solutions(HTML / "appendix", wanted)
-    assert set(there) >= {"solutions.html", "solutions-going-further.html"}, "the passages are found where they are"
+    assert set(there) >= {"solutions.html", "solutions-going-further.html"}, (
+        "the passages are found where they are"
+    )
     for name in ("chapters", "exercises", "appendix", "src", "coursework", "notebook-pages"):
-        shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("index.ipynb", "_config.yml", "_toc.yml", "references.bib", "CITATION.cff", "course.toml"):
+        shutil.copytree(
+            REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__")
+        )
+    for name in (
+        "index.ipynb",
+        "_config.yml",
+        "_toc.yml",
+        "references.bib",
+        "CITATION.cff",
+        "course.toml",
+    ):
         shutil.copy(REPOSITORY / name, tmp_path / name)
     for name in ("pyproject.toml", "LICENSE", "LICENSE-CODE", "README.md"):
         shutil.copy(REPOSITORY / name, tmp_path / name)
     if (REPOSITORY / "_build" / "jupyter_cache").is_dir():
-        shutil.copytree(REPOSITORY / "_build" / "jupyter_cache", tmp_path / "_build" / "jupyter_cache")
+        shutil.copytree(
+            REPOSITORY / "_build" / "jupyter_cache", tmp_path / "_build" / "jupyter_cache"
+        )
     environment = os.environ | {"BOOK_EXAM": "1", "NOTEBOOK_PAGES_FETCHED": str(REPOSITORY)}
     for module in ("notebook_pages.build", "notebook_pages.whole_book"):
         done = subprocess.run(
-            [sys.executable, "-m", module], cwd=tmp_path, env=environment, capture_output=True, text=True
+            [sys.executable, "-m", module],
+            cwd=tmp_path,
+            env=environment,
+            capture_output=True,
+            text=True,
         )
         assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     site = tmp_path / "_build" / "html"
@@ -277,11 +331,17 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
         *pages,
         *(
             site / name
-            for name in ("llms.txt", "_static/search.js", "_static/search-words.js", "offline.json", "objects.inv")
+            for name in (
+                "llms.txt",
+                "_static/search.js",
+                "_static/search-words.js",
+                "offline.json",
+                "objects.inv",
+            )
         ),
     ]:
         text = path.read_text("utf8", "replace")
-        assert not re.search(r"appendix/solutions|[\"/]solutions(-going-further)?\.(html|ipynb|py)|#solution-", text), (
-            path
-        )
+        assert not re.search(
+            r"appendix/solutions|[\"/]solutions(-going-further)?\.(html|ipynb|py)|#solution-", text
+        ), path
     assert "without solutions" in (site / "index.html").read_text("utf8")

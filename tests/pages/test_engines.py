@@ -11,7 +11,8 @@ from notebook_pages.execution import STORED
 RUN_ALL = "() => document.querySelector('button.run-page').click()"
 IS_DONE = (
     "() => !document.querySelector('div.cell.running, div.cell.waiting, html.live-busy')"
-    " && /ran\\.|there already|could not|rror/.test(document.querySelector('#live-words')?.textContent ?? '')"
+    " && /ran\\.|there already|could "
+    "not|rror/.test(document.querySelector('#live-words')?.textContent ?? '')"
     " && document.querySelector('#live-words').textContent"
 )
 
@@ -24,7 +25,9 @@ def engine(request):
 
 
 def compare(engine, site, name):
-    """Run the page; each cell that needs nothing from elsewhere gives what is printed. Returns how many there are."""
+    """Run the page; each cell that needs nothing from elsewhere gives what is printed. Returns how
+    many there are.
+    """
     engine.go(site + name)
     engine.run("() => { localStorage.clear(); sessionStorage.clear(); }")
     before = engine.run(RESULTS)
@@ -66,7 +69,10 @@ def test_stop_keeps_the_names(engine, site):
     below = "() => document.querySelectorAll('div.cell')[2].querySelector('.cell_output').innerText"
     engine.run(write, "kept = 'kept'\nprint('begun')\nwhile True:\n    pass")
     engine.wait(f"() => ({below})().includes('begun')")
-    engine.run("() => [...document.querySelectorAll('.live-bar button')].find((b) => b.textContent === 'Stop').click()")
+    engine.run(
+        "() => [...document.querySelectorAll('.live-bar button')].find((b) => b.textContent === "
+        "'Stop').click()"
+    )
     engine.wait(f"() => ({below})().includes('still there')")
     engine.run(write, "print(kept * 2)")
     engine.wait(f"() => ({below})().includes('keptkept')")
@@ -75,7 +81,9 @@ def test_stop_keeps_the_names(engine, site):
 def test_page_opens_and_is_read(engine, site):
     """Each day: one page, its mathematics, its typefaces, and its buttons."""
     engine.go(site + QUIET)
-    engine.run("() => localStorage.clear()")  # or, once Python was fetched, nothing is told of its size
+    engine.run(
+        "() => localStorage.clear()"
+    )  # or, once Python was fetched, nothing is told of its size
     engine.go(site + QUIET)
     engine.wait("() => !document.documentElement.matches('.settling, .in-parts')")
     seen = engine.run("""() => ({
@@ -85,7 +93,12 @@ def test_page_opens_and_is_read(engine, site):
       buttons: document.querySelectorAll('button.run-cell').length,
       size: document.querySelector('button.run-page').dataset.size,
     })""")
-    assert seen["formulas"] > 20 and seen["font"] and seen["sideways"] <= 0 and seen["buttons"] == len(kinds(QUIET))
+    assert (
+        seen["formulas"] > 20
+        and seen["font"]
+        and seen["sideways"] <= 0
+        and seen["buttons"] == len(kinds(QUIET))
+    )
     assert seen["size"] == SIZE
 
 

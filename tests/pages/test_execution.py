@@ -51,7 +51,9 @@ def packages(tmp_path, monkeypatch):
         write(name, text)
     monkeypatch.setattr(used, "REPOSITORY", tmp_path)
     monkeypatch.setattr(
-        used, "PACKAGES", {name.partition("/")[0]: sources / name.partition("/")[0] for name in PACKAGE}
+        used,
+        "PACKAGES",
+        {name.partition("/")[0]: sources / name.partition("/")[0] for name in PACKAGE},
     )
     monkeypatch.setattr(used, "SEALED", sources / "orientation_course" / "sealed")
     monkeypatch.setattr(used, "PINS", tmp_path / "constraints.txt")
@@ -64,7 +66,9 @@ def notebook(*codes, words="# A chapter"):
     return new_notebook(cells=[new_markdown_cell(words), *map(new_code_cell, codes)])
 
 
-FIGURES = notebook("from orientation_figures.drawing import Drawing", "1 +")  # what is not Python is left to the run
+FIGURES = notebook(
+    "from orientation_figures.drawing import Drawing", "1 +"
+)  # what is not Python is left to the run
 CHECKS = notebook("from coursework import check", "check('chapters/a', 1)")
 
 
@@ -91,18 +95,34 @@ def test_a_notebook_depends_on_what_it_uses_and_on_nothing_else(packages, name, 
 
 
 def test_a_new_version_by_itself_runs_nothing(packages):
-    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.1.0"\n')
+    packages(
+        "orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.1.0"\n'
+    )
     before = used.fingerprint_of_used(FIGURES)
-    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\n')
+    packages(
+        "orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\n'
+    )
     assert used.fingerprint_of_used(FIGURES) == before
-    packages("orientation/__init__.py", PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\nanswer = 1\n')
+    packages(
+        "orientation/__init__.py",
+        PACKAGE["orientation/__init__.py"] + '__version__ = "1.2.0"\nanswer = 1\n',
+    )
     assert used.fingerprint_of_used(FIGURES) != before
 
 
 def test_the_real_packages_are_followed():
-    files = {str(path.relative_to(REPOSITORY)) for path in used.files_used("from orientation_figures.moving import *")}
-    assert "src/orientation_figures/moving/js/triad.js" in files and "src/orientation/frames.py" in files
-    files = {str(path.relative_to(REPOSITORY)) for path in used.files_used("from coursework import check")}
+    files = {
+        str(path.relative_to(REPOSITORY))
+        for path in used.files_used("from orientation_figures.moving import *")
+    }
+    assert (
+        "src/orientation_figures/moving/js/triad.js" in files
+        and "src/orientation/frames.py" in files
+    )
+    files = {
+        str(path.relative_to(REPOSITORY))
+        for path in used.files_used("from coursework import check")
+    }
     assert "coursework/src/coursework/checking/kinds.py" in files
     assert not any("grading" in name or "authoring" in name for name in files)
 
@@ -110,14 +130,18 @@ def test_the_real_packages_are_followed():
 @pytest.mark.long
 def test_a_run_side_by_side_says_nothing_of_its_processes(tmp_path):
     program = (
-        "import sys\nfrom jupyter_cache import get_cache\nfrom notebook_pages.execution import Executor\n"
-        "cache = get_cache(sys.argv[1])\nrecords = [cache.add_nb_to_project(path) for path in sys.argv[2:]]\n"
+        "import sys\nfrom jupyter_cache import get_cache\n"
+        "from notebook_pages.execution import Executor\n"
+        "cache = get_cache(sys.argv[1])\nrecords = [cache.add_nb_to_project(path) for path in "
+        "sys.argv[2:]]\n"
         "done = Executor(cache).run_and_cache(filter_pks=[record.pk for record in records])\n"
         "assert len(done.succeeded) == 2, done\n"
     )
     paths = [tmp_path / name for name in ("one.ipynb", "two.ipynb")]
     for path in paths:
-        about = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+        about = {
+            "kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}
+        }
         nbformat.write(new_notebook(cells=[new_code_cell("1 + 1")], metadata=about), path)
     command = [sys.executable, "-c", program, tmp_path / "cache", *paths]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -157,8 +181,12 @@ def test_old_runs_are_thrown_away(packages, tmp_path):
 
 
 def code_cell(code, *tags, text=None, ran=True):
-    outputs = [new_output("execute_result", {"text/plain": text}, execution_count=1)] if text else []
-    return new_code_cell(code, outputs=outputs, execution_count=1 if ran else None, metadata={"tags": list(tags)})
+    outputs = (
+        [new_output("execute_result", {"text/plain": text}, execution_count=1)] if text else []
+    )
+    return new_code_cell(
+        code, outputs=outputs, execution_count=1 if ran else None, metadata={"tags": list(tags)}
+    )
 
 
 def test_cells_that_a_page_hides_run_before_the_next_one(monkeypatch):
@@ -172,7 +200,11 @@ def test_cells_that_a_page_hides_run_before_the_next_one(monkeypatch):
     ])  # fmt: skip
     shown = cells.on_the_page(found)
     assert [kind["code"] for kind in shown] == ["hidden", "hidden + length", "hidden * 2"]
-    assert [kind["before"] for kind in shown] == ["hidden = 3", "import numpy\nlength = numpy.size([1, 2])", ""]
+    assert [kind["before"] for kind in shown] == [
+        "hidden = 3",
+        "import numpy\nlength = numpy.size([1, 2])",
+        "",
+    ]
     assert [kind["needs"] for kind in shown] == [[], ["numpy"], []]
     assert not shown[1]["skip"]
 
@@ -188,7 +220,9 @@ def test_kinds_are_kept_while_only_the_prose_changes(tmp_path, monkeypatch):
     monkeypatch.setattr(cells, "RESULTS", tmp_path / "kept")
     page = tmp_path / "page.ipynb"
     ran = []
-    monkeypatch.setattr(cells, "classify", lambda cells: ran.append(1) or [{"needs": []} for _ in cells])
+    monkeypatch.setattr(
+        cells, "classify", lambda cells: ran.append(1) or [{"needs": []} for _ in cells]
+    )
     for words, code in (("One", "1"), ("Two", "1"), ("Two", "2"), ("Three", "2")):
         nbformat.write(notebook(code, words=words), page)
         assert cells.kinds_of(page) == [{"needs": []}]

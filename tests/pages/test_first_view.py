@@ -10,14 +10,16 @@ from notebook_pages.first_view import MARKED, first_part
 LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
 SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
-#: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of its code.
+#: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of
+#: its code.
 SCRIPTS = 1 + 2 + 2 + 1
 # What lies below is left alone until the test lets go.
 HOLD = "window.held = []; window.requestIdleCallback = (action) => held.push(action);"
 # Where each block of the text begins.
 PLACES = """() => [...document.querySelectorAll('.bd-article section > *')].map(
   (block) => Math.round(block.getBoundingClientRect().top + scrollY))"""
-# Which elements that are not laid out were measured, by whatever a script can ask: that would lay them out.
+# Which elements that are not laid out were measured, by whatever a script can ask: that would lay
+# them out.
 MEASURED = """
 window.measured = [];
 const isLeftAlone = (element) => document.documentElement.matches(".settling, .in-parts") && element.closest(".later")
@@ -88,7 +90,9 @@ def test_nothing_below_the_first_view_is_laid_out_or_measured_before_it_stands(o
     assert last.evaluate(IS_SHOWN), "paper has the whole page"
     page.emulate_media(media="screen")
     last.scroll_into_view_if_needed()
-    page.wait_for_function(f"({IS_SHOWN})([...document.querySelectorAll('.later:has(> *)')].at(-1))")
+    page.wait_for_function(
+        f"({IS_SHOWN})([...document.querySelectorAll('.later:has(> *)')].at(-1))"
+    )
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -113,7 +117,9 @@ def test_link_within_a_page_leads_to_its_place_at_once(open_page):
     assert page.evaluate("document.documentElement.matches('.in-parts')")
     heading = page.locator(".bd-article > section > section").last
     heading.evaluate("(section) => section.querySelector('a.headerlink').click()")
-    page.wait_for_function("(box) => Math.abs(box.getBoundingClientRect().top) < 120", arg=heading.element_handle())
+    page.wait_for_function(
+        "(box) => Math.abs(box.getBoundingClientRect().top) < 120", arg=heading.element_handle()
+    )
     assert not page.evaluate("document.documentElement.matches('.in-parts')")
 
 
@@ -128,9 +134,15 @@ def test_lecture_mode_begins_with_the_whole_page(open_page):
 
 def test_without_script_nothing_is_put_off(open_page):
     page = open_page(LONG, java_script_enabled=False)
-    assert page.locator(".later").last.evaluate("(block) => getComputedStyle(block).contentVisibility") == "visible"
+    assert (
+        page.locator(".later").last.evaluate("(block) => getComputedStyle(block).contentVisibility")
+        == "visible"
+    )
 
 
 def test_the_first_part_ends_at_a_mark_and_not_at_a_word():
-    assert first_part('<p>A moment later it</p><p class="a later">more') == "<p>A moment later it</p><p "
+    assert (
+        first_part('<p>A moment later it</p><p class="a later">more')
+        == "<p>A moment later it</p><p "
+    )
     assert first_part('<p class="lateral">all') == '<p class="lateral">all'

@@ -1,4 +1,6 @@
-"""The book that a browser keeps is one edition or another, never half of each, whatever the network does."""
+"""The book that a browser keeps is one edition or another, never half of each, whatever the network
+does.
+"""
 
 import json
 import shutil
@@ -31,7 +33,11 @@ KINDS = [
 
 @pytest.fixture(scope="module", params=KINDS)
 def engine(request):
-    made = Chromium(request.getfixturevalue("browser")) if request.param == "Chromium" else ENGINES[request.param]()
+    made = (
+        Chromium(request.getfixturevalue("browser"))
+        if request.param == "Chromium"
+        else ENGINES[request.param]()
+    )
     yield made
     made.close()
 
@@ -81,7 +87,9 @@ def shown(engine, address):
 
 
 def renew(engine, address, folder):
-    """Open a page until the newest edition is that of ``folder``: while one look at the network lasts, none begins."""
+    """Open a page until the newest edition is that of ``folder``: while one look at the network
+    lasts, none begins.
+    """
     wanted, end = listed(folder)["edition"], time.monotonic() + PATIENCE
     while engine.run(NEWEST) != wanted:
         assert time.monotonic() < end, f"the edition of {folder} does not become the newest"
@@ -91,7 +99,9 @@ def renew(engine, address, folder):
 
 @pytest.mark.parametrize("step", [4, pytest.param(1, marks=pytest.mark.long)])
 def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, editions, step):
-    """The network is cut after each request in turn, or every fourth, and comes back: the next edition is whole."""
+    """The network is cut after each request in turn, or every fourth, and comes back: the next
+    edition is whole.
+    """
     with network(editions(1)) as (net, address):
         assert "is kept" in keep(engine, address, editions(1))
         newest, cut, whole = 1, 0, False
@@ -126,7 +136,8 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
         engine.go(f"{address}chapters/two.html")
         (mine,) = (editions(1) / "runtime" / "wheels").iterdir()
         net.folder = str(editions(2))
-        engine.run(  # another tab comes to a page: the answer to a frame is one to a navigation, too
+        # another tab comes to a page: the answer to a frame is one to a navigation, too
+        engine.run(
             """() => new Promise((come) => {
               const frame = Object.assign(document.createElement("iframe"), { src: "/index.html", onload: come });
               navigator.serviceWorker.addEventListener("message", ({ data }) => (window.told = data.edition));
@@ -137,7 +148,10 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
         words = engine.run(TOLD, scripts_of(editions(1)))
         assert "“chapters/two”" in words and "What stays" not in words
         net.left = 0
-        asked = f"() => import('/{mine.relative_to(editions(1))}/lasting.js').then((module) => module.default)"
+        asked = (
+            f"() => import('/{mine.relative_to(editions(1))}/lasting.js').then((module) => "
+            "module.default)"
+        )
         assert engine.run(asked) == 1
         assert shown(engine, address) == 2
 
@@ -166,7 +180,9 @@ def test_copy_of_the_format_before_is_read_until_a_new_edition_is_whole(engine, 
         renew(engine, address, editions(2))
         net.left = 0
         assert shown(engine, address) == 2
-        keys = engine.run("async () => (await (await caches.open('book /')).keys()).map(({ url }) => url)")
+        keys = engine.run(
+            "async () => (await (await caches.open('book /')).keys()).map(({ url }) => url)"
+        )
         assert all("?kept=" in url or url.endswith("/kept.json") for url in keys)
 
 
@@ -191,7 +207,7 @@ def test_forgotten_book_is_gone(engine, editions):
         assert engine.run("() => caches.has('book /')") is False
 
 
-# --- publishing ------------------------------------------------------------------------------------
+# --- publishing -----------------------------------------------------------------------------------
 
 
 def test_publishing_carries_over_what_the_last_edition_names_by_its_content(editions):
@@ -199,7 +215,10 @@ def test_publishing_carries_over_what_the_last_edition_names_by_its_content(edit
     lasting = mine.relative_to(editions(1)) / "lasting.js"
     with network(editions(1)) as (_, address):
         carried = carry_over.carry_over(address, editions(2))
-    assert carried == [str(lasting)] and (editions(2) / lasting).read_bytes() == (mine / "lasting.js").read_bytes()
+    assert (
+        carried == [str(lasting)]
+        and (editions(2) / lasting).read_bytes() == (mine / "lasting.js").read_bytes()
+    )
     assert carry_over.carry_over(str(editions(2)), editions(3)) != []
     assert not (editions(3) / lasting).exists(), "of the edition before the last nothing stays"
     assert carry_over.carry_over(str(editions(1) / "nowhere"), editions(3)) is None

@@ -86,7 +86,9 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
     slider.focus()
     value = slider.input_value()
     page.keyboard.press("ArrowRight")
-    assert step(page) == 6 and slider.input_value() != value  # whoever came by keyboard moves the figure
+    assert (
+        step(page) == 6 and slider.input_value() != value
+    )  # whoever came by keyboard moves the figure
     page.keyboard.press("PageDown")  # and a speaker's remote goes on
     assert step(page) == 7
     page.keyboard.type("3")
@@ -183,8 +185,13 @@ def test_the_essay_is_lectured_by_its_stops(opened):
     stops = page.locator("[data-stop]").evaluate_all("all => all.map((one) => one.dataset.stop)")
     assert page.locator(BAR).inner_text() == f"1 of {len(stops)}"
     for stop in stops[:5]:
-        page.wait_for_function("(stop) => document.querySelector('.world').dataset.state === stop", arg=stop)
-        drawing, line = page.locator(".world canvas").bounding_box(), page.locator(".lecture-line").bounding_box()
+        page.wait_for_function(
+            "(stop) => document.querySelector('.world').dataset.state === stop", arg=stop
+        )
+        drawing, line = (
+            page.locator(".world canvas").bounding_box(),
+            page.locator(".lecture-line").bounding_box(),
+        )
         assert drawing["width"] * drawing["height"] > 0.5 * 1280 * 720
         assert drawing["y"] + drawing["height"] <= line["y"]
         page.keyboard.press("PageDown")
@@ -194,12 +201,22 @@ def test_on_paper_the_page_is_whole(opened):
     page = opened()
     page.keyboard.press("l")
     page.emulate_media(media="print")
-    hidden = "all => all.filter((one) => one.textContent.trim() && !one.getBoundingClientRect().height).length"
-    assert page.locator(".bd-article > section > section > :is(p, h2, div.math)").evaluate_all(hidden) == 0
+    hidden = (
+        "all => all.filter((one) => one.textContent.trim() && "
+        "!one.getBoundingClientRect().height).length"
+    )
+    assert (
+        page.locator(".bd-article > section > section > :is(p, h2, div.math)").evaluate_all(hidden)
+        == 0
+    )
     assert not page.locator(".lecture-line").is_visible()
 
 
 def test_marks_are_in_no_page_notebook_or_script():
-    made = [path for where in ("chapters/*.html", "take-away/*.ipynb", "take-away/*.py") for path in HTML.glob(where)]
+    made = [
+        path
+        for where in ("chapters/*.html", "take-away/*.ipynb", "take-away/*.py")
+        for path in HTML.glob(where)
+    ]
     assert made
     assert [path.name for path in made if "<!-- step" in path.read_text("utf8")] == []

@@ -1,11 +1,17 @@
-"""Two chapters and an exercise as a screen reader walks through them: what the browser tells it, in its order."""
+"""Two chapters and an exercise as a screen reader walks through them: what the browser tells it, in
+its order.
+"""
 
 import re
 
 import pytest
 from test_site import WIDE, Visit
 
-WALKED = ("exercises/simple-orientations.html", "chapters/simple-orientations.html", "chapters/unit-quaternions.html")
+WALKED = (
+    "exercises/simple-orientations.html",
+    "chapters/simple-orientations.html",
+    "chapters/unit-quaternions.html",
+)
 #: What a reader acts on, or is told of by its name alone.
 NAMED = {
     "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio", "combobox", "img", "image",
@@ -22,8 +28,17 @@ def told(page):
 
     def walk(node):
         if not node["ignored"]:
-            level = next((one["value"]["value"] for one in node.get("properties", []) if one["name"] == "level"), None)
-            found.append((node["role"]["value"], node.get("name", {}).get("value", "").strip(), level))
+            level = next(
+                (
+                    one["value"]["value"]
+                    for one in node.get("properties", [])
+                    if one["name"] == "level"
+                ),
+                None,
+            )
+            found.append(
+                (node["role"]["value"], node.get("name", {}).get("value", "").strip(), level)
+            )
         for child in node.get("childIds", []):
             if child in by_id:
                 walk(by_id[child])
@@ -36,7 +51,10 @@ def told(page):
 def test_a_walk_through_the_page(browser, site, name):
     with Visit(browser, site, name, "light", WIDE) as visit:
         page = visit.page
-        page.evaluate("document.querySelectorAll('article details').forEach((details) => { details.open = true; })")
+        page.evaluate(
+            "document.querySelectorAll('article details').forEach((details) => { details.open = "
+            "true; })"
+        )
         seen = page.evaluate("""() => ({
           title: document.querySelector('h1').textContent,
           // Replies, and what follows a prediction, are there when that has been made.
@@ -58,19 +76,28 @@ def test_a_walk_through_the_page(browser, site, name):
     levels = [level for role, _, level in inside if role == "heading"]
     assert levels.count(1) == 1 and levels[0] == 1
     assert all(below <= above + 1 for above, below in zip(levels, levels[1:])), levels
-    # Formulas come as mathematics, each once, and nothing of how they are drawn, or of their source.
-    mathematics = [place for place, (role, _, _) in enumerate(inside) if role in ("math", "MathMLMath")]
+    # Formulas come as mathematics, each once, and nothing of how they are drawn, or of their
+    # source.
+    mathematics = [
+        place for place, (role, _, _) in enumerate(inside) if role in ("math", "MathMLMath")
+    ]
     assert len(mathematics) >= seen["formulas"] > 5
     words = [text for role, text, _ in inside if role == "StaticText"]
     tex = [text for text in words if re.search(r"\\(?:hat|mathbf|frac|begin)", text)]
     assert [text for text in tex if text not in seen["code"]] == []  # a program may hold some
     # Every piece of code can be run, by a button that says which.
     runs = [text for role, text, _ in inside if role == "button" and text.startswith("Run cell")]
-    assert [int(re.match(r"Run cell (\d+)", text)[1]) for text in runs] == seen["cells"] and len(runs) > 2
+    assert [int(re.match(r"Run cell (\d+)", text)[1]) for text in runs] == seen["cells"] and len(
+        runs
+    ) > 2
     # A figure is called by its number, and its picture says more than that it is one.
     figures = [text for role, text, _ in inside if role == "figure"]
-    assert len(set(figures)) == len(figures) and all(text.startswith("Figure ") for text in figures), figures
-    pictures = [text for role, text, _ in inside if role in ("img", "image") and text not in seen["signs"]]
+    assert len(set(figures)) == len(figures) and all(
+        text.startswith("Figure ") for text in figures
+    ), figures
+    pictures = [
+        text for role, text, _ in inside if role in ("img", "image") and text not in seen["signs"]
+    ]
     assert all(len(text) > 15 for text in pictures), [text for text in pictures if len(text) <= 15]
     # The page begins with its title and ends with the way to the next one.
     assert next(text for role, text, _ in inside if role == "heading") in seen["title"]

@@ -1,4 +1,6 @@
-"""Notebooks in the browser: JupyterLite opens a chapter and an exercise, runs them, and asks nobody else."""
+"""Notebooks in the browser: JupyterLite opens a chapter and an exercise, runs them, and asks nobody
+else.
+"""
 
 import hashlib
 import json
@@ -39,7 +41,9 @@ def codes(page):
 def test_every_notebook_is_there_and_its_page_opens_it():
     assert len(notebook_pages()) > 30
     for page in notebook_pages():
-        link = re.search(r'<a [^>]*open-notebook[^>]*href="([^"]*)"', (HTML / f"{page}.html").read_text("utf8"))[1]
+        link = re.search(
+            r'<a [^>]*open-notebook[^>]*href="([^"]*)"', (HTML / f"{page}.html").read_text("utf8")
+        )[1]
         up = "../" * page.count("/")
         assert link == f"{up}{FOLDER}/notebooks/index.html?path={page}.ipynb"
         nbformat.validate(notebook(page))
@@ -47,20 +51,29 @@ def test_every_notebook_is_there_and_its_page_opens_it():
 
 @pytest.mark.parametrize("page", notebook_pages())
 def test_notebook_is_the_page_ready_to_run(page):
-    """Exercises as they were released; chapters with all their code, and a word where NumPy comes in."""
+    """Exercises as they were released; chapters with all their code, and a word where NumPy comes
+    in.
+    """
     source = nbformat.read(REPOSITORY / f"{page}.ipynb", as_version=4)
     if page.startswith("exercises/"):
         found = notebook(page)
-        assert set(found.metadata.pop("book")["cells"]) == {c.id for c in source.cells if c.cell_type == "code"}
+        assert set(found.metadata.pop("book")["cells"]) == {
+            c.id for c in source.cells if c.cell_type == "code"
+        }
         assert found == source
         return
     assert "pip install" not in notebook(page).cells[0].source
-    announced = [cell.get("id") == "numpy" for cell in notebook(page).cells if cell.cell_type == "code"]
+    announced = [
+        cell.get("id") == "numpy" for cell in notebook(page).cells if cell.cell_type == "code"
+    ]
     kinds = kinds_of_cells()[page]
-    needs = [kind["numpy"] or "numpy" in kind["needs"] or "matplotlib" in kind["needs"] for kind in kinds]
+    needs = [
+        kind["numpy"] or "numpy" in kind["needs"] or "matplotlib" in kind["needs"] for kind in kinds
+    ]
     if any(needs):
         assert announced.index(True) == needs.index(True)
-        # The words come before all code that imports it, and before all that the page computes in its place.
+        # The words come before all code that imports it, and before all that the page computes in
+        # its place.
         before = "\n".join(codes(page)[: needs.index(True)])
         assert "import numpy" not in before and "from numpy" not in before
     expected = [cell.source for cell in source.cells if cell.cell_type == "code"]
@@ -76,13 +89,17 @@ def test_lock_lists_what_is_there():
         assert set(package["depends"]) <= set(packages)
     loaded = KERNEL["loadPyodideOptions"]["packages"]
     # "comm" among them, or the kernel hangs without a word.
-    assert {"sympy", "ipywidgets", "anywidget", "comm", "orientation-of-reference-frames"} <= set(loaded)
+    assert {"sympy", "ipywidgets", "anywidget", "comm", "orientation-of-reference-frames"} <= set(
+        loaded
+    )
     assert all("://" not in packages[name]["file_name"] for name in loaded)
 
 
 def test_nothing_is_asked_of_others_by_setting():
     address, lock = KERNEL["pyodideUrl"], KERNEL["loadPyodideOptions"]["lockFileURL"]
-    assert (LITE / address.partition("?")[0]).is_file() and (LITE / lock.partition("?")[0]).is_file()
+    assert (LITE / address.partition("?")[0]).is_file() and (
+        LITE / lock.partition("?")[0]
+    ).is_file()
     assert KERNEL["disablePyPIFallback"] is True
 
 
@@ -113,7 +130,8 @@ class Interface:
 
     def wait_until_open(self):
         self.page.wait_for_function(
-            "window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === 'idle'"
+            "window.jupyterapp?.shell.currentWidget?.sessionContext?.session?.kernel?.status === "
+            "'idle'"
         )
 
     def cells(self):
@@ -124,7 +142,11 @@ class Interface:
 
     def number(self, code):
         """The place of the cell that begins with ``code``."""
-        (found,) = (place for place, cell in enumerate(self.cells()) if "".join(cell["source"]).startswith(code))
+        (found,) = (
+            place
+            for place, cell in enumerate(self.cells())
+            if "".join(cell["source"]).startswith(code)
+        )
         return found
 
     def enter(self, place):
@@ -166,20 +188,37 @@ def reply(outputs):
 
 
 # Some browsers cannot let Python wait for JavaScript: WebAssembly there has no stack switching.
-NO_SWITCHING = "delete WebAssembly.Suspending; delete WebAssembly.promising; delete WebAssembly.Suspender;"
+NO_SWITCHING = (
+    "delete WebAssembly.Suspending; delete WebAssembly.promising; delete WebAssembly.Suspender;"
+)
 
 
 @pytest.mark.long
 def test_exercise_is_solved_kept_and_downloaded(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900}, accept_downloads=True)
-    script = NO_SWITCHING + (HTML / runtime.FOLDER / runtime.pyodide_folder() / "pyodide.js").read_text("utf8")
-    context.route("**/pyodide.js?as=.mjs", lambda route: route.fulfill(body=script, content_type="text/javascript"))
+    script = NO_SWITCHING + (
+        HTML / runtime.FOLDER / runtime.pyodide_folder() / "pyodide.js"
+    ).read_text("utf8")
+    context.route(
+        "**/pyodide.js?as=.mjs",
+        lambda route: route.fulfill(body=script, content_type="text/javascript"),
+    )
     interface = Interface(context, site, EXERCISE)
     assert interface.run(interface.number("from math")) == []
     interface.run(interface.number("bicycle = variant("))  # what the answer is about
-    answer, check = (interface.number(code) for code in ("A_C_N = ...", "check('simple-orientations/crank'"))
-    right = solution("simple-orientations/crank").replace("### BEGIN SOLUTION\n", "").replace("\n### END SOLUTION", "")
-    for code, outcome in (("A_C_N = ...", "not attempted"), (f"{right}\nA_C_N = A_C_N.T", "wrong"), (right, "correct")):
+    answer, check = (
+        interface.number(code) for code in ("A_C_N = ...", "check('simple-orientations/crank'")
+    )
+    right = (
+        solution("simple-orientations/crank")
+        .replace("### BEGIN SOLUTION\n", "")
+        .replace("\n### END SOLUTION", "")
+    )
+    for code, outcome in (
+        ("A_C_N = ...", "not attempted"),
+        (f"{right}\nA_C_N = A_C_N.T", "wrong"),
+        (right, "correct"),
+    ):
         interface.write(answer, code)
         assert interface.run(answer) == []
         found, html = reply(interface.run(check))
@@ -199,7 +238,9 @@ def test_exercise_is_solved_kept_and_downloaded(browser, site):
     handed_in = nbformat.reads(download.value.path().read_text("utf8"), as_version=4)
     assert right in [cell.source for cell in handed_in.cells]
     original = nbformat.read(REPOSITORY / f"{EXERCISE}.ipynb", as_version=4)
-    assert handed_in.cells[answer].metadata.get("nbgrader") == original.cells[answer].metadata.get("nbgrader")
+    assert handed_in.cells[answer].metadata.get("nbgrader") == original.cells[answer].metadata.get(
+        "nbgrader"
+    )
     assert interface.outside() == [] and interface.errors == []
     context.close()
 
@@ -217,8 +258,13 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
         if kind["needs"] or kind["numpy"] or names_taken(cell.source) & absent:
             absent |= names_bound(cell.source)
         else:
-            outputs = [nbformat.from_dict(output) for output in interface.run(interface.number(cell.source))]
-            assert stored_outputs(cell) == stored_outputs(nbformat.from_dict({"outputs": outputs})), cell.source
+            outputs = [
+                nbformat.from_dict(output)
+                for output in interface.run(interface.number(cell.source))
+            ]
+            assert stored_outputs(cell) == stored_outputs(
+                nbformat.from_dict({"outputs": outputs})
+            ), cell.source
             ran += 1
     assert ran >= 8
     interface.run(interface.number("from orientation_figures.moving"))
@@ -229,7 +275,11 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     place = interface.number("sm.trigsimp(M.det())")
     interface.write(place, "figure = GimbalFigure(angles=(0.1, 0.2, 0.3))\nfigure")
     interface.run(place)
-    slider = page.locator(".jp-Cell.jp-mod-active").get_by_label("theta in degrees", exact=True).element_handle()
+    slider = (
+        page.locator(".jp-Cell.jp-mod-active")
+        .get_by_label("theta in degrees", exact=True)
+        .element_handle()
+    )
     shown = "([field, value]) => Math.abs(field.value - value) < 0.01"
     page.wait_for_function(shown, arg=[slider, 11.46])
     place = interface.number("M.rank()")
@@ -250,7 +300,9 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     assert output["output_type"] == "error"
     assert {url.split("/")[2] for url in interface.outside()} == {"cdn.jsdelivr.net"}
     assert (
-        interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0]["output_type"]
+        interface.run(interface.number("sm.trigsimp(D_C_A.subs(theta, -sm.pi/2))"))[0][
+            "output_type"
+        ]
         == "execute_result"
     )
     context.close()
@@ -258,10 +310,15 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
 
 @pytest.mark.long
 def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
-    """The page asks; the notebook knows it and shows that one's numbers; what is said there, the page knows."""
+    """The page asks; the notebook knows it and shows that one's numbers; what is said there, the
+    page knows.
+    """
     question = "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
-    ada, ben = (next(s for s in (f"s{k}" for k in range(99)) if variant_of(s, question, count) == n) for n in (3, 5))
+    ada, ben = (
+        next(s for s in (f"s{k}" for k in range(99)) if variant_of(s, question, count) == n)
+        for n in (3, 5)
+    )
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     page = context.new_page()
     page.goto(f"{site}{EXERCISE}.html")
@@ -272,11 +329,17 @@ def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
     first = interface.number("from math")
     assert f"those of {ada}" in interface.run(first)[0]["text"]
     sealed = []
-    interface.page.on("response", lambda one: "/sealed-" in one.url and sealed.append(len(one.body())))
-    shown = next(k for k, cell in enumerate(interface.cells()) if f'variant("{question}")' in "".join(cell["source"]))
-    own = json.loads((COURSE.sealed / "variants" / "simple-orientations-3.json").read_text("utf8"))["questions"][
-        question
-    ]
+    interface.page.on(
+        "response", lambda one: "/sealed-" in one.url and sealed.append(len(one.body()))
+    )
+    shown = next(
+        k
+        for k, cell in enumerate(interface.cells())
+        if f'variant("{question}")' in "".join(cell["source"])
+    )
+    own = json.loads((COURSE.sealed / "variants" / "simple-orientations-3.json").read_text("utf8"))[
+        "questions"
+    ][question]
     (output,) = interface.run(shown)
     assert all(text in "".join(output["data"]["text/markdown"]) for text in own["shown"].values())
     assert sealed and sum(sealed) < 20_000
@@ -292,7 +355,9 @@ def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
 @pytest.mark.long
 @pytest.mark.parametrize("lost", [1, 2])
 def test_notebook_opens_where_what_brings_the_answers_has_not_come(browser, site, lost):
-    """Lost once, it is asked for again; lost twice, the notebook opens as it is kept in this browser."""
+    """Lost once, it is asked for again; lost twice, the notebook opens as it is kept in this
+    browser.
+    """
     context = browser.new_context()
     asked = []
 

@@ -28,9 +28,11 @@ from notebook_pages.serve import Handler, server
 
 PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
 ELSEWHERE = "https://cdn.jsdelivr.net/**"
-QUIET = "chapters/successive-orientations.html"  # has cells with and without NumPy, and runs in a moment
+# has cells with and without NumPy, and runs in a moment
+QUIET = "chapters/successive-orientations.html"
 
-# The results of a page, as the reader sees them: each cell's output, without what differs on purpose.
+# The results of a page, as the reader sees them: each cell's output, without what differs on
+# purpose.
 RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   const output = cell.querySelector(':scope > .cell_output');
   if (!output) return '';
@@ -56,7 +58,8 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
 # Drawings that are played have their controls.
 PLAYABLE = "() => !document.querySelector('figure[data-moving]:not([data-ready])')"
 RAN = (
-    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null && "
+    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') "
+    "=== null && "
     "document.querySelector('#live-words')?.textContent !== ''"
 )
 
@@ -106,11 +109,16 @@ class Page:
         assert "ran." in self.words(), self.words()
 
     def results_of_a_run(self):
-        """What stands below each cell before the page is run, and after it, and what notes stand there then."""
+        """What stands below each cell before the page is run, and after it, and what notes stand
+        there then.
+        """
         before = self.page.evaluate(RESULTS)
         self.run()
         self.page.wait_for_function(PLAYABLE)
-        notes = [self.cell(k).locator(".live-note, .live-error").all_inner_texts() for k in range(1, len(before) + 1)]
+        notes = [
+            self.cell(k).locator(".live-note, .live-error").all_inner_texts()
+            for k in range(1, len(before) + 1)
+        ]
         return before, self.page.evaluate(RESULTS), notes
 
     def cell(self, number):
@@ -122,7 +130,8 @@ class Page:
         self.page.keyboard.press("Control+a")
         self.page.keyboard.insert_text(code)
         self.page.wait_for_function(
-            "([number, code]) => document.querySelectorAll('div.cell')[number - 1].querySelector('.cm-content')"
+            "([number, code]) => document.querySelectorAll('div.cell')[number - "
+            "1].querySelector('.cm-content')"
             ".innerText.replace(/\\s/g, '') === code.replace(/\\s/g, '')",
             arg=[number, code],
         )
@@ -137,7 +146,8 @@ class Page:
 
     def codes(self):
         return [
-            self.cell(k).locator("pre").first.inner_text() for k in range(1, self.page.locator("div.cell").count() + 1)
+            self.cell(k).locator("pre").first.inner_text()
+            for k in range(1, self.page.locator("div.cell").count() + 1)
         ]
 
     def below(self, number):
@@ -147,7 +157,9 @@ class Page:
         return self.page.inner_text("#live-words")
 
     def outside(self):
-        return [url for url in self.asked if not url.startswith(("http://127.0.0.1", "data:", "blob:"))]
+        return [
+            url for url in self.asked if not url.startswith(("http://127.0.0.1", "data:", "blob:"))
+        ]
 
 
 @pytest.fixture(scope="module")
@@ -170,7 +182,9 @@ def shared(page_that_has_run):
     """A page whose cells have run once; a test that leaves it running spoils no other."""
     yield page_that_has_run
     assert page_that_has_run.errors == []
-    page_that_has_run.page.evaluate("localStorage.clear()")  # or the next page would bring the edits back
+    page_that_has_run.page.evaluate(
+        "localStorage.clear()"
+    )  # or the next page would bring the edits back
     if page_that_has_run.page.locator("html.live-busy").count():
         page_that_has_run.page.reload()
 
@@ -197,14 +211,21 @@ def kinds(name):
 
 
 def test_every_notebook_is_a_page_with_code():
-    notebooks = {str(path.relative_to(REPOSITORY).with_suffix(".html")) for path in all_notebooks(REPOSITORY)}
+    notebooks = {
+        str(path.relative_to(REPOSITORY).with_suffix(".html")) for path in all_notebooks(REPOSITORY)
+    }
     shown = {f"{name}.html" for name, kinds in kinds_of_cells().items() if on_the_page(kinds)}
     assert set(PAGES) == shown
-    assert notebooks - shown == {"index.html", "rotations.html"}  # whose figures need no code on the page
+    assert notebooks - shown == {
+        "index.html",
+        "rotations.html",
+    }  # whose figures need no code on the page
 
 
 def equal_the_stored_ones(page, name, before, after, notes):
-    """Every cell that needs SymPy only gives what is printed; the others say why they did not run."""
+    """Every cell that needs SymPy only gives what is printed; the others say why they did not
+    run.
+    """
     # What a check says where nobody has answered yet is shown only once somebody has asked it.
     before = [result.replace(' hidden=""', "") for result in before]
     for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
@@ -213,7 +234,9 @@ def equal_the_stored_ones(page, name, before, after, notes):
             assert note == [], f"cell {number}"
         elif kind["skip"]:
             assert note == []
-        elif kind["needs"] == ["anywidget"]:  # a figure, or what asks one: all that it needs comes with the site
+        elif kind["needs"] == [
+            "anywidget"
+        ]:  # a figure, or what asks one: all that it needs comes with the site
             assert note == [], f"cell {number}"
         else:
             assert "Not run here" in note[0], f"cell {number}"
@@ -235,7 +258,9 @@ def test_results_equal_the_stored_ones(context, site, name):
     page = Page(context, site, name)
     if all(kind.get("skip") for kind in kinds(name)):
         page.page.click("button.run-page")
-        page.page.wait_for_function("document.querySelector('#live-words').textContent.includes('there already')")
+        page.page.wait_for_function(
+            "document.querySelector('#live-words').textContent.includes('there already')"
+        )
         assert not [url for url in page.asked if url.endswith(".wasm")]
         return
     equal_the_stored_ones(page, name, *page.results_of_a_run())
@@ -260,7 +285,10 @@ def test_nothing_is_loaded_before_the_reader_asks(context, site):
 
 @pytest.mark.parametrize("name", PAGES)
 def test_pages_hardly_grow(name):
-    data = re.search(r'<script type="application/json" id="live-data">.*?</script>', (HTML / name).read_text("utf8"))
+    data = re.search(
+        r'<script type="application/json" id="live-data">.*?</script>',
+        (HTML / name).read_text("utf8"),
+    )
     button = '<button class="run-page">Run this page</button>' * 3
     added = [(HTML / "_static" / "live.js").read_bytes(), (scripts.JS / "page.css").read_bytes()]
     added.append((data[0] + button).encode())
@@ -268,7 +296,9 @@ def test_pages_hardly_grow(name):
 
 
 def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
-    """KaTeX's own rules, which come with it, give way to those of the page: they would make all formulas larger."""
+    """KaTeX's own rules, which come with it, give way to those of the page: they would make all
+    formulas larger.
+    """
     (sheet,) = HTML.glob("runtime/scripts-*/live.css")
     before, _, rules = sheet.read_text("utf8").partition("@layer katex {")
     assert ".katex" not in before and ".vlist" in rules and rules.count("{") + 1 == rules.count("}")
@@ -280,7 +310,8 @@ def test_browser_asks_nobody_else(site, browser, tmp_path):
     log = tmp_path / "network.json"
     name = "chapters/orientation-with-sympy.html"
     logged = browser.browser_type.launch(
-        executable_path=find(), args=[*FLAGS, f"--log-net-log={log}", "--net-log-capture-mode=Everything"]
+        executable_path=find(),
+        args=[*FLAGS, f"--log-net-log={log}", "--net-log-capture-mode=Everything"],
     )
     page = Page(logged.new_context(), site, name, refuse=False)
     page.run()
@@ -288,7 +319,11 @@ def test_browser_asks_nobody_else(site, browser, tmp_path):
     logged.close()
     events = [event.get("params", {}) for event in json.loads(log.read_text("utf8"))["events"]]
     # The browser asks its maker for things of its own: those have no page as their origin.
-    asked = {params["url"] for params in events if params.get("initiator", "").startswith("http") and "url" in params}
+    asked = {
+        params["url"]
+        for params in events
+        if params.get("initiator", "").startswith("http") and "url" in params
+    }
     assert any(url.endswith(".whl") for url in asked), "the log tells what the worker asks for"
     assert {url for url in asked if not url.startswith((site, "data:", "blob:"))} == set()
 
@@ -296,7 +331,9 @@ def test_browser_asks_nobody_else(site, browser, tmp_path):
 def test_download_is_small_enough():
     lock = json.loads((HTML / runtime.FOLDER / runtime.LOCK).read_text("utf8"))
     first = runtime.with_dependencies([runtime.DISTRIBUTION], lock["packages"])
-    files = [HTML / runtime.FOLDER / runtime.pyodide_folder() / name for name in runtime.PYODIDE_FILES]
+    files = [
+        HTML / runtime.FOLDER / runtime.pyodide_folder() / name for name in runtime.PYODIDE_FILES
+    ]
     files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
     assert lock["bytes"] == sum(path.stat().st_size for path in files)
     files += (HTML / scripts.folder_name()).iterdir()
@@ -313,13 +350,19 @@ def test_lock_names_what_is_there():
         else:
             wheel = HTML / runtime.FOLDER / package["file_name"]
             assert hashlib.sha256(wheel.read_bytes()).hexdigest() == package["sha256"]
-            assert not [member for member in zipfile.ZipFile(wheel).namelist() if "/tests/" in member]
+            assert not [
+                member for member in zipfile.ZipFile(wheel).namelist() if "/tests/" in member
+            ]
         assert all(needed in lock["packages"] for needed in package["depends"])
 
 
 def test_versions_are_those_of_the_book():
     constraints = (REPOSITORY / "constraints.txt").read_text("utf8").splitlines()
-    lines = (REPOSITORY / "notebook-pages/src/notebook_pages/live/wheels.txt").read_text("utf8").splitlines()
+    lines = (
+        (REPOSITORY / "notebook-pages/src/notebook_pages/live/wheels.txt")
+        .read_text("utf8")
+        .splitlines()
+    )
     pins = [line.split()[0] for line in lines if not line.startswith("#")]
     assert {pin.split("==")[0] for pin in pins} == {"sympy", "mpmath"}
     assert set(pins) <= set(constraints)
@@ -338,7 +381,10 @@ def made_wheels(tmp_path):
         with zipfile.ZipFile(wheel, "w") as file:
             file.writestr(f"{package['imports'][0]}.py", f"__version__ = 'made {name}'\npi = 3\n")
             info = f"{name.replace('-', '_')}-{package['version']}.dist-info"
-            file.writestr(f"{info}/METADATA", f"Metadata-Version: 2.1\nName: {name}\nVersion: {package['version']}\n")
+            file.writestr(
+                f"{info}/METADATA",
+                f"Metadata-Version: 2.1\nName: {name}\nVersion: {package['version']}\n",
+            )
             file.writestr(f"{info}/RECORD", "")
         packages[name] = package | {"sha256": hashlib.sha256(wheel.read_bytes()).hexdigest()}
     return tmp_path, {"packages": packages}
@@ -379,14 +425,20 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
 
 
 def test_one_setting_puts_them_beside_the_pages(monkeypatch):
-    """As the workflow that publishes sets it: the makefile's command and its folder are the same."""
+    """As the workflow that publishes sets it: the makefile's command and its folder are the
+    same.
+    """
     monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
     assert runtime.numpy_setting("official") == "_build/numpy"
     monkeypatch.setenv("BOOK_NUMPY", "")
     assert runtime.numpy_setting("official") == "official"
     assert "notebook_pages.live.fetch _build/numpy" in (REPOSITORY / "Makefile").read_text("utf8")
     steps = (REPOSITORY / ".github" / "workflows" / "publish.yml").read_text("utf8")
-    assert steps.index("run: make numpy") < steps.index("run: make take-away") < steps.index("BOOK_NUMPY: _build/numpy")
+    assert (
+        steps.index("run: make numpy")
+        < steps.index("run: make take-away")
+        < steps.index("BOOK_NUMPY: _build/numpy")
+    )
 
 
 @pytest.mark.parametrize("setting", ["off", False])
@@ -429,7 +481,9 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     page = Page(context, site, QUIET)
     page.page.click("button.run-cell >> nth=2")  # with it comes the editor
     page.wait()
-    text = page.try_code(3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\nnp.linalg.inv(a)")
+    text = page.try_code(
+        3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\nnp.linalg.inv(a)"
+    )
     assert "array([[ 0.5  , -0.125]," in text
     assert "its numbers by plain Python in NumPy’s place" in page.words()
     assert page.outside() == []
@@ -439,21 +493,30 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
 
 
 def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, site):
-    """Byte by byte, and in place of the one before; the report needs more than this site holds, and says so."""
+    """Byte by byte, and in place of the one before; the report needs more than this site holds, and
+    says so.
+    """
     page = Page(context, site, "workbench.html")
-    tagged = "[...document.querySelectorAll('div.cell')].findIndex((cell) => cell.matches('.tag_takes-file')) + 1"
+    tagged = (
+        "[...document.querySelectorAll('div.cell')].findIndex((cell) => "
+        "cell.matches('.tag_takes-file')) + 1"
+    )
     number = page.page.evaluate(tagged)
     sent = []
     page.page.on("request", lambda request: sent.append(request.post_data))
     content = bytes(range(256)) * 40
     name = "a walk.csv"
-    page.page.set_input_files("label.takes-file input", {"name": name, "mimeType": "text/csv", "buffer": content})
+    page.page.set_input_files(
+        "label.takes-file input", {"name": name, "mimeType": "text/csv", "buffer": content}
+    )
     page.page.wait_for_selector("html.live-busy", state="attached")
     page.wait()
     assert "could not be fetched from cdn.jsdelivr.net" in page.below(number)
     look = "import hashlib, os\nfor name in os.listdir('dropped'):\n"
     look += "    print(name, hashlib.sha256(open(f'dropped/{name}', 'rb').read()).hexdigest())"
-    assert page.try_code(number, look).split("\n")[:1] == [f"{name} {hashlib.sha256(content).hexdigest()}"]
+    assert page.try_code(number, look).split("\n")[:1] == [
+        f"{name} {hashlib.sha256(content).hexdigest()}"
+    ]
     page.page.evaluate(
         """() => {
           const given = new DataTransfer();
@@ -472,11 +535,15 @@ def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, 
 
 @pytest.mark.long
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
-    """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the next one."""
+    """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the
+    next one.
+    """
 
     def with_hidden_code(route):
         page = route.fetch()
-        text, count = re.subn(r'"cells":\s*\{', r'"cells":{"2":{"before":"hidden = 6 * 7"},', page.text(), count=1)
+        text, count = re.subn(
+            r'"cells":\s*\{', r'"cells":{"2":{"before":"hidden = 6 * 7"},', page.text(), count=1
+        )
         assert count == 1
         text = re.sub(r'"hidden = 6 \* 7"\},\s*\}', '"hidden = 6 * 7"}}', text)
         route.fulfill(response=page, body=text)
@@ -499,7 +566,9 @@ def test_edit_and_run(shared):
     assert "42" in shared.try_code(3, "print(6 * 7)")
     assert "cell 3 ran. Result: 42" in shared.words().replace("Cell", "cell")
     assert shared.try_code(3, "a = 1; a;").strip() == ""
-    assert shared.try_code(3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme").split() == [
+    assert shared.try_code(
+        3, "a, b = 'é', '数'\nprint(a + b)\nnäme = '\\N{GREEK SMALL LETTER PSI}'\nnäme"
+    ).split() == [
         "é数",
         "'ψ'",
     ]
@@ -520,7 +589,9 @@ def test_typo(shared):
 
 @pytest.mark.long
 def test_failing_cell_keeps_its_printed_result(context, site):
-    """Beside an error stands what the book has printed; it comes back alone with the book's code."""
+    """Beside an error stands what the book has printed; it comes back alone with the book's
+    code.
+    """
     page = Page(context, site, QUIET)
     before = page.page.evaluate(RESULTS)[2]
     page.page.click("button.run-cell >> nth=2")
@@ -560,15 +631,27 @@ def test_sleep(shared):
 
 def test_forms_of_values(shared):
     shared.try_code(
-        3, "class Reply:\n    def _repr_html_(self):\n        return '<p class=\"reply\">Right.</p>'\nReply()"
+        3,
+        "class Reply:\n    def _repr_html_(self):\n        return '<p "
+        'class="reply">Right.</p>\'\nReply()',
     )
     assert shared.cell(3).locator("p.reply").inner_text() == "Right."
-    shared.try_code(3, "import sympy as sm\nx = sm.Symbol('x')\ndisplay(x**2)\ndisplay(x/3, 'text')")
+    shared.try_code(
+        3, "import sympy as sm\nx = sm.Symbol('x')\ndisplay(x**2)\ndisplay(x/3, 'text')"
+    )
     assert shared.cell(3).locator(".katex").count() == 2
     assert "'text'" in shared.below(3)
-    shared.try_code(3, "from IPython.display import HTML, Math\ndisplay(HTML('<b>bold</b>'))\nMath(r'\\hat{a}_x')")
-    assert shared.cell(3).locator("b").count() == 1 and shared.cell(3).locator(".katex").count() == 1
-    figure = "<figure class=orientation-figure><svg role=img><title>A line of four words</title></svg></figure>"
+    shared.try_code(
+        3,
+        "from IPython.display import HTML, Math\ndisplay(HTML('<b>bold</b>'))\nMath(r'\\hat{a}_x')",
+    )
+    assert (
+        shared.cell(3).locator("b").count() == 1 and shared.cell(3).locator(".katex").count() == 1
+    )
+    figure = (
+        "<figure class=orientation-figure><svg role=img><title>A line of four "
+        "words</title></svg></figure>"
+    )
     shared.try_code(3, f"HTML({figure!r})")
     assert shared.cell(3).locator("figure svg").count() == 1
 
@@ -576,13 +659,18 @@ def test_forms_of_values(shared):
 def test_orientation_and_coursework(shared):
     code = "from orientation import dcm_from_body_fixed\nimport coursework, sympy as sm\n"
     code += "dcm_from_body_fixed(sm.symbols('psi, theta, phi'), 'zxy').shape"
-    assert "(3, 3)" in shared.try_code(3, code).replace("\n", "") or shared.cell(3).locator(".katex").count()
+    assert (
+        "(3, 3)" in shared.try_code(3, code).replace("\n", "")
+        or shared.cell(3).locator(".katex").count()
+    )
 
 
 def solution(name):
     """The instructors' code of one answer: the cell above its check."""
     path = REPOSITORY / "tests" / "solutions" / f"{name.partition('/')[0]}.ipynb"
-    codes = [cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"]
+    codes = [
+        cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"
+    ]
     (place,) = (number for number, code in enumerate(codes) if code.startswith(f"check('{name}'"))
     return codes[place - 1]
 
@@ -617,10 +705,14 @@ def test_exercise_is_checked_in_the_page(context, site):
 def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
-    students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
+    students = {
+        variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)
+    }
     page = Page(context, site, name)
     sealed = []
-    page.page.on("response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body()))))
+    page.page.on(
+        "response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body())))
+    )
     codes = page.codes()
     shown = next(k for k, code in enumerate(codes, 1) if question in code)
 
@@ -638,7 +730,9 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     mine = run(page)
     assert mine != everybodys and page.errors == []
     # One small file for each question above with variants, and no more than that.
-    assert any(address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed)
+    assert any(
+        address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed
+    )
     assert len(sealed) <= 3 and sum(size for _, size in sealed) < 30_000, sealed
     # Another page of the book does not ask any more, and what is said in the code counts as well.
     opened.remove(page.page)
@@ -646,7 +740,9 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     again = Page(context, site, name)
     # Before anything is run, one's own numbers are there, and everybody's are not.
     cell = f"document.querySelectorAll('div.cell')[{shown - 1}]"
-    again.page.wait_for_function(f"{cell}.querySelector('.text_markdown') && !{cell}.querySelector('.live-known')")
+    again.page.wait_for_function(
+        f"{cell}.querySelector('.text_markdown') && !{cell}.querySelector('.live-known')"
+    )
     assert again.below(shown) == mine
     assert run(again) == mine
     assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
@@ -661,7 +757,9 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
     name = "exercises/simple-orientations.html"
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
     page = Page(context, site, name)
-    answer = "from orientation import dcm_from_axis_angle\n\nA_C_N = dcm_from_axis_angle((0, 1, 0), 0.3)"
+    answer = (
+        "from orientation import dcm_from_axis_angle\n\nA_C_N = dcm_from_axis_angle((0, 1, 0), 0.3)"
+    )
     check = places["check-simple-orientations-crank"]
     page.page.click(f"button.run-cell >> nth={check - 1}")  # cells can be written in from now on
     page.wait()
@@ -673,7 +771,9 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
 
 
 def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, site):
-    """Its outputs are those of nobody: everybody's numbers, and questions that nobody has attempted."""
+    """Its outputs are those of nobody: everybody's numbers, and questions that nobody has
+    attempted.
+    """
     name, question = "exercises/simple-orientations.html", "simple-orientations/boom"
     page = Page(context, site, name)
     codes = page.codes()
@@ -682,21 +782,31 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     assert page.below(check) == "", "what nobody has attempted is known from the dots"
     record = json.dumps({question: {"outcome": "correct"}})
     page.page.evaluate(
-        "(record) => { bookStore.put('coursework me.txt', { text: 'ada', at: 1 }); bookStore.keepTries(record, 1); }",
+        "(record) => { bookStore.put('coursework me.txt', { text: 'ada', at: 1 }); "
+        "bookStore.keepTries(record, 1); }",
         record,
     )
     page.page.reload()
-    assert "Correct, when you checked it last" in page.below(check) and "Not attempted" not in page.below(check)
+    assert "Correct, when you checked it last" in page.below(
+        check
+    ) and "Not attempted" not in page.below(check)
     assert "the numbers of ada" in page.below(shown)
-    assert page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open") is None
+    assert (
+        page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open")
+        is None
+    )
 
 
 @pytest.mark.long
 def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(context, site):
-    """In any order of answers, names, a corrected name and reloads, the page says with whose numbers one was right."""
+    """In any order of answers, names, a corrected name and reloads, the page says with whose
+    numbers one was right.
+    """
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
-    students = {variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)}
+    students = {
+        variant_of(f"s{k}@uni.example", question, count): f"s{k}@uni.example" for k in range(60)
+    }
     page = Page(context, site, name)
     codes = page.codes()
     check = next(k for k, code in enumerate(codes, 1) if f"check('{question}'" in code)
@@ -714,7 +824,9 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
 
     def reopened():
         page.page.reload()
-        page.page.wait_for_selector(".live-who")  # it asks for its scripts, since there are edits to bring back
+        page.page.wait_for_selector(
+            ".live-who"
+        )  # it asks for its scripts, since there are edits to bring back
         return page.below(check)
 
     run()  # the editors come with Python
@@ -723,9 +835,14 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
     assert "✓ Correct" in reopened() and reply.count() == 0
     for who in (students[3], students[5]):  # the first one mistyped
         said = call_oneself(who)
-        assert "✓ Right with the numbers that everybody sees" in said and f"are those of {who} now" in said
+        assert (
+            "✓ Right with the numbers that everybody sees" in said
+            and f"are those of {who} now" in said
+        )
     run()
-    assert reply.get_attribute("data-outcome") == "correct", page.below(check)  # the answer follows the numbers
+    assert reply.get_attribute("data-outcome") == "correct", page.below(
+        check
+    )  # the answer follows the numbers
     assert "everybody" not in page.below(check)
     assert "✓ Right with" not in reopened() and "✓ Correct" in page.below(check)
     run()
@@ -733,14 +850,23 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
     page.page.click("button.run-cell >> nth=0")
     page.wait()
     assert "✓ Right with" in page.below(check) and reply.count() == 0
-    assert page.cell(check).locator("details:has-text('The reply to other numbers')").get_attribute("open") is None
+    assert (
+        page.cell(check)
+        .locator("details:has-text('The reply to other numbers')")
+        .get_attribute("open")
+        is None
+    )
     page.write(1, codes[0])
     said = call_oneself("")
     assert "✓ Correct" in said and "Right with" not in said
     page.page.goto(site + "appendix/my-progress.html")
-    counted = page.page.locator("tr:has(td[data-names*='simple-orientations/compass']) td[data-kind=checked]")
+    counted = page.page.locator(
+        "tr:has(td[data-names*='simple-orientations/compass']) td[data-kind=checked]"
+    )
     assert counted.first.inner_text().startswith("1 of")
-    page.page.evaluate("name => bookStore.put('coursework me.txt', { text: name, at: 2 })", students[6])
+    page.page.evaluate(
+        "name => bookStore.put('coursework me.txt', { text: name, at: 2 })", students[6]
+    )
     page.page.reload()
     assert counted.first.inner_text().startswith("0 of")
     assert page.errors == []
@@ -788,10 +914,15 @@ def test_a_sibling_question_is_one_button_away(context, site):
     assert code.startswith(OFFERED.partition("\n")[0])
     assert "sibling = variant('simple-orientations/compass/sibling')" in code
     assert "check('simple-orientations/compass/sibling', other_compass)" in code
-    # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets numbers one by one.
-    own = notebook_questions("simple-orientations", 1)["simple-orientations/compass"].question.variant.shown
+    # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets
+    # numbers one by one.
+    own = notebook_questions("simple-orientations", 1)[
+        "simple-orientations/compass"
+    ].question.variant.shown
     shown = "".join(page.below(place).replace("\N{MINUS SIGN}", "-").split())
-    assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), own
+    assert all(number in shown for text in own.values() for number in re.findall(r"-?\d+", text)), (
+        own
+    )
     assert page.errors == []
     # It is the reader's own text now, and outlives the page; the book's code can be brought back.
     opened.remove(page.page)
@@ -811,7 +942,9 @@ ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Pyt
 
 
 def stop(page, number, code):
-    """Run endless code, press Stop once it has begun, and return what stands below the cell then."""
+    """Run endless code, press Stop once it has begun, and return what stands below the cell
+    then.
+    """
     page.try_code(number, code, wait=False)
     page.page.wait_for_function(
         "number => document.querySelectorAll('div.cell')[number - "
@@ -858,7 +991,8 @@ def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
 def test_start_afresh(context, site):
     page = Page(context, site, QUIET)
 
-    def results():  # a figure that moves is where the reader has left it, or where its own dice put it
+    # a figure that moves is where the reader has left it, or where its own dice put it
+    def results():
         return ["moves" if "data-figure=" in html else html for html in page.page.evaluate(RESULTS)]
 
     before = results()
@@ -896,7 +1030,8 @@ def test_failure_is_named_and_the_next_run_tries_again(context, site, pattern, w
     page.page.route(pattern, lambda route: route.fulfill(**answer))
     page.page.click("button.run-cell >> nth=2")
     page.page.wait_for_function(
-        "document.querySelector('#live-words').textContent.includes('could not be started')", timeout=90_000
+        "document.querySelector('#live-words').textContent.includes('could not be started')",
+        timeout=90_000,
     )
     assert words in page.words()
     page.page.unroute(pattern)
@@ -910,7 +1045,9 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
     """Its scripts are gone from the server, where by now the same page asks for others."""
     page = Page(context, site, QUIET)
     page.page.route("**/runtime/scripts-*/*.js*", lambda route: route.fulfill(status=404))
-    text = re.sub(r"runtime/scripts-\w+", "runtime/scripts-0123456789ab", (HTML / QUIET).read_text("utf8"))
+    text = re.sub(
+        r"runtime/scripts-\w+", "runtime/scripts-0123456789ab", (HTML / QUIET).read_text("utf8")
+    )
     page.page.route(f"**/{QUIET}", lambda route: route.fulfill(body=text, content_type="text/html"))
     page.page.click("button.run-cell >> nth=2")
     page.page.wait_for_selector("#live-words:has-text('published anew')")
@@ -977,7 +1114,9 @@ SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() 
 
 @pytest.mark.long
 def test_page_asked_for_twice_runs_once_and_in_order(context, site):
-    """While Python loads, and in the midst of the run: cells above would else run again after those below."""
+    """While Python loads, and in the midst of the run: cells above would else run again after those
+    below.
+    """
     page = Page(context, site, QUIET)
     page.page.evaluate("""() => {
       window.order = [];
@@ -1049,7 +1188,9 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     page.page.wait_for_selector(".cm-content", state="attached")
     assert "print('mine')" in page.cell(3).locator(".cm-content").inner_text()
     assert "Your edits are here again" in page.words()
-    assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], "only the editor is loaded"
+    assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], (
+        "only the editor is loaded"
+    )
     page.page.click(".live-bar button:has-text('Book’s code')")
     page.page.click(".live-bar button:has-text('Bring it back')")
     assert page.cell(3).locator(".cm-content").inner_text() == original
@@ -1065,7 +1206,9 @@ def test_edit_of_code_that_has_changed_is_offered(browser, site):
     page = Page(context, site, QUIET)
     edits = [{"number": 3, "original": "of another edition", "code": "print('old edit')"}]
     key = f"code of {QUIET.removesuffix('.html')}"
-    page.page.evaluate("([key, edits]) => localStorage.setItem(key, JSON.stringify(edits))", [key, edits])
+    page.page.evaluate(
+        "([key, edits]) => localStorage.setItem(key, JSON.stringify(edits))", [key, edits]
+    )
     page.page.reload()
     choice = page.page.locator(".live-choice")
     choice.wait_for()
@@ -1174,7 +1317,8 @@ class FigurePage(Page):
         super().__init__(context, site, FIGURES)
         self.page.wait_for_selector(".moving[data-ready]", state="attached")
         find = (
-            "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+            "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => "
+            "cell.textContent.includes(text))"
         )
         self.figure = self.page.evaluate(find, "SimpleFigure(") + 1
         self.asking = self.page.evaluate(find, "figure.angle") + 1
@@ -1196,7 +1340,8 @@ class FigurePage(Page):
 
     def says(self, number, text):
         self.page.wait_for_function(
-            "([number, text]) => document.querySelectorAll('div.cell')[number - 1].querySelector('.cell_output')"
+            "([number, text]) => document.querySelectorAll('div.cell')[number - "
+            "1].querySelector('.cell_output')"
             ".textContent.includes(text)",
             arg=[number, text],
         )
@@ -1218,13 +1363,18 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     assert "did you mean angle" in page.try_code(page.asking, "figure.angel = 0.5")
     assert "Angles are in radians" in page.try_code(page.asking, "figure.angle = 30")
     # Observers, and their errors, are heard below the figure.
-    page.try_code(page.asking, "figure.observe(lambda change: print(f'now {change.new:.3f}'), 'angle')")
+    page.try_code(
+        page.asking, "figure.observe(lambda change: print(f'now {change.new:.3f}'), 'angle')"
+    )
     page.turn(45)
     page.says(page.figure, "now 0.785")
-    page.try_code(page.asking, "figure.unobserve_all(); figure.observe(lambda change: 1 / 0, 'angle')")
+    page.try_code(
+        page.asking, "figure.unobserve_all(); figure.observe(lambda change: 1 / 0, 'angle')"
+    )
     page.turn(60)
     page.says(page.figure, "ZeroDivisionError")
-    # Run below the figure itself makes it anew, as its code says, and a cell further down asks the new one.
+    # Run below the figure itself makes it anew, as its code says, and a cell further down asks the
+    # new one.
     page.cell(page.figure).locator("summary").first.click()
     page.cell(page.figure).locator("button.run-cell").click()
     expect(page.field()).to_have_value(str(as_the_code_says))
@@ -1237,7 +1387,9 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
 
 @pytest.mark.long
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
-    """Where the server gives no shared memory, the first run loads the page again, by a service worker."""
+    """Where the server gives no shared memory, the first run loads the page again, by a service
+    worker.
+    """
     context = browser.new_context()
     page = FigurePage(context, not_isolated)
     page.turn(90)
@@ -1253,33 +1405,48 @@ def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser
 @pytest.mark.long
 def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
     page = Page(context, site, "chapters/direction-cosine-matrices.html")
-    text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+    text = (
+        "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => "
+        "cell.textContent.includes(text))"
+    )
     number = page.page.evaluate(text, "TriadFigure(") + 1
     cell = page.cell(number)
     cell.locator("summary").first.click()
     cell.locator("button.run-cell").click()
     page.wait()
-    turned = "from orientation_figures.moving import TriadFigure\nfigure = TriadFigure(axis=(0, 0, 1), angle=1.0)\n"
+    turned = (
+        "from orientation_figures.moving import TriadFigure\n"
+        "figure = TriadFigure(axis=(0, 0, 1), angle=1.0)\n"
+    )
     for matrix, angle, entry in (
         ("[[0, 1, 0], [0, 0, 1], [1, 0, 0]]", "120", "a x dot n y: \u20071.000"),
         ("sm.Matrix([[1, 0, 0], [0, 0, -1], [0, 1, 0]])", "-90", "a z dot n y: \u20071.000"),
         ("simple_dcm('y', 0.5)", "28.65", "a z dot n x: \u20070.479"),
     ):
         page.try_code(
-            number, f"import sympy as sm\nfrom orientation import simple_dcm\n{turned}figure.dcm = {matrix}\nfigure"
+            number,
+            "import sympy as sm\nfrom orientation import simple_dcm\n"
+            f"{turned}figure.dcm = {matrix}\nfigure",
         )
         cell.get_by_role("button", name=entry, exact=True).wait_for()
         shown = abs(float(cell.get_by_label("theta in degrees").input_value()))
-        assert shown == abs(float(angle)), matrix  # about the opposite axis it is the opposite angle
+        assert shown == abs(float(angle)), (
+            matrix
+        )  # about the opposite axis it is the opposite angle
     # A reflection is refused, and the figure says why.
-    assert "left-handed" in page.try_code(number, f"{turned}figure.dcm = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\nfigure")
+    assert "left-handed" in page.try_code(
+        number, f"{turned}figure.dcm = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\nfigure"
+    )
     assert page.errors == []
 
 
 @pytest.mark.long
 def test_the_explorer_of_sequences_works_in_the_page(context, site):
     page = Page(context, site, "chapters/euler-angles.html")
-    text = "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => cell.textContent.includes(text))"
+    text = (
+        "(text) => [...document.querySelectorAll('div.cell')].findIndex((cell) => "
+        "cell.textContent.includes(text))"
+    )
     cell = page.cell(page.page.evaluate(text, "SequenceExplorer(") + 1)
     cell.locator("button.run-cell").click()
     cell.get_by_label("Sequence", exact=True).select_option("zyz")
@@ -1298,4 +1465,6 @@ def test_controls_that_only_a_notebook_can_show_say_so(context, site):
     page.page.click("button.run-page")
     page.page.wait_for_selector("html.live-busy", state="attached")
     page.wait()
-    assert "In the notebook it works" in page.try_code(page.asking, "import ipywidgets\nipywidgets.IntSlider()")
+    assert "In the notebook it works" in page.try_code(
+        page.asking, "import ipywidgets\nipywidgets.IntSlider()"
+    )

@@ -1,4 +1,6 @@
-"""Previews: what a link leads to stands beside it for who points at it, or comes to it by the keyboard."""
+"""Previews: what a link leads to stands beside it for who points at it, or comes to it by the
+keyboard.
+"""
 
 import re
 
@@ -8,7 +10,8 @@ from test_site import NARROW, PAGES, WIDE, Visit, text, violations
 
 from notebook_pages import previews
 
-#: How links of each kind begin, on the page itself and on another one, and what of their target is shown.
+#: How links of each kind begin, on the page itself and on another one, and what of their target is
+#: shown.
 LINKS = {
     "equation here": ("#equation-", ".katex math"),
     "equation elsewhere": (r"[\w./-]+\.html#equation-", ".katex math"),
@@ -24,7 +27,10 @@ def first_link(name):
     """The lightest page that has such a link in its text, and the first one there."""
     written = re.compile(rf'<a class="reference internal" href="({LINKS[name][0]}[^"]*)"')
     texts = {page: text(page).partition("<article")[2] for page in PAGES}
-    page = min((page for page, words in texts.items() if written.search(words)), key=lambda page: len(texts[page]))
+    page = min(
+        (page for page, words in texts.items() if written.search(words)),
+        key=lambda page: len(texts[page]),
+    )
     return page, f'.bd-article a.internal[href="{written.search(texts[page])[1]}"]'
 
 
@@ -46,12 +52,17 @@ def test_a_preview_shows_what_the_link_leads_to_and_goes_with_escape(browser, si
         if "figure" in name:
             assert box.locator("svg[viewBox]").bounding_box()["height"] > 50
         # The page around them is looked at in test_site.py.
-        assert violations(page, "{include: ['[role=tooltip]', 'a[aria-describedby]']}") == [] and visit.faults == []
+        assert (
+            violations(page, "{include: ['[role=tooltip]', 'a[aria-describedby]']}") == []
+            and visit.faults == []
+        )
         page.keyboard.press("Escape")
         assert box.count() == 0 and asked.get_attribute("aria-describedby") is None
 
 
-def test_a_preview_comes_by_keyboard_stays_under_the_pointer_and_is_not_in_the_way_of_a_touch(browser, site):
+def test_a_preview_comes_by_keyboard_stays_under_the_pointer_and_is_not_in_the_way_of_a_touch(
+    browser, site
+):
     address, link = first_link("equation elsewhere")
     with Visit(browser, site, address, "dark", WIDE) as visit:
         page, box = visit.page, visit.page.get_by_role("tooltip")
@@ -91,11 +102,20 @@ def test_previews_come_from_a_disk_too(browser):
 
 
 def test_what_is_previewed_is_whole():
-    text = '<p id="other">no</p><div class="a" id="it"><div>in</div><div id="b"><a href="#x">out</a></div></div>'
+    text = (
+        '<p id="other">no</p><div class="a" id="it"><div>in</div><div id="b"><a '
+        'href="#x">out</a></div></div>'
+    )
     text += "<div>after</div>"
-    assert previews.element_at(text, "it") == text[text.index('<div class="a"') : text.index("<div>after")]
+    assert (
+        previews.element_at(text, "it")
+        == text[text.index('<div class="a"') : text.index("<div>after")]
+    )
     assert previews.preview(text, "it") == '<div class="a"><div>in</div><div>out</div></div>'
-    assert previews.element_at(text, "not-there") is None and previews.preview(text, "term-not-there") is None
+    assert (
+        previews.element_at(text, "not-there") is None
+        and previews.preview(text, "term-not-there") is None
+    )
     with pytest.raises(ValueError, match="does not end"):
         previews.element_at('<div id="it"><div></div>', "it")
 

@@ -1,4 +1,6 @@
-"""What the built pages say of themselves to others, and what a published book adds when it knows its address."""
+"""What the built pages say of themselves to others, and what a published book adds when it knows
+its address.
+"""
 
 import io
 import re
@@ -35,11 +37,17 @@ def meta(text, name):
 
 
 def test_each_page_describes_itself():
-    described = [path for path in pages_of(HTML) if path.name not in ("404.html", "search.html", "genindex.html")]
+    described = [
+        path
+        for path in pages_of(HTML)
+        if path.name not in ("404.html", "search.html", "genindex.html")
+    ]
     descriptions = Counter()
     for path in described:
         words = meta(head(path), "description")
-        assert 20 < len(words) <= LONGEST and "\\" not in words and "<" not in words, f"{path}: {words}"
+        assert 20 < len(words) <= LONGEST and "\\" not in words and "<" not in words, (
+            f"{path}: {words}"
+        )
         assert meta(head(path), "og:description") == words
         assert SETTINGS["title"] in meta(head(path), "og:title")
         assert head(path).count('name="viewport"') == 1, path
@@ -58,19 +66,31 @@ def test_files_for_machines():
         assert f"{page}.html): " in outline, f"llms.txt lacks {page}"
     assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
     missing = (HTML / "404.html").read_text("utf8")
-    assert 'href="/index.html"' in missing and "_static" not in missing, "it stands in for an address in any folder"
+    assert 'href="/index.html"' in missing and "_static" not in missing, (
+        "it stands in for an address in any folder"
+    )
 
 
 def test_index_names_every_term_symbol_and_function():
     """And leads from each of them to where it is explained, and to pages that speak of it."""
-    page = BeautifulSoup((HTML / "appendix" / "subject-index.html").read_text("utf8"), "lxml").article
-    terms, symbols, functions = (page.select(f"#{name} li") for name in ("terms", "symbols", "functions-and-classes"))
+    page = BeautifulSoup(
+        (HTML / "appendix" / "subject-index.html").read_text("utf8"), "lxml"
+    ).article
+    terms, symbols, functions = (
+        page.select(f"#{name} li") for name in ("terms", "symbols", "functions-and-classes")
+    )
     first = [item.a.get_text() for item in terms]
-    glossary = BeautifulSoup((HTML / "appendix" / "glossary.html").read_text("utf8"), "lxml").article
-    assert set(first) == {entry.find(string=True).strip() for entry in glossary.select("dl.glossary > dt")}
+    glossary = BeautifulSoup(
+        (HTML / "appendix" / "glossary.html").read_text("utf8"), "lxml"
+    ).article
+    assert set(first) == {
+        entry.find(string=True).strip() for entry in glossary.select("dl.glossary > dt")
+    }
     assert first == sorted(first, key=str.casefold) and len(first) > 30
     assert all(item.a["href"].startswith("glossary.html#") for item in terms)
-    assert sum(len(item.select("a")) > 1 for item in terms) > 0.8 * len(terms), "most terms are in a chapter"
+    assert sum(len(item.select("a")) > 1 for item in terms) > 0.8 * len(terms), (
+        "most terms are in a chapter"
+    )
     assert len(symbols) >= 8 and all(item.select_one(".katex") for item in symbols)
     names = {item.a.get_text() for item in functions}
     assert names >= set(orientation.__all__), "each is in the reference"
@@ -91,7 +111,9 @@ def test_title_is_said_once():
 def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     monkeypatch.setenv("BOOK_ADDRESS", "https://example.org/books/tiny")
     monkeypatch.setenv("BOOK_REPOSITORY", "https://github.com/example/tiny-book")
-    (tmp_path / "CITATION.cff").write_text("version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n")
+    (tmp_path / "CITATION.cff").write_text(
+        "version: 3.0\ndate-released: 2026-11-22\ndoi: 10.5281/zenodo.1\n"
+    )
     cells = chapter()
     cells[0].source += "\n\n```{cite-this-book}\n```\n"
     code, words = build(tmp_path, {"chapter": cells})
@@ -100,13 +122,23 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
     text = (site / "chapter.html").read_text("utf8")
     assert '<link rel="canonical" href="https://example.org/books/tiny/chapter.html" />' in text
     assert meta(text, "og:url") == "https://example.org/books/tiny/chapter.html"
-    assert "<loc>https://example.org/books/tiny/chapter.html</loc>" in (site / "sitemap.xml").read_text("utf8")
-    assert "Sitemap: https://example.org/books/tiny/sitemap.xml" in (site / "robots.txt").read_text("utf8")
+    assert "<loc>https://example.org/books/tiny/chapter.html</loc>" in (
+        site / "sitemap.xml"
+    ).read_text("utf8")
+    assert "Sitemap: https://example.org/books/tiny/sitemap.xml" in (site / "robots.txt").read_text(
+        "utf8"
+    )
     assert 'href="/books/tiny/index.html"' in (site / "404.html").read_text("utf8")
     assert "Edition 3.0, 22 November 2026" in text.partition("<footer")[2]
-    assert meta(text, "citation_doi") == "10.5281/zenodo.1" and meta(text, "citation_publication_date") == "2026-11-22"
+    assert (
+        meta(text, "citation_doi") == "10.5281/zenodo.1"
+        and meta(text, "citation_publication_date") == "2026-11-22"
+    )
     cited = " ".join(BeautifulSoup(text, "lxml").article.get_text().split())
-    assert f"{SETTINGS['title']}. Edition 3.0, 22 November 2026. https://doi.org/10.5281/zenodo.1." in cited
+    assert (
+        f"{SETTINGS['title']}. Edition 3.0, 22 November 2026. https://doi.org/10.5281/zenodo.1."
+        in cited
+    )
     assert "doi = {10.5281/zenodo.1}, url = {https://example.org/books/tiny/}, }" in cited
     (report,) = re.findall(r'class="report-mistake" href="([^"]*)"', text)
     asked = parse_qs(urlsplit(unescape(report)).query)
@@ -118,7 +150,9 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
 
 
 def test_picture_of_a_page_is_its_first_figure():
-    """In the colours of the light page, as large as it fits, and small enough for those who show it."""
+    """In the colours of the light page, as large as it fits, and small enough for those who show
+    it.
+    """
     for name in ("index", "chapters/euler-angles", "chapters/orientation-from-sensors"):
         figure, box, words = pictures.first_figure((HTML / f"{name}.html").read_text("utf8"))
         content = pictures.drawn(figure, box)

@@ -31,7 +31,11 @@ def opened(context, site, name=CHAPTER):
 
 
 def pages_with_questions():
-    return [path for path in sorted((HTML / "chapters").glob("*.html")) if 'class="question' in path.read_text("utf8")]
+    return [
+        path
+        for path in sorted((HTML / "chapters").glob("*.html"))
+        if 'class="question' in path.read_text("utf8")
+    ]
 
 
 def test_every_reply_says_something():
@@ -42,7 +46,10 @@ def test_every_reply_says_something():
         for box in BeautifulSoup(path.read_text("utf8"), "html.parser").select(".question"):
             replies = box.select(".replies li > div")
             assert len(replies) >= 2, box["id"]
-            assert all(len(reply.get_text().split()) >= 2 for reply in replies), (path.name, box["id"])
+            assert all(len(reply.get_text().split()) >= 2 for reply in replies), (
+                path.name,
+                box["id"],
+            )
             assert len(box.select(".replies li.right")) == 1
 
 
@@ -51,15 +58,25 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     box = page.locator(COVERING).first
     label, right = box.get_attribute("id"), box.get_attribute("data-answer")
     covered = page.locator(f"#{label} + .covered")
-    assert covered.evaluate("element => element.inert && getComputedStyle(element.firstElementChild).display") == "none"
-    assert 10 < covered.bounding_box()["height"] < 40  # one line with a word on it, never an empty field
+    assert (
+        covered.evaluate(
+            "element => element.inert && getComputedStyle(element.firstElementChild).display"
+        )
+        == "none"
+    )
+    assert (
+        10 < covered.bounding_box()["height"] < 40
+    )  # one line with a word on it, never an empty field
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text() == "Choose one first."
     wrong = box.locator(f'input:not([value="{right}"])').first
     wrong.check()
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text().startswith("Not quite.")
-    assert covered.count() == 0 and page.evaluate("document.querySelectorAll('.uncovered[inert]').length") == 0
+    assert (
+        covered.count() == 0
+        and page.evaluate("document.querySelectorAll('.uncovered[inert]').length") == 0
+    )
     box.locator(f'input[value="{right}"]').check()
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text().startswith("Right.")
@@ -94,11 +111,17 @@ def test_answer_can_be_seen_without_committing(context, site):
 def test_predictions_are_asked_open_or_left_out_as_the_reader_likes(context, site):
     page = opened(context, site)
     label = page.locator(COVERING).first.get_attribute("id")
-    for way, asks, folded in (("all open", True, 0), ("left out", False, 0), ("asked as they come", True, None)):
+    for way, asks, folded in (
+        ("all open", True, 0),
+        ("left out", False, 0),
+        ("asked as they come", True, None),
+    ):
         page.get_by_label("Predictions").select_option(label=way)
         page.reload()
         assert page.locator(f"#{label}").is_visible() == asks
-        assert page.locator(".covered").count() == (page.locator(COVERING).count() if folded is None else folded)
+        assert page.locator(".covered").count() == (
+            page.locator(COVERING).count() if folded is None else folded
+        )
         if way == "all open":
             assert page.locator(f"#{label} .replies li.right").is_visible()
     assert page.evaluate(KEPT).get("pages", {}).get(CHAPTER, {}).get("answers", {}) == {}
@@ -124,7 +147,8 @@ def test_reads_as_question_and_answer_without_script(browser, site):
 
 def test_works_where_storage_is_forbidden(context, site):
     context.add_init_script(
-        "Object.defineProperty(window, 'localStorage', {get() { throw new DOMException('no', 'SecurityError'); }})"
+        "Object.defineProperty(window, 'localStorage', {get() { throw new DOMException('no', "
+        "'SecurityError'); }})"
     )
     page = context.new_page()
     faults = []
@@ -156,7 +180,9 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
     page.locator(".exercise label.done input").first.check()
     page.locator(".recap .question input").first.check()
     page.locator(".recap .question").first.get_by_role("button", name="Check").click()
-    page.locator("article > section > section").first.locator(":scope > :last-child").scroll_into_view_if_needed()
+    page.locator("article > section > section").first.locator(
+        ":scope > :last-child"
+    ).scroll_into_view_if_needed()
     page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.read.length > 0")
     page = opened(context, site, "appendix/my-progress")
     row = page.locator(f'tr[data-page="{CHAPTER}"]')
@@ -164,7 +190,11 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
     def cell(kind):
         return row.locator(f'td[data-kind="{kind}"]').inner_text()
 
-    assert cell("done").startswith("1 of ") and cell("recap").startswith("1 of ") and " of " in cell("read")
+    assert (
+        cell("done").startswith("1 of ")
+        and cell("recap").startswith("1 of ")
+        and " of " in cell("read")
+    )
     with page.expect_download() as download:
         page.get_by_role("button", name="Export").click()
     record = json.loads(download.value.path().read_text("utf8"))
@@ -176,28 +206,43 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
     for text in ("[1", '{"other": 1}'):
         (tmp_path / "wrong.json").write_text(text)
         page.locator("input[type=file]").set_input_files(tmp_path / "wrong.json")
-        page.wait_for_function("document.querySelector('.said').textContent.includes('nothing has changed')")
+        page.wait_for_function(
+            "document.querySelector('.said').textContent.includes('nothing has changed')"
+        )
         page.evaluate("document.querySelector('.said').textContent = ''")
     assert not page.get_by_text("earlier edition").is_visible()
     record["pages"][CHAPTER]["done"].append("exercise-of-an-earlier-edition")
     (tmp_path / "kept.json").write_text(json.dumps(record))
     page.locator("input[type=file]").set_input_files(tmp_path / "kept.json")
-    page.wait_for_function("document.querySelector('.said').textContent === 'Imported: your record is back.'")
-    assert cell("done").startswith("1 of ") and "1 in all" in page.get_by_text("earlier edition").inner_text()
+    page.wait_for_function(
+        "document.querySelector('.said').textContent === 'Imported: your record is back.'"
+    )
+    assert (
+        cell("done").startswith("1 of ")
+        and "1 in all" in page.get_by_text("earlier edition").inner_text()
+    )
 
 
 def test_right_answer_of_the_checker_counts(context, site):
-    """The page's Python puts its reply into the article; here the reply is put there by hand. It was the third try."""
+    """The page's Python puts its reply into the article; here the reply is put there by hand. It
+    was the third try.
+    """
     page = opened(context, site)
     reply = Reply("chapters/right-handed", "correct")
     reply.tries = 3  # with the record beside it, it is never 0
     page.evaluate(
-        "(reply) => document.querySelector('article').insertAdjacentHTML('beforeend', reply)", reply._repr_html_()
+        "(reply) => document.querySelector('article').insertAdjacentHTML('beforeend', reply)",
+        reply._repr_html_(),
     )
-    page.wait_for_function(f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')")
+    page.wait_for_function(
+        f"({KEPT})().pages?.['{CHAPTER}']?.checked.includes('chapters/right-handed')"
+    )
 
 
 def test_paper_shows_the_answers(context, site):
     page = opened(context, site)
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
-    assert page.locator("details.replies:not([open])").count() == 0 and page.locator(".covered").count() == 0
+    assert (
+        page.locator("details.replies:not([open])").count() == 0
+        and page.locator(".covered").count() == 0
+    )

@@ -18,7 +18,9 @@ def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
     def joined(*records):
         texts = [json.dumps({NAME: record}) for record in records]
         node = Path(sys.executable).with_name("node")
-        said = subprocess.run([node, tmp_path / "join.mjs", *texts], capture_output=True, check=True, text=True)
+        said = subprocess.run(
+            [node, tmp_path / "join.mjs", *texts], capture_output=True, check=True, text=True
+        )
         return json.loads(said.stdout)[NAME]
 
     before = {"outcome": "correct", "help": "hint", "answers": ["a"]}

@@ -1,7 +1,9 @@
-"""The search: what readers type leads to the place that answers, from the third letter on and by the keyboard.
+"""The search: what readers type leads to the place that answers, from the third letter on and by
+the keyboard.
 
-The queries in ``queries`` were written down, with the places that answer, before the search was first run on them;
-those in the files called held-out were never looked at while it was tuned, and asked-held-out was gathered after that.
+The queries in ``queries`` were written down, with the places that answer, before the search was
+first run on them; those in the files called held-out were never looked at while it was tuned, and
+asked-held-out was gathered after that.
 """
 
 import json
@@ -44,14 +46,18 @@ def queries(name):
 
 def answers(place, wanted):
     if wanted.startswith("!"):
-        return place.startswith("appendix/reference") and place.endswith(f"#orientation.{wanted[1:]}")
+        return place.startswith("appendix/reference") and place.endswith(
+            f"#orientation.{wanted[1:]}"
+        )
     return place == wanted.replace("@", "appendix/glossary#term-")
 
 
 def places_found(typed):
     """What the search of the built book answers to each of the queries ``typed``."""
     command = [NODE, QUERIES / "ranks.mjs", HTML / SCRIPT.parent]
-    done = subprocess.run(command, input=json.dumps(typed), capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command, input=json.dumps(typed), capture_output=True, text=True, check=True
+    )
     return json.loads(done.stdout)
 
 
@@ -60,10 +66,19 @@ def test_right_place_comes_first_or_nearly(name):
     asked = list(queries(name))
     found = places_found([text for text, _ in asked])
     ranks = [
-        next((rank for rank, place in enumerate(places) if any(answers(place, one) for one in wanted)), None)
+        next(
+            (
+                rank
+                for rank, place in enumerate(places)
+                if any(answers(place, one) for one in wanted)
+            ),
+            None,
+        )
         for places, (_, wanted) in zip(found, asked, strict=True)
     ]
-    first, among_three = (sum(rank is not None and rank < most for rank in ranks) / len(ranks) for most in (1, 3))
+    first, among_three = (
+        sum(rank is not None and rank < most for rank in ranks) / len(ranks) for most in (1, 3)
+    )
     print(f"{name}: first {first:.0%}, among three {among_three:.0%}")
     assert first >= REACHED[name][0] and among_three >= REACHED[name][1]
 
@@ -72,14 +87,20 @@ def test_what_engineers_call_it_is_found():
     names = ["attitude", "SO(3)", "rotation matrix", "DCM", "roll pitch yaw"]
     names += ["intrinsic", "extrinsic", "Cardan", "versor"]
     for name, places in zip(names, places_found(names), strict=True):
-        assert any("glossary" in place or "chapters/" in place for place in places[:4]), (name, places[:4])
+        assert any("glossary" in place or "chapters/" in place for place in places[:4]), (
+            name,
+            places[:4],
+        )
 
 
 def known():
     """The places of the index, by page and anchor."""
     index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
     later = json.loads((HTML / WORDS).read_text("utf8").partition("=")[2].rstrip(";"))
-    return {(index["pages"][row[1] or 0][0], (row + ["", ""])[2]) for row in index["entries"] + later["entries"]}
+    return {
+        (index["pages"][row[1] or 0][0], (row + ["", ""])[2])
+        for row in index["entries"] + later["entries"]
+    }
 
 
 def test_places_that_answer_are_there():
@@ -98,18 +119,27 @@ def test_conversions_are_found_by_where_they_lead():
     """ "a to b" and "b from a" are one question, and "b to a" is another."""
     spoken = {"dcm": "rotation matrix", "quaternion": "quaternion", "body_fixed": "Euler angles"}
     spoken |= {"axis_angle": "axis and angle", "rotation_vector": "rotation vector"}
-    pairs = [(one, other) for one in spoken for other in spoken if "dcm" in (one, other) and one != other]
+    pairs = [
+        (one, other) for one in spoken for other in spoken if "dcm" in (one, other) and one != other
+    ]
     typed = [f"{spoken[source]} to {spoken[target]}" for target, source in pairs]
     typed += [f"how do I get {spoken[target]} from a {spoken[source]}?" for target, source in pairs]
     found = places_found(typed)
     for (target, source), places in zip(pairs * 2, found, strict=True):
-        functions = [place.partition("#orientation.")[2] for place in places if "#orientation." in place]
+        functions = [
+            place.partition("#orientation.")[2] for place in places if "#orientation." in place
+        ]
         assert functions[0] == f"{target}_from_{source}"
 
 
 def test_places_that_have_phrases_are_there():
     asked = yaml.safe_load((REPOSITORY / search.SYNONYMS).read_text("utf8"))["places"]
-    assert {f"{page}#{name}" for page, names in asked.items() for name in names if (page, name) not in known()} == set()
+    assert {
+        f"{page}#{name}"
+        for page, names in asked.items()
+        for name in names
+        if (page, name) not in known()
+    } == set()
 
 
 def test_figures_are_found_by_their_captions_and_numbers():
@@ -118,13 +148,16 @@ def test_figures_are_found_by_their_captions_and_numbers():
 
 
 def test_names_slips_and_words_of_programs_are_understood():
-    """What nobody wrote as the book does, and what a table of JavaScript would take for something of its own."""
+    """What nobody wrote as the book does, and what a table of JavaScript would take for something
+    of its own.
+    """
     leads_to = {
         "constructor": None,
         "__proto__ toString": None,
         "QuaternionToEuler": "chapters/back-from-a-matrix#reading-off-and-turning-back",
         "eular angels": "chapters/euler-angles",
-        "rotate a vector by a quaternion": "chapters/quaternions-in-full#turning-a-vector",  # no rotation vector
+        # no rotation vector
+        "rotate a vector by a quaternion": "chapters/quaternions-in-full#turning-a-vector",
         "slerp() takes the long way": "chapters/quaternions-in-full#half-way",  # no formula
     }
     found = places_found(list(leads_to))
@@ -136,7 +169,11 @@ def test_first_sentences_are_those_of_the_text():
     """No line that only leads elsewhere; degrees as readers know them."""
     index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
     about = [row[index["fields"].index("about")] for row in index["entries"] if len(row) > 5]
-    assert not [words for words in about if words.startswith("On the gimbal:") or "∘" in words or "\u2061" in words]
+    assert not [
+        words
+        for words in about
+        if words.startswith("On the gimbal:") or "∘" in words or "\u2061" in words
+    ]
 
 
 def test_little_is_fetched_before_the_first_answer():
@@ -144,8 +181,12 @@ def test_little_is_fetched_before_the_first_answer():
     assert WORDS.name in (HTML / SCRIPT).read_text("utf8")
 
 
-@pytest.mark.parametrize(("key", "size", "theme"), [("/", WIDE, "light"), ("Control+k", NARROW, "dark")])
-def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, site, key, size, theme):
+@pytest.mark.parametrize(
+    ("key", "size", "theme"), [("/", WIDE, "light"), ("Control+k", NARROW, "dark")]
+)
+def test_palette_answers_while_one_types_and_leads_to_the_very_place(
+    browser, site, key, size, theme
+):
     with Visit(browser, site, CHAPTER, theme, size) as visit:
         page = visit.page
         page.keyboard.press(key)
@@ -216,7 +257,8 @@ def test_numbers_of_an_orientation_are_known(tmp_path):
     script = tmp_path / "try.mjs"
     source = Path(search.__file__).with_name("js") / "pasted.js"
     script.write_text(
-        f"{source.read_text('utf8')}\nconsole.log(JSON.stringify({json.dumps(list(PASTED))}.map(pasted)));"
+        f"{source.read_text('utf8')}\n"
+        f"console.log(JSON.stringify({json.dumps(list(PASTED))}.map(pasted)));"
     )
     done = subprocess.run([NODE, script], capture_output=True, text=True, check=True)
     assert dict(zip(PASTED, json.loads(done.stdout), strict=True)) == PASTED

@@ -1,4 +1,6 @@
-"""The built site as others serve it: no headers of ours, a path below the root, other types, a foreign frame."""
+"""The built site as others serve it: no headers of ours, a path below the root, other types, a
+foreign frame.
+"""
 
 import json
 import shutil
@@ -20,7 +22,10 @@ from test_site import violations
 from notebook_pages import finish, install
 
 POLICY_HEADER = "Content-Security-Policy"
-SIZE = f"{json.loads((HTML / 'runtime' / 'pyodide-lock.json').read_text('utf8'))['bytes'] / 1e6:.0f} MB"
+SIZE = (
+    f"{json.loads((HTML / 'runtime' / 'pyodide-lock.json').read_text('utf8'))['bytes'] / 1e6:.0f} "
+    "MB"
+)
 
 
 class Silent(SimpleHTTPRequestHandler):
@@ -38,9 +43,15 @@ class Silent(SimpleHTTPRequestHandler):
 
 
 class LikeGitHubPages(Silent):
-    """The headers that GitHub Pages sends: every file may be kept for ten minutes, and anybody may read it."""
+    """The headers that GitHub Pages sends: every file may be kept for ten minutes, and anybody may
+    read it.
+    """
 
-    added = {"Access-Control-Allow-Origin": "*", "Cache-Control": "max-age=600", "Server": "GitHub.com"}
+    added = {
+        "Access-Control-Allow-Origin": "*",
+        "Cache-Control": "max-age=600",
+        "Server": "GitHub.com",
+    }
     extensions_map = SimpleHTTPRequestHandler.extensions_map | {
         ".js": "application/javascript; charset=utf-8",
         ".wasm": "application/wasm",
@@ -64,14 +75,18 @@ def page(browser):
     context = browser.new_context(bypass_csp=False, viewport={"width": 1300, "height": 900})
     opened = context.new_page()
     opened.faults = []
-    opened.on("console", lambda message: message.type == "error" and opened.faults.append(message.text))
+    opened.on(
+        "console", lambda message: message.type == "error" and opened.faults.append(message.text)
+    )
     opened.on("pageerror", lambda error: opened.faults.append(str(error)))
     yield opened
     context.close()
 
 
 def run_and_stop(page, address):
-    """Run a cell, stop an endless one, and find the names still there: Python is isolated. Nothing is forbidden."""
+    """Run a cell, stop an endless one, and find the names still there: Python is isolated. Nothing
+    is forbidden.
+    """
     page.goto(address + QUIET)
     assert page.get_attribute("button.run-page", "data-size") == SIZE
     page.locator("div.cell").nth(2).locator("button.run-cell").click()
@@ -91,7 +106,9 @@ def run_and_stop(page, address):
 
 
 def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
-    """A server that sends nothing of its own: a service worker isolates the page, and keeps the book by choice."""
+    """A server that sends nothing of its own: a service worker isolates the page, and keeps the
+    book by choice.
+    """
     (tmp_path / "courses").mkdir()
     (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
     with serving(folder=tmp_path) as root:
@@ -100,7 +117,9 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         page.click("details.take-away summary")
         page.click("button.keep-book")
         offer = json.loads((HTML / install.LIST).read_text("utf8"))
-        bytes_of = {part: sum(size for _, size in offer[part].values()) for part in ("book", "python")}
+        bytes_of = {
+            part: sum(size for _, size in offer[part].values()) for part in ("book", "python")
+        }
         choice = page.locator(".live-choices button").first
         assert choice.inner_text() == f"The pages, {bytes_of['book'] / 1e6:.0f} MB"
         choice.click()
@@ -114,7 +133,10 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith('"Source')
     page.goto(f"{address}search.html?q=gimbal")
     page.wait_for_selector("#search-results li a")
-    assert page.evaluate(f"fetch('{address}lite/index.html').then(() => 'there', () => 'gone')") == "gone"
+    assert (
+        page.evaluate(f"fetch('{address}lite/index.html').then(() => 'there', () => 'gone')")
+        == "gone"
+    )
 
 
 @pytest.mark.long
@@ -154,7 +176,9 @@ def test_list_of_what_is_kept_is_the_site():
             assert (HTML / name).stat().st_size == size
             assert finish.sha256((HTML / name).read_bytes()).hexdigest().startswith(print_)
     pages = {str(path.relative_to(HTML)) for path in finish.pages_of(HTML)} - {"404.html"}
-    assert pages <= set(offer["book"]) and not [name for name in offer["book"] if name.startswith("lite/")]
+    assert pages <= set(offer["book"]) and not [
+        name for name in offer["book"] if name.startswith("lite/")
+    ]
     lock = json.loads((HTML / "runtime" / "pyodide-lock.json").read_text("utf8"))
     assert sum(size for _, size in offer["python"].values()) >= lock["bytes"]
 
@@ -178,9 +202,14 @@ def test_every_page_names_a_strict_policy_and_versions():
         assert text.count(POLICY_HEADER) == 1
         rules = dict(
             rule.split(" ", 1)
-            for rule in text.partition(f'{POLICY_HEADER}" content="')[2].partition('"')[0].split("; ")
+            for rule in text.partition(f'{POLICY_HEADER}" content="')[2]
+            .partition('"')[0]
+            .split("; ")
         )
-        assert "unsafe-inline" not in rules["script-src"] and "'unsafe-eval'" not in rules["script-src"]
+        assert (
+            "unsafe-inline" not in rules["script-src"]
+            and "'unsafe-eval'" not in rules["script-src"]
+        )
         assert rules["object-src"] == "'none'"
         assert POLICY_HEADER not in text[max(text.find("<script"), 0) :] or "<script" not in text
         for match in finish.VERSIONED.finditer(text):
@@ -192,9 +221,13 @@ def test_every_page_names_a_strict_policy_and_versions():
 
 @pytest.mark.long
 def test_in_a_foreign_frame(page, tmp_path):
-    """As in the page of a course on another host: code runs there, though the frame is not isolated."""
+    """As in the page of a course on another host: code runs there, though the frame is not
+    isolated.
+    """
     with serving() as address:
-        frame_of = address.replace("127.0.0.1", "localhost") + QUIET  # another site than that around it
+        frame_of = (
+            address.replace("127.0.0.1", "localhost") + QUIET
+        )  # another site than that around it
         (tmp_path / "course.html").write_text(
             f'<link rel=icon href=data:,><iframe src="{frame_of}" width=1000 height=800></iframe>'
         )
@@ -209,7 +242,7 @@ def test_in_a_foreign_frame(page, tmp_path):
             assert page.faults == []
 
 
-# --- nginx ------------------------------------------------------------------------------------------
+# --- nginx ----------------------------------------------------------------------------------------
 
 NGINX = """
 pid {folder}/nginx.pid; error_log {folder}/error.log; daemon off; worker_processes 1;
@@ -259,7 +292,9 @@ def test_nginx_as_debian_has_it(page, tmp_path):
 
 @pytest.mark.long
 def test_policy_as_a_header_lets_python_run(page, tmp_path):
-    """A header, other than a page's own words, binds its threads too: Python starts under the same rules."""
+    """A header, other than a page's own words, binds its threads too: Python starts under the same
+    rules.
+    """
     text = (HTML / QUIET).read_text("utf8")
     rules = text.partition(f'{POLICY_HEADER}" content="')[2].partition('"')[0]
     added = f'add_header {POLICY_HEADER} "{rules}";'
@@ -270,15 +305,29 @@ def test_policy_as_a_header_lets_python_run(page, tmp_path):
 @pytest.mark.long
 def test_pythons_own_server():
     """As the command line starts it."""
-    command = [sys.executable, "-u", "-m", "http.server", "0", "--bind", "127.0.0.1", "--directory", str(HTML)]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    command = [
+        sys.executable,
+        "-u",
+        "-m",
+        "http.server",
+        "0",
+        "--bind",
+        "127.0.0.1",
+        "--directory",
+        str(HTML),
+    ]
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
     try:
         port = process.stdout.readline().split("port ")[1].split()[0]
         with urllib.request.urlopen(f"http://127.0.0.1:{port}/{QUIET}") as answer:
             assert answer.headers["Content-Type"] == "text/html"
         for name in ("pyodide.js", "pyodide.asm.js"):
             (path,) = (HTML / "runtime").glob(f"pyodide-*/{name}")
-            with urllib.request.urlopen(f"http://127.0.0.1:{port}/{path.relative_to(HTML)}") as answer:
+            with urllib.request.urlopen(
+                f"http://127.0.0.1:{port}/{path.relative_to(HTML)}"
+            ) as answer:
                 assert "javascript" in answer.headers["Content-Type"]
     finally:
         process.terminate()

@@ -22,14 +22,18 @@ import orientation_recordings as recordings
 from notebook_pages import mathematics
 
 PAGES = html_pages()
-#: Of pages that are made alike: one with text, formulas and a figure, and one with questions and their drawings.
+#: Of pages that are made alike: one with text, formulas and a figure, and one with questions and
+#: their drawings.
 EVERY_DAY = ("chapters/reference-frames.html", "exercises/other-descriptions.html")
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
 HEAVIEST_PAGE, ESSAY = 365_000, 468_000  # bytes of the page itself, as it stands on the disk
 LARGEST_SHIFT = 0.001
-MOST_AWAITED, MOST_AWAITED_PACKED = 136_000, 31_000  # bytes of a page's head and of its style sheets
+MOST_AWAITED, MOST_AWAITED_PACKED = (
+    136_000,
+    31_000,
+)  # bytes of a page's head and of its style sheets
 
 WATCH_SHIFTS = """
 window.shift = 0;
@@ -51,7 +55,8 @@ MATHEMATICS = r"""() => {
   if (raw) faults.push("raw TeX: " + raw[0]);
   return faults;
 }"""
-# What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not look for it.
+# What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not
+# look for it.
 HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
   && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
   && !box.closest("svg, input, select, textarea, .katex > :first-child, .unseen")).map((box) =>
@@ -86,8 +91,12 @@ def text(page):
 def violations(page, where="document"):
     """What axe finds wrong, one line for each kind, with the first element."""
     page.evaluate(axe_source())
-    found = page.evaluate(f"async () => (await axe.run({where}, {{resultTypes: ['violations']}})).violations")
-    return [f"{v['id']}: {v['help']} ({len(v['nodes'])}): {v['nodes'][0]['html'][:200]}" for v in found]
+    found = page.evaluate(
+        f"async () => (await axe.run({where}, {{resultTypes: ['violations']}})).violations"
+    )
+    return [
+        f"{v['id']}: {v['help']} ({len(v['nodes'])}): {v['nodes'][0]['html'][:200]}" for v in found
+    ]
 
 
 class Visit:
@@ -106,17 +115,21 @@ class Visit:
         self.page.on("request", self.note_request)
         self.page.on("requestfinished", self.note_response)
         self.page.goto(site + name)
-        # The page is loaded. That nothing more comes is not always told, where many files were asked for at once.
+        # The page is loaded. That nothing more comes is not always told, where many files were
+        # asked for at once.
         with suppress(TimeoutError):
             self.page.wait_for_load_state("networkidle", timeout=20_000)
         self.page.wait_for_selector("html:not(.settling, .in-parts)")
         if self.page.evaluate("document.documentElement.dataset.typefaces === 'late'"):
-            self.page.reload()  # a busy machine: now they are in the browser's cache, as on a reader's second page
+            # a busy machine: now they are in the browser's cache, as on a reader's second page
+            self.page.reload()
             self.page.wait_for_selector("html:not(.settling, .in-parts)")
             self.page.evaluate("document.fonts.ready.then(() => true)")
 
     def shift(self):
-        """How far lines moved; where the typefaces came late once more, their change is no fault."""
+        """How far lines moved; where the typefaces came late once more, their change is no
+        fault.
+        """
         late = self.page.evaluate("document.documentElement.dataset.typefaces === 'late'")
         return 0 if late else self.page.evaluate("window.shift")
 
@@ -133,7 +146,9 @@ class Visit:
 
     def weights(self):
         """The bytes over the wire, by address."""
-        return {url: len(gzip.compress(response.body(), 6)) for url, response in self.responses.items()}
+        return {
+            url: len(gzip.compress(response.body(), 6)) for url, response in self.responses.items()
+        }
 
     def __enter__(self):
         return self
@@ -156,7 +171,10 @@ def test_page_in_light_and_wide(browser, site, name):
         assert bool(page.query_selector(".katex")) or not name.startswith("chapters/")
         assert violations(page) == []
         assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
-        page.evaluate("document.querySelectorAll('article details').forEach((details) => { details.open = true; })")
+        page.evaluate(
+            "document.querySelectorAll('article details').forEach((details) => { details.open = "
+            "true; })"
+        )
         assert page.evaluate(HIDDEN) == []
         page.set_viewport_size(NARROW)
         assert page.evaluate(SIDEWAYS) <= 0, "the narrow page scrolls sideways"
@@ -176,13 +194,19 @@ def test_page_in_dark_and_narrow(browser, site, name):
         assert visit.shift() < LARGEST_SHIFT
         assert page.evaluate(SIDEWAYS) <= 0, "the page scrolls sideways"
         boxes = page.eval_on_selector_all(
-            ".math-box", "all => all.map(b => [b.scrollWidth > b.clientWidth + 1, b.tabIndex === 0])"
+            ".math-box",
+            "all => all.map(b => [b.scrollWidth > b.clientWidth + 1, b.tabIndex === 0])",
         )
-        assert all(overflows == stop for overflows, stop in boxes), "only wide boxes are stops of the Tab key"
+        assert all(overflows == stop for overflows, stop in boxes), (
+            "only wide boxes are stops of the Tab key"
+        )
         assert page.evaluate(WITHOUT_SHADOW) == []
-        # What is set of the formulas, thousands of elements, takes the colour of the text around it: the wide
-        # pages were looked at with all of them.
-        page.evaluate("document.querySelectorAll('.katex > [aria-hidden] > *').forEach((element) => element.remove())")
+        # What is set of the formulas, thousands of elements, takes the colour of the text around
+        # it: the wide pages were looked at with all of them.
+        page.evaluate(
+            "document.querySelectorAll('.katex > [aria-hidden] > *').forEach((element) => "
+            "element.remove())"
+        )
         assert violations(page) == []
         # The wide page has more around the text.
         page.set_viewport_size(WIDE)
@@ -191,7 +215,9 @@ def test_page_in_dark_and_narrow(browser, site, name):
 
 
 def test_little_is_awaited_before_the_first_line_is_seen():
-    """On a slow telephone this is the time until something is seen: styles in the head, and no script."""
+    """On a slow telephone this is the time until something is seen: styles in the head, and no
+    script.
+    """
     styles, weights = {}, {}
     for name in PAGES:
         head = text(name).partition("<body")[0]
@@ -201,21 +227,29 @@ def test_little_is_awaited_before_the_first_line_is_seen():
         for address in found:
             path = (HTML / name).parent / address
             styles.setdefault(path, (path.stat().st_size, len(gzip.compress(path.read_bytes(), 6))))
-        sizes = [(len(head), len(gzip.compress(head.encode(), 6))), *(styles[(HTML / name).parent / a] for a in found)]
+        sizes = [
+            (len(head), len(gzip.compress(head.encode(), 6))),
+            *(styles[(HTML / name).parent / a] for a in found),
+        ]
         weights[name] = [sum(column) for column in zip(*sizes)]
     assert max(plain for plain, _ in weights.values()) < MOST_AWAITED, weights
     assert max(packed for _, packed in weights.values()) < MOST_AWAITED_PACKED, weights
-    assert not any("base64" in path.read_text("utf8") for path in styles), "what is inside a style sheet is awaited"
+    assert not any("base64" in path.read_text("utf8") for path in styles), (
+        "what is inside a style sheet is awaited"
+    )
 
 
 @pytest.mark.parametrize(
-    ("name", "uses_all"), [("chapters/unit-quaternions.html", False), ("chapters/angular-velocity.html", True)]
+    ("name", "uses_all"),
+    [("chapters/unit-quaternions.html", False), ("chapters/angular-velocity.html", True)],
 )
-def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(browser, site, name, uses_all):
+def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(
+    browser, site, name, uses_all
+):
     """What the head names is what the first view uses, so that no typeface comes after the others.
 
-    Looked at twice, without a clock: while the script that lays out the rest does not come, the typefaces in use are
-    those named; when it comes, the others are asked for after these.
+    Looked at twice, without a clock: while the script that lays out the rest does not come, the
+    typefaces in use are those named; when it comes, the others are asked for after these.
     """
     named = set(re.findall(r'<link rel="preload" as="font"[^>]* href="\.\./([^"]*)"', text(name)))
     assert len(named) > 3
@@ -230,15 +264,22 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     page.route("**/_static/page-*.js*", lambda route: route.abort())
     page.goto(site + name)
     assert set(asked(page)) == named
-    # What stands until they come is a typeface of the machine, if it has such a one: it is not counted.
-    loaded = "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' for now'))"
+    # What stands until they come is a typeface of the machine, if it has such a one: it is not
+    # counted.
+    loaded = (
+        "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' "
+        "for now'))"
+    )
     assert page.evaluate(f"{loaded}.length") == len(named)
     page.close()
     with Visit(browser, site, name, "light", WIDE) as visit:
         fetched = asked(visit.page)
     assert set(fetched[: len(named)]) == named, fetched
     assert (len(fetched) == len(named)) == uses_all, fetched
-    assert not any("KaTeX" in address for address in re.findall(r'<link rel="preload"[^>]*', text("search.html")))
+    assert not any(
+        "KaTeX" in address
+        for address in re.findall(r'<link rel="preload"[^>]*', text("search.html"))
+    )
 
 
 def test_no_page_is_heavy():
@@ -253,7 +294,9 @@ def test_letters_of_drawings_stand_once_on_a_page():
         assert len(outlines) == len(set(outlines)), name
         names = re.findall(r'<path id="(o\d+)"', text(name))
         used = set(re.findall(r'<use [^>]*href="#([^"]*)"', text(name)))
-        assert len(names) == len(set(names)) and used <= set(re.findall(r'\bid="([^"]*)"', text(name))), name
+        assert len(names) == len(set(names)) and used <= set(
+            re.findall(r'\bid="([^"]*)"', text(name))
+        ), name
 
 
 # Shows formulas and tells where each letter stands, from the corner of its box.
@@ -280,21 +323,31 @@ LETTERS = """async (html) => {
 
 
 def stand_as_katex_sets_them(run, within=1):
-    """Our shorter HTML of some formulas, letter by letter, against KaTeX's own; ``run`` runs a function in a page."""
-    formulas = sorted({unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))})
+    """Our shorter HTML of some formulas, letter by letter, against KaTeX's own; ``run`` runs a
+    function in a page.
+    """
+    formulas = sorted(
+        {unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))}
+    )
     chosen = random.Random(os.environ.get("BOOK_TEST_SEED", "0")).sample(formulas, 60)
     own = [mathematics.katex(os.getpid())(tex, False, "1.15")["html"] for tex in chosen]
     light = [mathematics.lighten(html, tex) for html, tex in zip(own, chosen, strict=True)]
-    styles = re.sub(r"@font-face\s*\{[^}]*\}", "", mathematics.KATEX.with_name("katex.css").read_text("utf8"))
+    styles = re.sub(
+        r"@font-face\s*\{[^}]*\}", "", mathematics.KATEX.with_name("katex.css").read_text("utf8")
+    )
     places = []
     for style, formulas in ((styles, own), ("", light)):
         # Each stands in one line, however wide.
         lines = "".join(f'<p style="width: 4000px">{html}</p>' for html in formulas)
-        places.append(run(LETTERS, f"<style>{style} .katex {{ font-size: 1.08em; }}</style>{lines}"))
+        places.append(
+            run(LETTERS, f"<style>{style} .katex {{ font-size: 1.08em; }}</style>{lines}")
+        )
     for tex, before, after in zip(chosen, *places, strict=True):
         assert [letter for letter, *_ in before] == [letter for letter, *_ in after], tex
         apart = max(
-            abs(a - b) for one, two in zip(before, after, strict=True) for a, b in zip(one[1:], two[1:], strict=True)
+            abs(a - b)
+            for one, two in zip(before, after, strict=True)
+            for a, b in zip(one[1:], two[1:], strict=True)
         )
         assert apart < within, (tex, apart)
 
@@ -309,9 +362,13 @@ def test_light_formulas_stand_as_katex_sets_them(browser, site):
 def test_a_formula_is_as_wide_in_the_list_of_sections_as_in_its_heading(browser, site):
     page = browser.new_page(viewport=WIDE)
     page.goto(f"{site}chapters/unit-quaternions.html")
-    width = "(formula) => formula.getBoundingClientRect().width / parseFloat(getComputedStyle(formula).fontSize)"
+    width = (
+        "(formula) => formula.getBoundingClientRect().width / "
+        "parseFloat(getComputedStyle(formula).fontSize)"
+    )
     listed, heading = (
-        page.locator(f"{place} .katex > i:last-child > i").first.evaluate(width) for place in (".page-toc", "h3")
+        page.locator(f"{place} .katex > i:last-child > i").first.evaluate(width)
+        for place in (".page-toc", "h3")
     )
     page.close()
     assert abs(listed - heading) < 0.1
@@ -322,8 +379,13 @@ def test_a_box_that_does_not_scroll_has_no_stroke_at_its_edges(browser, site):
     page = browser.new_page(viewport=WIDE, device_scale_factor=2)
     page.goto(f"{site}chapters/orientation-with-sympy.html")
     page.wait_for_selector("html:not(.settling, .in-parts)")
-    fits = "(boxes) => boxes.findIndex((box) => box.offsetHeight && box.scrollWidth <= box.clientWidth)"
-    box = page.locator("div.cell_output .math-box").nth(page.locator("div.cell_output .math-box").evaluate_all(fits))
+    fits = (
+        "(boxes) => boxes.findIndex((box) => box.offsetHeight && box.scrollWidth <= "
+        "box.clientWidth)"
+    )
+    box = page.locator("div.cell_output .math-box").nth(
+        page.locator("div.cell_output .math-box").evaluate_all(fits)
+    )
     box.scroll_into_view_if_needed()
     strokes = set()
     for shift in (0, 0.2, 0.25, 0.4, 0.5):
@@ -359,7 +421,8 @@ def test_theme_switch(browser, site):
             page.click(".theme-switch-button")
             seen.append(
                 page.evaluate(
-                    "[document.documentElement.dataset.mode, getComputedStyle(document.body).backgroundColor]"
+                    "[document.documentElement.dataset.mode, "
+                    "getComputedStyle(document.body).backgroundColor]"
                 )
             )
         assert {mode for mode, _ in seen} == {"auto", "light", "dark"}
@@ -415,20 +478,29 @@ def test_take_away_menu(browser, site):
         leg = np.loadtxt(archive.open("recordings/lower_leg.csv"), delimiter=",", skiprows=1)
     assert np.array_equal(leg, recordings.table("lower_leg"))
     questions = text("exercises/orientation-from-sensors.html")
-    assert "recordings.zip" in questions and "recordings.zip" not in text("exercises/euler-angles.html")
+    assert "recordings.zip" in questions and "recordings.zip" not in text(
+        "exercises/euler-angles.html"
+    )
 
 
 def test_nothing_in_the_site_is_idle():
     """Every file of _static is named by a page, a style sheet or a script."""
     kinds = (".html", ".css", ".js", ".webmanifest")
-    everything = "\n".join(path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds)
-    # By a part of their name that a script puts together: what a page's links lead to, and a formula's languages.
+    everything = "\n".join(
+        path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds
+    )
+    # By a part of their name that a script puts together: what a page's links lead to, and a
+    # formula's languages.
     made = ("previews/", "formulas-")
-    idle = [p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything]
+    idle = [
+        p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything
+    ]
     for name in made:
         assert name in everything
     assert [
-        name for name in idle if not (HTML / "_static" / "previews" / name).exists() and not name.startswith(made)
+        name
+        for name in idle
+        if not (HTML / "_static" / "previews" / name).exists() and not name.startswith(made)
     ] == []
 
 

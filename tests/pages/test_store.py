@@ -1,4 +1,6 @@
-"""What a browser keeps of the book is one store with one version: older forms are taken over, newer ones left alone."""
+"""What a browser keeps of the book is one store with one version: older forms are taken over, newer
+ones left alone.
+"""
 
 import json
 import re
@@ -13,11 +15,18 @@ from test_answers import ANSWER, BLANK, EMPTY, EXERCISE, OTHER, Tab, fill
 from test_answers import context as context  # noqa: PLC0414 -- a fixture
 from test_questions import CHAPTER, opened
 
-SECOND = json.loads(Path(__file__).with_name("kept").joinpath("second-edition.json").read_text("utf8"))
+SECOND = json.loads(
+    Path(__file__).with_name("kept").joinpath("second-edition.json").read_text("utf8")
+)
 RECORD = "progress of /"
 NEWER_LIST = {"format": 99, "edition": "x"}
-PUT = "(kept) => { for (const [key, text] of Object.entries(kept)) localStorage.setItem(key, text); }"
-ALL = "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => /^(book|progress|code) /.test(key)))"
+PUT = (
+    "(kept) => { for (const [key, text] of Object.entries(kept)) localStorage.setItem(key, text); }"
+)
+ALL = (
+    "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => "
+    "/^(book|progress|code) /.test(key)))"
+)
 HERE = "() => bookStore.record()"
 pytestmark = pytest.mark.sampled(3)
 
@@ -28,7 +37,7 @@ def kept_before(page, site, kept):
     page.evaluate(PUT, kept)
 
 
-# --- older forms -------------------------------------------------------------------------------------
+# --- older forms ----------------------------------------------------------------------------------
 
 
 def test_what_the_second_edition_kept_is_all_there(context, site):
@@ -48,11 +57,15 @@ def test_what_the_second_edition_kept_is_all_there(context, site):
     assert "tried this one before" in tab.page.locator("p.live-known").first.inner_text()
     # The edition before this one would still find all that it kept.
     now = page.evaluate(ALL)
-    assert {key: now[key] for key in now if key in SECOND} == {key: SECOND[key] for key in SECOND if key != "mode"}
+    assert {key: now[key] for key in now if key in SECOND} == {
+        key: SECOND[key] for key in SECOND if key != "mode"
+    }
 
 
 def test_older_form_is_taken_over_again_only_where_it_has_changed(context, site):
-    """What the reader takes back stays away, and what a tab of the second edition still writes comes."""
+    """What the reader takes back stays away, and what a tab of the second edition still writes
+    comes.
+    """
     page = context.new_page()
     kept_before(page, site, SECOND)
     page.goto(f"{site}{CHAPTER}.html")
@@ -66,15 +79,26 @@ def test_older_form_is_taken_over_again_only_where_it_has_changed(context, site)
     page.reload()
     here = page.evaluate(HERE)[CHAPTER]
     assert "vectors" in here["read"]
-    assert here["answers"]["recap-frame"] == {"first": "A", "last": "B", "right": True, "rightAtFirst": False}
+    assert here["answers"]["recap-frame"] == {
+        "first": "A",
+        "last": "B",
+        "right": True,
+        "rightAtFirst": False,
+    }
 
 
-@pytest.mark.parametrize("damaged", ['{"pages": 3}', "not JSON", '{"pages": {"x": {"read": 1, "answers": {"y": 2}}}}'])
+@pytest.mark.parametrize(
+    "damaged", ['{"pages": 3}', "not JSON", '{"pages": {"x": {"read": 1, "answers": {"y": 2}}}}']
+)
 def test_damaged_record_of_the_second_edition_stops_nothing(context, site, damaged):
     page = context.new_page()
     faults = []
     page.on("pageerror", lambda error: faults.append(str(error)))
-    kept_before(page, site, {RECORD: damaged, "book / coursework progress.json": damaged, "book / version": "x"})
+    kept_before(
+        page,
+        site,
+        {RECORD: damaged, "book / coursework progress.json": damaged, "book / version": "x"},
+    )
     page.goto(f"{site}{CHAPTER}.html")
     page.locator(".exercise label.done input").first.check()
     assert page.evaluate(HERE)[CHAPTER]["done"] and faults == []
@@ -107,7 +131,9 @@ def test_older_and_newer_forms_in_each_engine(request, site, kind):
         engine.go(f"{site}search.html")
         engine.run(PUT, SECOND)
         engine.go(f"{site}{CHAPTER}.html")
-        assert engine.wait("() => globalThis.bookStore?.record()")[CHAPTER]["done"] == ["exercise-right-handed"]
+        assert engine.wait("() => globalThis.bookStore?.record()")[CHAPTER]["done"] == [
+            "exercise-right-handed"
+        ]
         engine.run(PUT, {"book / version": "99"})
         engine.go(f"{site}{CHAPTER}.html")
         assert engine.wait("() => globalThis.progress?.whyNotKept()").startswith("A newer edition")
@@ -116,7 +142,7 @@ def test_older_and_newer_forms_in_each_engine(request, site, kind):
         engine.close()
 
 
-# --- three tabs --------------------------------------------------------------------------------------
+# --- three tabs -----------------------------------------------------------------------------------
 
 
 AT_ONE_MOMENT = """([moment, number, question]) => new Promise((done) => {
@@ -136,7 +162,10 @@ def test_three_tabs_that_write_at_one_moment_lose_nothing(context, site):
     tabs = [opened(context, site) for _ in range(3)]
     moment = (time.time() + 2) * 1000
     for number, tab in enumerate(tabs):
-        tab.evaluate(f"(given) => {{ window.over = ({AT_ONE_MOMENT})(given); }}", [moment, number, "shared/one"])
+        tab.evaluate(
+            f"(given) => {{ window.over = ({AT_ONE_MOMENT})(given); }}",
+            [moment, number, "shared/one"],
+        )
     for tab in tabs:
         tab.evaluate("() => window.over")
     page = opened(context, site)
@@ -165,26 +194,34 @@ def test_three_tabs_that_type_in_one_cell_at_one_moment_lose_nothing(context, si
     for tab in tabs:
         tab.page.evaluate("() => window.over")
     tabs[0].page.wait_for_function(
-        "(texts) => texts.every((text) => JSON.stringify(Object.values(localStorage)).includes(text))",
+        "(texts) => texts.every((text) => "
+        "JSON.stringify(Object.values(localStorage)).includes(text))",
         arg=[f"tab = {number}" for number in range(3)],
     )
     assert [tab.errors for tab in tabs] == [[], [], []]
 
 
 def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
-    """Only what another tab has written meanwhile is joined: a mistake that was looked at again is over."""
+    """Only what another tab has written meanwhile is joined: a mistake that was looked at again is
+    over.
+    """
     page = opened(context, site)
-    keep = "([text, base]) => bookStore.keepTries(JSON.stringify(text), Date.now(), base && JSON.stringify(base))"
+    keep = (
+        "([text, base]) => bookStore.keepTries(JSON.stringify(text), Date.now(), base && "
+        "JSON.stringify(base))"
+    )
     before = {"q": {"mistake": "transposed", "outcome": "wrong"}}
     page.evaluate(keep, [before, None])
     after = {"q": {"outcome": "correct"}}
     page.evaluate(keep, [after, before])
     assert json.loads(page.evaluate("bookStore.tries().text")) == after
-    page.evaluate(keep, [{"q": {"outcome": "wrong", "answers": ["a"]}}, before])  # of a tab that began earlier
+    page.evaluate(
+        keep, [{"q": {"outcome": "wrong", "answers": ["a"]}}, before]
+    )  # of a tab that began earlier
     assert json.loads(page.evaluate("bookStore.tries().text"))["q"]["outcome"] == "correct"
 
 
-# --- full, and newer ---------------------------------------------------------------------------------
+# --- full, and newer ------------------------------------------------------------------------------
 
 
 def test_full_storage_stops_nothing_and_the_older_form_waits(context, site):
@@ -194,11 +231,17 @@ def test_full_storage_stops_nothing_and_the_older_form_waits(context, site):
     kept_before(page, site, SECOND)
     fill(SimpleNamespace(page=page))
     page.goto(f"{site}{CHAPTER}.html")
-    assert page.evaluate(HERE)[CHAPTER]["done"] == ["exercise-right-handed"], "as long as the page lasts"
+    assert page.evaluate(HERE)[CHAPTER]["done"] == ["exercise-right-handed"], (
+        "as long as the page lasts"
+    )
     page.locator(".exercise label.done input").last.check()
     assert len(page.evaluate(HERE)[CHAPTER]["done"]) == 2
     page.goto(f"{site}appendix/my-progress.html")
-    assert page.locator(f'tr[data-page="{CHAPTER}"] td[data-kind="done"]').inner_text().startswith("1 of ")
+    assert (
+        page.locator(f'tr[data-page="{CHAPTER}"] td[data-kind="done"]')
+        .inner_text()
+        .startswith("1 of ")
+    )
     page.evaluate(EMPTY)
     page.reload()
     assert page.evaluate(ALL)[f"book / record {CHAPTER} done exercise-right-handed"] == "true"
@@ -228,13 +271,17 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
     assert "A newer edition" in tab.words() and "Take away" in tab.words()
     assert "mine = 1" in tab.take().path().read_text("utf8")
     tab.menu("backUp")
-    tab.page.wait_for_function("document.querySelector('#live-words').textContent.startsWith('A newer edition')")
+    tab.page.wait_for_function(
+        "document.querySelector('#live-words').textContent.startsWith('A newer edition')"
+    )
     tab.page.evaluate("document.querySelector('button.keep-book').click()")
     tab.page.wait_for_function("!document.querySelector('.live-choices button')")
     page.goto(f"{site}appendix/my-progress.html")
     assert page.locator(".said").inner_text().startswith("A newer edition")
     assert page.evaluate(ALL) == before
-    kept = page.evaluate("async () => (await (await caches.open('book /')).match('/kept.json')).json()")
+    kept = page.evaluate(
+        "async () => (await (await caches.open('book /')).match('/kept.json')).json()"
+    )
     assert kept == NEWER_LIST
     assert tab.errors == []
 
@@ -242,17 +289,25 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
 def test_backup_of_a_newer_edition_is_refused_in_words(context, site, tmp_path):
     tab = Tab(context, site).edit()
     path = tmp_path / "answers.json"
-    path.write_text(json.dumps({"kind": "answers to the exercises of a book", "version": 99, "kept": {}}))
+    path.write_text(
+        json.dumps({"kind": "answers to the exercises of a book", "version": 99, "kept": {}})
+    )
     tab.bring(path, "restore")
     assert "newer edition" in tab.words() and "nothing was changed" in tab.words()
 
 
 def test_no_other_script_asks_the_browser_to_keep_anything():
-    """But for what ends with the tab, and for the page's head, which makes do where storage is forbidden."""
+    """But for what ends with the tab, and for the page's head, which makes do where storage is
+    forbidden.
+    """
     asks = re.compile(r"\blocalStorage\b|\bindexedDB\b|\bcaches\.|document\.cookie")
     sources = [
-        path for path in (REPOSITORY / "notebook-pages" / "src").rglob("*.js") if "node_modules" not in path.parts
+        path
+        for path in (REPOSITORY / "notebook-pages" / "src").rglob("*.js")
+        if "node_modules" not in path.parts
     ]
     sources += (REPOSITORY / "src").rglob("*.js")
-    found = {path.name for path in sources if asks.search(re.sub(r"//.*", "", path.read_text("utf8")))}
+    found = {
+        path.name for path in sources if asks.search(re.sub(r"//.*", "", path.read_text("utf8")))
+    }
     assert found == {"store.js", "editions.js", "notebooks.js"}

@@ -64,7 +64,9 @@ def words(text):
 
 
 def needed_by(names):
-    """The distributions that ``names`` lead to, themselves among them, as this environment holds them."""
+    """The distributions that ``names`` lead to, themselves among them, as this environment holds
+    them.
+    """
     found, waiting = {}, list(names)
     while waiting:
         name = canonicalize_name(waiting.pop())
@@ -81,16 +83,19 @@ def requirements(wheel):
     with zipfile.ZipFile(wheel) as box:
         (about,) = [name for name in box.namelist() if name.endswith(".dist-info/METADATA")]
         lines = box.read(about).decode().splitlines()
-    found = [Requirement(line.partition(": ")[2]) for line in lines if line.startswith("Requires-Dist: ")]
+    found = [
+        Requirement(line.partition(": ")[2]) for line in lines if line.startswith("Requires-Dist: ")
+    ]
     return [requirement.name for requirement in found if requirement.marker is None]
 
 
 @pytest.fixture(scope="module")
 def readers_python(tmp_path_factory):
-    """Python with the wheels that lie beside the downloads, what they ask for, and Jupyter's kernel; no more.
+    """Python with the wheels that lie beside the downloads, what they ask for, and Jupyter's
+    kernel; no more.
 
-    What pip would fetch is linked from here, which takes no time. That pip itself comes to the same is what
-    ``test_everything_runs_where_pip_installed_the_wheels`` shows.
+    What pip would fetch is linked from here, which takes no time. That pip itself comes to the same
+    is what ``test_everything_runs_where_pip_installed_the_wheels`` shows.
     """
     folder = tmp_path_factory.mktemp("reader")
     venv.create(folder, symlinks=True)
@@ -109,13 +114,19 @@ def readers_python(tmp_path_factory):
 @pytest.fixture
 def readers_variables(tmp_path):
     """What a reader's Python finds in its surroundings: nothing of this repository."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "IPYTHONDIR")}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("PYTHONPATH", "IPYTHONDIR")
+    }
     return kept | {"MPLBACKEND": "agg", "IPYTHONDIR": str(tmp_path / "ipython")}
 
 
 def run_script(python, name, folder, variables):
     path = FOLDER / f"{name}.py"
-    done = subprocess.run([python, path], cwd=folder, env=variables, capture_output=True, text=True, timeout=1200)
+    done = subprocess.run(
+        [python, path], cwd=folder, env=variables, capture_output=True, text=True, timeout=1200
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -150,11 +161,19 @@ def test_every_notebook_is_offered():
 def test_the_wheels_hold_what_students_import_and_no_more(readers_python, readers_variables):
     names = [name for wheel in wheels() for name in zipfile.ZipFile(wheel).namelist()]
     assert len(names) == len(set(names))
-    rooms = {"/".join(Path(name).parts[:2]) for name in names if Path(name).parts[0] == "coursework"}
-    assert "coursework/checking" in rooms and not rooms & {"coursework/authoring", "coursework/grading"}
+    rooms = {
+        "/".join(Path(name).parts[:2]) for name in names if Path(name).parts[0] == "coursework"
+    }
+    assert "coursework/checking" in rooms and not rooms & {
+        "coursework/authoring",
+        "coursework/grading",
+    }
     packages = {Path(name).parts[0] for name in names if ".dist-info" not in name}
     assert packages == set(PACKAGES)
-    code = "import orientation, sys; print(orientation.__version__, orientation.__file__.startswith(sys.prefix))"
+    code = (
+        "import orientation, sys; print(orientation.__version__, "
+        "orientation.__file__.startswith(sys.prefix))"
+    )
     said = subprocess.check_output([readers_python, "-c", code], env=readers_variables, text=True)
     (wheel,) = FOLDER.glob("orientation_of_reference_frames-*.whl")
     assert said.split() == [wheel.name.split("-")[1], "True"]
@@ -168,17 +187,24 @@ def test_the_packages_come_in_one_archive_that_says_how(tmp_path):
     assert all(archive.name in prose(notebook(name)) for name in SOURCES)
 
 
-def test_students_have_the_command_that_updates_and_no_other(readers_python, readers_variables, tmp_path):
+def test_students_have_the_command_that_updates_and_no_other(
+    readers_python, readers_variables, tmp_path
+):
     command = [readers_python, "-m", "coursework"]
-    told = subprocess.run([*command, "--help"], env=readers_variables, capture_output=True, text=True, check=True)
+    told = subprocess.run(
+        [*command, "--help"], env=readers_variables, capture_output=True, text=True, check=True
+    )
     assert "{update}" in told.stdout and "from its repository" in told.stdout
     archive = FOLDER / "exercises.zip"
-    done = subprocess.run([*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True)
+    done = subprocess.run(
+        [*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True
+    )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "euler-angles.ipynb").is_file()
 
 
-# All scripts run, and each notebook has the code of its script: two show that a notebook runs as one.
+# All scripts run, and each notebook has the code of its script: two show that a notebook runs as
+# one.
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["reference-frames", "convention-card"])
 def test_notebook_runs(name, tmp_path, readers_python, readers_variables):
@@ -199,15 +225,33 @@ def installed_python(tmp_path_factory):
     zipfile.ZipFile(archive).extractall(folder)
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"
-    pip = [sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--disable-pip-version-check"]
-    command = [*pip, "--constraint", REPOSITORY / "constraints.txt", "-r", "requirements.txt", "ipykernel"]
+    pip = [
+        sys.executable,
+        "-m",
+        "pip",
+        "--python",
+        python,
+        "install",
+        "--quiet",
+        "--disable-pip-version-check",
+    ]
+    command = [
+        *pip,
+        "--constraint",
+        REPOSITORY / "constraints.txt",
+        "-r",
+        "requirements.txt",
+        "ipykernel",
+    ]
     subprocess.run(command, check=True, cwd=folder / "packages")
     return python
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", SOURCES)
-def test_everything_runs_where_pip_installed_the_wheels(name, tmp_path, installed_python, readers_variables):
+def test_everything_runs_where_pip_installed_the_wheels(
+    name, tmp_path, installed_python, readers_variables
+):
     run_script(installed_python, name, tmp_path, readers_variables)
     run_notebook(installed_python, name, tmp_path, readers_variables)
 

@@ -1,4 +1,6 @@
-"""The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk without a network."""
+"""The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk
+without a network.
+"""
 
 import io
 import math
@@ -37,8 +39,12 @@ MILLIMETRE = 72 / 25.4
 
 @pytest.fixture(autouse=True)
 def made(request):
-    """All files, made by `make take-away` from the site as it stands; `make test` does not look at them."""
-    if request.node.get_closest_marker("long") and not all(path.exists() for path in (PDF, EPUB, ZIP)):
+    """All files, made by `make take-away` from the site as it stands; `make test` does not look at
+    them.
+    """
+    if request.node.get_closest_marker("long") and not all(
+        path.exists() for path in (PDF, EPUB, ZIP)
+    ):
         reason = "the whole book was not made: run `make take-away`"
         pytest.fail(reason) if browser_module.find() or BROWSER_REQUIRED else pytest.skip(reason)
 
@@ -82,35 +88,48 @@ def texts():
 def places(book):
     """The page, counted from 0, of every named place."""
     numbers = {page.objgen: number for number, page in enumerate(book.pages)}
-    return {name.removeprefix("/"): numbers[place[0].objgen] for name, place in book.Root.Dests.items()}
+    return {
+        name.removeprefix("/"): numbers[place[0].objgen] for name, place in book.Root.Dests.items()
+    }
 
 
 @pytest.fixture(scope="module")
 def chapter_texts(places, texts):
-    """The texts of the pages that each page of the site has in the PDF, without what stands above and below."""
+    """The texts of the pages that each page of the site has in the PDF, without what stands above
+    and below.
+    """
     starts = [(name, places[pdf.place(name)]) for name in pages() if name != "index"]
     ends = [start for _, start in starts[1:]] + [len(texts)]
     found = {}
     for (name, start), end in zip(starts, ends):
         head = plain(pdf.heading(article(name).h1))
-        found[name] = [texts[number].removeprefix(f"{head} {number + 1} ").rstrip() for number in range(start, end)]
+        found[name] = [
+            texts[number].removeprefix(f"{head} {number + 1} ").rstrip()
+            for number in range(start, end)
+        ]
     return found
 
 
 def is_there(words, texts):
-    """Whether a page has ``words``, or a page has their beginning and the next one begins with the rest."""
+    """Whether a page has ``words``, or a page has their beginning and the next one begins with the
+    rest.
+    """
 
     def goes_on(here, there):
         ends = [found.start() for found in re.finditer(" ", words)]
         return any(words[:end] in here and there.startswith(words[end + 1 :]) for end in ends)
 
-    return any(words in text for text in texts) or any(goes_on(*pair) for pair in zip(texts, texts[1:]))
+    return any(words in text for text in texts) or any(
+        goes_on(*pair) for pair in zip(texts, texts[1:])
+    )
 
 
 def test_words_may_go_on_over_the_edge_of_a_page():
     texts = ["It begins here, where the page", "ends, and goes on. Predict"]
     assert is_there("where the page ends, and goes on.", texts) and is_there("It begins", texts)
-    assert not is_there("where the page comes to an end", texts) and not is_there("begins here, goes on.", texts)
+    assert not is_there("where the page comes to an end", texts) and not is_there(
+        "begins here, goes on.", texts
+    )
 
 
 @pytest.mark.long
@@ -129,14 +148,19 @@ def test_it_says_what_it_is(book):
 def test_bookmarks_are_the_parts_chapters_and_sections(book):
     with book.open_outline() as outline:
         found = {item.title: item.children for item in outline.root}
-    headings = {page: [pdf.heading(h) for h in article(page).find_all(["h1", "h2"])] for page in pages()}
+    headings = {
+        page: [pdf.heading(h) for h in article(page).find_all(["h1", "h2"])] for page in pages()
+    }
     for caption, names in parts():
         children = found.pop(caption)
         assert [child.title for child in children] == [headings[name][0] for name in names]
         for child, name in zip(children, names):
-            # Replies to questions, which a fold hides on the page, stand at the end of what is printed.
+            # Replies to questions, which a fold hides on the page, stand at the end of what is
+            # printed.
             hidden = 'class="replies' in (HTML / f"{name}.html").read_text("utf8")
-            assert [section.title for section in child.children] == headings[name][1:] + ["Answers"] * hidden
+            assert [section.title for section in child.children] == headings[name][1:] + [
+                "Answers"
+            ] * hidden
     assert list(found) == [TITLE, "Contents", "About this book"]
 
 
@@ -152,7 +176,9 @@ def test_links_lead_somewhere(book, places):
                 outside.add(str(note.A.URI))
     assert inside <= set(places)
     for name in pages():
-        links = [link["href"] for link in article(name).select("a[href]") if link.get_text(strip=True)]
+        links = [
+            link["href"] for link in article(name).select("a[href]") if link.get_text(strip=True)
+        ]
         for link in links:
             if re.match(r"\w+:", link):
                 assert link in outside
@@ -168,17 +194,23 @@ def test_contents_list_has_the_right_page_numbers(places, texts):
         number = places[pdf.place(name)] + 1
         assert re.search(rf"{re.escape(title)}[ .]* {number}\b", listed), title
         assert title in texts[number - 1]
-        assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), "the page bears another number"
+        assert re.search(rf"(^|\D){number}(\D|$)", texts[number - 1]), (
+            "the page bears another number"
+        )
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", pages()[1:])
 def test_chapter_is_whole(name, chapter_texts):
-    """Its sentences can be searched for; its equations, figures and exercises have their numbers."""
+    """Its sentences can be searched for; its equations, figures and exercises have their
+    numbers.
+    """
     text = " ".join(chapter_texts[name])
     for number in article(name).select(".eqno"):
         assert number.get_text(strip=True) in text
-    for caption in article(name).select("figcaption .caption-number, table caption .caption-number"):
+    for caption in article(name).select(
+        "figcaption .caption-number, table caption .caption-number"
+    ):
         assert plain(caption.get_text(strip=True)) in text
     simple = [p for p in article(name).find_all("p") if not p.find(["code", "span", "a", "math"])]
     assert simple or name.startswith("appendix/reference") or name.startswith("exercises/")
@@ -200,7 +232,9 @@ def structure(node):
 @pytest.mark.long
 def test_every_figure_is_there_and_says_what_it_shows(book):
     said = [str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node]
-    shown = [svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")]
+    shown = [
+        svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")
+    ]
     assert len(shown) > 40
     assert sorted(set(shown) - set(said)) == []
     assert sum(text in set(shown) for text in said) == len(shown)
@@ -208,15 +242,21 @@ def test_every_figure_is_there_and_says_what_it_shows(book):
 
 @pytest.mark.long
 def test_formulas_are_there_and_are_read_in_words(book):
-    said = Counter(str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if node.S == "/Formula")
-    wanted = Counter(spoken(math) for name in pages() for math in article(name).select(".katex math"))
+    said = Counter(
+        str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if node.S == "/Formula"
+    )
+    wanted = Counter(
+        spoken(math) for name in pages() for math in article(name).select(".katex math")
+    )
     assert wanted - said == Counter()
     assert not [words for words in said if re.search(r"[\\^_{}$]", words)]
 
 
 @pytest.mark.long
 def test_it_is_told_to_screen_readers_as_the_standard_says(book):
-    """The list of how a file can fail PDF/UA-1 finds nothing; that it finds faults, test_tagged.py tries."""
+    """The list of how a file can fail PDF/UA-1 finds nothing; that it finds faults, test_tagged.py
+    tries.
+    """
     assert faults(book) == []
 
 
@@ -228,7 +268,9 @@ def test_pictures_and_notes_are_not_of_what_was_never_tried(texts):
 
 @pytest.mark.long
 def test_no_page_is_nearly_empty_without_reason(places):
-    """At most one in forty is less than half full, other than the last of a chapter: what follows is in one piece."""
+    """At most one in forty is less than half full, other than the last of a chapter: what follows
+    is in one piece.
+    """
     document = pdfium.PdfDocument(PDF)
     last = {places[pdf.place(name)] for name in pages()} | {len(document)}
     scale, empty = 0.35, []
@@ -245,13 +287,17 @@ def test_no_page_is_nearly_empty_without_reason(places):
 
 @pytest.mark.long
 def test_no_glyph_comes_from_elsewhere(book):
-    """Where our typefaces have no glyph, the browser would take one from the machine, or draw a box."""
+    """Where our typefaces have no glyph, the browser would take one from the machine, or draw a
+    box.
+    """
     fonts = {}
     for page in book.pages:
         for font in page.get("/Resources", {}).get("/Font", {}).values():
             fonts[str(font.BaseFont) if "/BaseFont" in font else "drawn"] = font
     names = {re.sub(r"^/[A-Z]{6}\+", "", name) for name in fonts}
-    assert all(re.match(r"SourceSerif4|SourceSans3|SourceCodePro|KaTeX_", name) for name in names), names
+    assert all(
+        re.match(r"SourceSerif4|SourceSans3|SourceCodePro|KaTeX_", name) for name in names
+    ), names
     for font in fonts.values():
         assert "/FontFile2" in font.DescendantFonts[0].FontDescriptor
 
@@ -264,7 +310,9 @@ def test_nothing_reaches_into_the_margins():
     for number, page in enumerate(document, start=1):
         picture = page.render(scale=scale, grayscale=True).to_numpy()
         assert picture.min() < 200, f"page {number} is empty"
-        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, f"page {number} is too wide"
+        assert picture[:, :edge].min() > 200 and picture[:, -edge:].min() > 200, (
+            f"page {number} is too wide"
+        )
         page.close()
     document.close()
 
@@ -281,7 +329,10 @@ def test_too_wide_a_line_stops_the_printing(browser):
     assert faults("<p>Some words.</p>") == []
     wide = katex.format("m" * 55)
     assert faults(wide) == []
-    assert page.evaluate("parseFloat(getComputedStyle(document.querySelector('.katex')).fontSize)") < 15
+    assert (
+        page.evaluate("parseFloat(getComputedStyle(document.querySelector('.katex')).fontSize)")
+        < 15
+    )
     (fault,) = faults(katex.format("m" * 200))
     assert "px too wide: mmm" in fault
     (fault,) = faults('<table><tr><td style="min-width: 900px">cell</td></tr></table>')[:1]
@@ -290,20 +341,30 @@ def test_too_wide_a_line_stops_the_printing(browser):
 
 
 def test_a_still_tells_its_numbers():
-    """What stands beside a figure on the screen, for the figures whose numbers one would read off."""
+    """What stands beside a figure on the screen, for the figures whose numbers one would read
+    off.
+    """
     third = math.pi / 3
     assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
         r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ"
     )
     assert pdf.as_drawn({"angle": 1, "axis": "z"}) == r"57.3^\circ\text{ about }z"
-    assert pdf.as_drawn({"angle": third, "axis": [0.6, -0.0, -0.8]}) == r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"
+    assert (
+        pdf.as_drawn({"angle": third, "axis": [0.6, -0.0, -0.8]})
+        == r"60^\circ\text{ about }(0.6,\ 0,\ -0.8)"
+    )
     assert pdf.as_drawn({"turns": [["z", third], ["x", -third]]}) == (
         r"60^\circ\text{ about }z\text{, then }-60^\circ\text{ about }x"
     )
-    assert pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]}) == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
+    assert (
+        pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]})
+        == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
+    )
     # What a puzzle asks for is not given away, and a run has no number of its own.
     assert pdf.as_drawn({"given": [["z", 1.0]], "turns": []}) == pdf.as_drawn({"time": 6.0}) == ""
-    figure = BeautifulSoup('<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml")
+    figure = BeautifulSoup(
+        '<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml"
+    )
     pdf.tell_numbers(figure)
     assert spoken(figure.select_one(".as-drawn math")) == "57.3 degrees about z"
 
@@ -340,7 +401,9 @@ def test_offer_is_written_and_withdrawn():
 @pytest.fixture(scope="module")
 def chapters_of_epub():
     with zipfile.ZipFile(EPUB) as archive:
-        return {name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()}  # all is text
+        return {
+            name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()
+        }  # all is text
 
 
 @pytest.mark.long
@@ -348,9 +411,13 @@ def test_epub_is_valid():
     """By the checker of those who write the standard."""
     checker = shutil.which("epubcheck")
     if not checker:
-        pytest.fail("epubcheck is not installed") if BROWSER_REQUIRED else pytest.skip("epubcheck is not installed")
+        pytest.fail("epubcheck is not installed") if BROWSER_REQUIRED else pytest.skip(
+            "epubcheck is not installed"
+        )
     # Debian's command is the archive of Java itself.
-    done = subprocess.run(["java", "-jar", checker, "--failonwarnings", EPUB], capture_output=True, text=True)
+    done = subprocess.run(
+        ["java", "-jar", checker, "--failonwarnings", EPUB], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
@@ -361,7 +428,9 @@ def test_epub_holds_every_formula_and_every_figure(chapters_of_epub):
         text = BeautifulSoup(chapters_of_epub[f"{page.replace('/', '-')}.xhtml"], "xml")
         for fold in site.select("details.hide, button, script, .whole-book, .sd-container-fluid"):
             fold.decompose()
-        assert len(text.find_all("math")) - len(text.select("p.as-drawn math")) == len(site.select(".katex")), page
+        assert len(text.find_all("math")) - len(text.select("p.as-drawn math")) == len(
+            site.select(".katex")
+        ), page
         assert all(math["alttext"] for math in text.find_all("math"))
         assert not text.select("script, button, input, .katex, details.hide")
         for drawing in text.select("figure > svg[role=img]"):
@@ -391,7 +460,9 @@ def test_zip_holds_the_site_once():
     site = {str(path.relative_to(HTML)) for path in HTML.rglob("*") if path.is_file()}
     # What there is to keep for reading offline is whole already.
     assert set(names) == site - {f"take-away/{ZIP.name}", install.LIST} | {"README.txt", "serve.py"}
-    assert [name for name in names if name.endswith((".pdf", ".zip"))].count(f"take-away/{PDF.name}") == 1
+    assert [name for name in names if name.endswith((".pdf", ".zip"))].count(
+        f"take-away/{PDF.name}"
+    ) == 1
     assert len({entry.date_time for entry in entries}) == 1
 
 
@@ -403,9 +474,16 @@ def test_same_files_give_the_same_zip(monkeypatch):
 
 
 def test_pages_in_the_zip_ask_for_nothing_ahead():
-    """Of a typeface that is to be fetched ahead, Chromium says on every page from a disk that it cannot use it."""
-    page = '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n  <style></style></head>'
-    packed = offline.pack({"page.html": page.encode(), "kept.js": b'<link rel="preload">'}, "book", "A Book")
+    """Of a typeface that is to be fetched ahead, Chromium says on every page from a disk that it
+    cannot use it.
+    """
+    page = (
+        '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n'
+        "  <style></style></head>"
+    )
+    packed = offline.pack(
+        {"page.html": page.encode(), "kept.js": b'<link rel="preload">'}, "book", "A Book"
+    )
     with zipfile.ZipFile(io.BytesIO(packed)) as archive:
         assert archive.read("book/page.html") == b"<head>\n  <style></style></head>"
         assert archive.read("book/kept.js") == b'<link rel="preload">'
@@ -415,7 +493,9 @@ def test_pages_in_the_zip_ask_for_nothing_ahead():
 def test_front_page_in_the_zip_offers_what_is_not_the_zip(unpacked):
     front = (unpacked / "index.html").read_text("utf8")
     (place,) = whole_book.PLACE.findall(front)
-    assert re.findall(r'href="([^"]*)"', place) == [f"take-away/{path.name}" for path in (PDF, EPUB)]
+    assert re.findall(r'href="([^"]*)"', place) == [
+        f"take-away/{path.name}" for path in (PDF, EPUB)
+    ]
     assert (unpacked / "take-away" / PDF.name).read_bytes() == PDF.read_bytes()
     assert "python serve.py" in (unpacked / "README.txt").read_text("utf8")
 
@@ -427,13 +507,21 @@ def from_disk(browser, unpacked):
     page, faults = context.new_page(), []
 
     def note_failure(request):
-        if request.failure != "net::ERR_ABORTED":  # what a page still asked for when the reader left it
+        if (
+            request.failure != "net::ERR_ABORTED"
+        ):  # what a page still asked for when the reader left it
             faults.append(f"{request.failure}: {request.url}")
 
-    page.on("console", lambda message: message.type in ("error", "warning") and faults.append(message.text))
+    page.on(
+        "console",
+        lambda message: message.type in ("error", "warning") and faults.append(message.text),
+    )
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.on("requestfailed", note_failure)
-    page.on("request", lambda r: r.url.startswith(("file:", "data:", "blob:")) or faults.append(f"asks: {r.url}"))
+    page.on(
+        "request",
+        lambda r: r.url.startswith(("file:", "data:", "blob:")) or faults.append(f"asks: {r.url}"),
+    )
     page.goto((unpacked / "index.html").as_uri())
     yield page
     assert faults == []
@@ -450,10 +538,15 @@ def test_pages_open_from_disk(from_disk, unpacked):
     for name in pages()[::4]:
         from_disk.goto((unpacked / f"{name}.html").as_uri())
         settled(from_disk)
-        assert from_disk.evaluate("document.fonts.check('1em \"Source Serif 4\"') && document.fonts.status") == "loaded"
-        assert from_disk.evaluate("getComputedStyle(document.querySelector('article')).fontFamily").startswith(
-            '"Source Serif'
+        assert (
+            from_disk.evaluate(
+                "document.fonts.check('1em \"Source Serif 4\"') && document.fonts.status"
+            )
+            == "loaded"
         )
+        assert from_disk.evaluate(
+            "getComputedStyle(document.querySelector('article')).fontFamily"
+        ).startswith('"Source Serif')
         assert from_disk.evaluate(SIDEWAYS) <= 0
 
 
@@ -472,16 +565,24 @@ def test_reader_goes_through_the_book_from_disk(from_disk, unpacked):
 
 @pytest.mark.long
 def test_moving_figure_moves_from_disk(from_disk, unpacked):
-    name = next(name for name in CHAPTERS if 'data-figure="gimbal"' in (HTML / f"{name}.html").read_text("utf8"))
+    name = next(
+        name
+        for name in CHAPTERS
+        if 'data-figure="gimbal"' in (HTML / f"{name}.html").read_text("utf8")
+    )
     from_disk.goto((unpacked / f"{name}.html").as_uri())
     figure = from_disk.locator('[data-figure="gimbal"][data-ready]').first
-    drawn = "figure => [...figure.querySelectorAll('.sheet .marks *')].map(m => m.getAttribute('d')).join()"
+    drawn = (
+        "figure => [...figure.querySelectorAll('.sheet .marks *')].map(m => "
+        "m.getAttribute('d')).join()"
+    )
     before = figure.evaluate(drawn)
     slider = figure.locator("input[type=range]").first
     slider.focus()
     slider.press("ArrowRight")
     from_disk.wait_for_function(
-        f"before => ({drawn})(document.querySelector('[data-figure=gimbal]')) !== before", arg=before
+        f"before => ({drawn})(document.querySelector('[data-figure=gimbal]')) !== before",
+        arg=before,
     )
 
 
@@ -504,14 +605,25 @@ def test_run_says_what_to_do_from_disk(from_disk, unpacked):
 
 @pytest.mark.long
 def test_small_server_of_the_zip(unpacked, tmp_path):
-    """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly need."""
+    """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly
+    need.
+    """
     process = subprocess.Popen(
-        [sys.executable, "-I", unpacked / "serve.py", "0"], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-I", unpacked / "serve.py", "0"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        text=True,
     )
     try:
         address = re.search(r"http://127\.0\.0\.1:\d+/", process.stdout.readline())[0]
-        for kind, expected in ((".html", "text/html"), (".js", "text/javascript"), (".css", "text/css"),
-                               (".mjs", "text/javascript"), (".wasm", "application/wasm")):  # fmt: skip
+        for kind, expected in (
+            (".html", "text/html"),
+            (".js", "text/javascript"),
+            (".css", "text/css"),
+            # fmt: skip
+            (".mjs", "text/javascript"),
+            (".wasm", "application/wasm"),
+        ):
             files = sorted(path.relative_to(unpacked) for path in unpacked.rglob(f"*{kind}"))
             assert files or kind in (".mjs", ".wasm")
             for file in files[:1]:

@@ -1,8 +1,9 @@
-"""Ask the programs of the convention card, each in its newest version, and print what changed since it was stored.
+"""Ask the programs of the convention card, each in its newest version, and print what changed since
+it was stored.
 
-Each is asked what it makes of two turns, and runs every line of code that the converter writes for it. Everything is
-installed in ``_build/programs``, where nothing of the book is, and each program is asked in a process of its own.
-``--store`` keeps the answers; names of programs ask these alone.
+Each is asked what it makes of two turns, and runs every line of code that the converter writes for
+it. Everything is installed in ``_build/programs``, where nothing of the book is, and each program
+is asked in a process of its own. ``--store`` keeps the answers; names of programs ask these alone.
 """
 
 import argparse
@@ -35,12 +36,16 @@ ROUNDING = 1e-5
 
 
 def installed(program):
-    """Command that asks one program, once what it takes is installed; None if that cannot be had here."""
+    """Command that asks one program, once what it takes is installed; None if that cannot be had
+    here.
+    """
     if program in BY_NODE:
         shutil.copy(HERE / "answers.mjs", PLACE)
         options = ["--silent", "--ignore-scripts", "--no-audit", "--no-fund", "--prefix", PLACE]
         path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
-        done = subprocess.run(["npm", "install", *options, "three@latest"], env=os.environ | {"PATH": path})
+        done = subprocess.run(
+            ["npm", "install", *options, "three@latest"], env=os.environ | {"PATH": path}
+        )
         return [NODE, PLACE / "answers.mjs", program] if done.returncode == 0 else None
     python = PLACE / "environment" / "bin" / "python"
     if not python.exists():
@@ -54,7 +59,9 @@ def installed(program):
 
 
 def jobs_of(program):
-    """Every line that the converter can write for a program: orientations like any other, a half turn, and no turn."""
+    """Every line that the converter can write for a program: orientations like any other, a half
+    turn, and no turn.
+    """
     dcms = [*random_orientations(3, np.random.default_rng(7)), np.diag([1.0, -1, -1]), np.eye(3)]
     return [{"side": side, "dcm": dcm.tolist()} for side in sides(program) for dcm in dcms]
 
@@ -65,30 +72,41 @@ def wrong_lines(program, jobs, lines, made):
         wanted = np.array(job["dcm"])
         wanted = wanted.T if PROGRAMS[program]["matrix"] == "transposed" else wanted
         if not np.allclose(np.reshape(matrix, (3, 3)), wanted, atol=ROUNDING):
-            yield f"{line}: makes {np.round(matrix, 4).tolist()}, not {np.round(wanted, 4).ravel().tolist()}"
+            yield (
+                f"{line}: makes {np.round(matrix, 4).tolist()}, not "
+                f"{np.round(wanted, 4).ravel().tolist()}"
+            )
 
 
 def ask(program):
-    """What a program answers now, as plain data, and the lines that it reads otherwise; or why nothing is known."""
+    """What a program answers now, as plain data, and the lines that it reads otherwise; or why
+    nothing is known.
+    """
     if (command := installed(program)) is None:
         return "cannot be installed here", []
     jobs = jobs_of(program)
     lines = [answer["line"] for answer in converted(jobs)]
     given = json.dumps({"orientations": ORIENTATIONS, "lines": lines})
-    done = subprocess.run(command, input=given, capture_output=True, text=True, cwd=PLACE, timeout=600)
+    done = subprocess.run(
+        command, input=given, capture_output=True, text=True, cwd=PLACE, timeout=600
+    )
     if done.returncode:
         return f"did not answer: {done.stderr.strip()[-400:]}", []
     found = json.loads(done.stdout.splitlines()[-1])
     wrong = list(wrong_lines(program, jobs, lines, found.pop("made")))
     found["lines"] = len(lines)
     for answer in found["answers"]:
-        answer["numbers"] = [[round(number, 6) + 0.0 for number in numbers] for numbers in answer["numbers"]]
+        answer["numbers"] = [
+            [round(number, 6) + 0.0 for number in numbers] for numbers in answer["numbers"]
+        ]
     return found, wrong
 
 
 def changes(stored, found):
     """What a program answers otherwise than it did, a line each."""
-    then, now = ({one["asked"]: one["numbers"] for one in each["answers"]} for each in (stored, found))
+    then, now = (
+        {one["asked"]: one["numbers"] for one in each["answers"]} for each in (stored, found)
+    )
     for line in sorted(then.keys() | now.keys()):
         if line not in now or line not in then:
             yield f"{line}: asked {'no more' if line in then else 'for the first time'}"
@@ -114,7 +132,12 @@ def main():
         version = found["version"]
         came = "" if version == before["version"] else f" (stored: {before['version']})"
         verdict = "CHANGED" if changed else "answers as stored"
-        print(f"{program} {version}{came}, {found['lines']} lines run: {verdict}", *changed, sep="\n    ", flush=True)
+        print(
+            f"{program} {version}{came}, {found['lines']} lines run: {verdict}",
+            *changed,
+            sep="\n    ",
+            flush=True,
+        )
         stored[program] = found
     if chosen.store:
         STORED.write_text(json.dumps(stored, indent=1, sort_keys=True) + "\n", "utf8")

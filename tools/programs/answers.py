@@ -1,9 +1,11 @@
-"""What one program answers, asked in an environment that has it: ``python answers.py PROGRAM < questions.json``.
+"""What one program answers, asked in an environment that has it: ``python answers.py PROGRAM <
+questions.json``.
 
-Each of the ``orientations`` comes as an axis and an angle, and is made by the program itself from these, or, for a
-camera, by what it sees. The answers go to standard output as JSON: the version, and for each line that was asked the
-form of its numbers, as :data:`orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one orientation
-after another; ``made`` are the matrices that the program makes of the card's own ``lines``.
+Each of the ``orientations`` comes as an axis and an angle, and is made by the program itself from
+these, or, for a camera, by what it sees. The answers go to standard output as JSON: the version,
+and for each line that was asked the form of its numbers, as
+:data:`orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one orientation after
+another; ``made`` are the matrices that the program makes of the card's own ``lines``.
 """
 
 import json
@@ -33,7 +35,9 @@ WXYZ, XYZW, XYZ = quaternion("wxyz"), quaternion("xyzw"), angles("xyz")
 
 
 def axes_of_a_camera(axis, angle):
-    """Rows: where x, y and z of a camera point to after a turn, by Rodrigues' formula for each of them."""
+    """Rows: where x, y and z of a camera point to after a turn, by Rodrigues' formula for each of
+    them.
+    """
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross).T
@@ -52,7 +56,10 @@ def pytransform3d(axis, angle):
 
 
 def transforms3d(axis, angle):
-    axangles, quaternions = import_module("transforms3d.axangles"), import_module("transforms3d.quaternions")
+    axangles, quaternions = (
+        import_module("transforms3d.axangles"),
+        import_module("transforms3d.quaternions"),
+    )
     yield "axangle2mat(axis, angle)", MATRIX, axangles.axangle2mat(axis, angle)
     yield "axangle2quat(axis, angle)", WXYZ, quaternions.axangle2quat(axis, angle)
 
@@ -63,13 +70,20 @@ def eigen(axis, angle):
     yield "AngleAxis(angle, axis).toRotationMatrix()", MATRIX, turn.toRotationMatrix()
     yield "Quaternion(AngleAxis(angle, axis)).coeffs()", XYZW, eigenpy.Quaternion(turn).coeffs()
     # The first angle from 0 to pi, whatever that does to the others: the chapter warns of it.
-    yield "R.eulerAngles(2, 0, 1)", angles("zxy"), eigenpy.toEulerAngles(turn.toRotationMatrix(), 2, 0, 1)
+    yield (
+        "R.eulerAngles(2, 0, 1)",
+        angles("zxy"),
+        eigenpy.toEulerAngles(turn.toRotationMatrix(), 2, 0, 1),
+    )
 
 
 def mujoco(axis, angle):
     module = import_module("mujoco")
     given = " ".join(map(repr, map(float, (*axis, np.degrees(angle)))))
-    world = f"<mujoco><worldbody><body axisangle='{given}'><geom size='0.1'/></body></worldbody></mujoco>"
+    world = (
+        f"<mujoco><worldbody><body axisangle='{given}'><geom "
+        "size='0.1'/></body></worldbody></mujoco>"
+    )
     data = module.MjData(model := module.MjModel.from_xml_string(world))
     module.mj_forward(model, data)
     yield '<body axisangle="x y z angle"/>, data.xmat', MATRIX, data.xmat[1]
@@ -82,25 +96,33 @@ def opencv(axis, angle):
     yield "cv2.Rodrigues(m)[0]", VECTOR, cv2.Rodrigues(cv2.Rodrigues(angle * axis)[0])[0]
 
 
-#: Corners that a camera looks at, each at its own depth, along its x (right), y (down) and z (forward).
+#: Corners that a camera looks at, each at its own depth, along its x (right), y (down) and z
+#: (forward).
 CORNERS = np.array([(x, y, 5 + x * y + 0.3 * x) for x in (-1, 0.2, 1) for y in (-1, 0.4, 1)])
 
 
 def solve_pnp(axis, angle):
     cv2 = import_module("cv2")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
-    # A point that lies right of the camera's line of sight is seen to the right: no program has been asked so far.
+    # A point that lies right of the camera's line of sight is seen to the right: no program has
+    # been asked so far.
     seen = CORNERS[:, :2] / CORNERS[:, 2:]
     _, vector, _ = cv2.solvePnP(CORNERS @ rows + place, seen, np.eye(3), None)
     yield "cv2.solvePnP(points, seen, K, None)[1]", VECTOR, vector
-    yield "cv2.Rodrigues(cv2.solvePnP(points, seen, K, None)[1])[0]", MATRIX, cv2.Rodrigues(vector)[0]
+    yield (
+        "cv2.Rodrigues(cv2.solvePnP(points, seen, K, None)[1])[0]",
+        MATRIX,
+        cv2.Rodrigues(vector)[0],
+    )
 
 
 def colmap(axis, angle):
     pycolmap = import_module("pycolmap")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
     pose = pycolmap.Rigid3d(pycolmap.Rotation3d(rows), -rows @ place)
-    camera = pycolmap.Camera(model="SIMPLE_PINHOLE", width=2, height=2, params=[1, 0, 0], camera_id=1)
+    camera = pycolmap.Camera(
+        model="SIMPLE_PINHOLE", width=2, height=2, params=[1, 0, 0], camera_id=1
+    )
     seen = camera.img_from_cam(pose * (CORNERS @ rows + place))
     assert np.allclose(seen, CORNERS[:, :2] / CORNERS[:, 2:]), "another camera than was thought"
     scene = pycolmap.Reconstruction()
@@ -110,7 +132,11 @@ def colmap(axis, angle):
         scene.write_text(folder)
         lines = Path(folder, "images.txt").read_text("utf8").splitlines()
     yield "images.txt", WXYZ, next(line for line in lines if line.endswith("a.png")).split()[1:5]
-    yield "image.cam_from_world().rotation.matrix()", MATRIX, scene.images[1].cam_from_world().rotation.matrix()
+    yield (
+        "image.cam_from_world().rotation.matrix()",
+        MATRIX,
+        scene.images[1].cam_from_world().rotation.matrix(),
+    )
 
 
 def opengl(axis, angle):
@@ -130,7 +156,11 @@ def nerfstudio(axis, angle):
         camera.generate_rays(0, coords=torch.tensor(place)).directions.numpy()
         for place in ([1.0, 2.0], [0.0, 1.0], [1.0, 1.0])
     )
-    rows = [np.cross(middle, np.cross(right, middle)), np.cross(middle, np.cross(up, middle)), -middle]
+    rows = [
+        np.cross(middle, np.cross(right, middle)),
+        np.cross(middle, np.cross(up, middle)),
+        -middle,
+    ]
     rows = np.array([row / np.linalg.norm(row) for row in rows])
     yield "camera_to_worlds, by the rays of Cameras.generate_rays", MATRIX, rows.T
 
@@ -138,7 +168,11 @@ def nerfstudio(axis, angle):
 def kornia(axis, angle):
     torch, conversions = import_module("torch"), import_module("kornia.geometry.conversions")
     given = torch.tensor(angle * axis)[None]
-    yield "axis_angle_to_rotation_matrix(v)", MATRIX, conversions.axis_angle_to_rotation_matrix(given)[0].numpy()
+    yield (
+        "axis_angle_to_rotation_matrix(v)",
+        MATRIX,
+        conversions.axis_angle_to_rotation_matrix(given)[0].numpy(),
+    )
     turned = conversions.axis_angle_to_quaternion(given)
     yield "axis_angle_to_quaternion(v)", WXYZ, turned[0].numpy()
     yield (
@@ -160,7 +194,11 @@ def drake(axis, angle):
     module, shapes = import_module("pydrake.math"), import_module("pydrake.common.eigen_geometry")
     turned = module.RotationMatrix(shapes.AngleAxis(angle, axis))
     yield "RotationMatrix(AngleAxis(angle, axis)).matrix()", MATRIX, turned.matrix()
-    yield "RotationMatrix(AngleAxis(angle, axis)).ToQuaternion().wxyz()", WXYZ, turned.ToQuaternion().wxyz()
+    yield (
+        "RotationMatrix(AngleAxis(angle, axis)).ToQuaternion().wxyz()",
+        WXYZ,
+        turned.ToQuaternion().wxyz(),
+    )
     yield "RollPitchYaw(R).vector()", XYZ, module.RollPitchYaw(turned).vector()
 
 
@@ -174,7 +212,8 @@ def pybullet(axis, angle):
 
 def robot_with(origin):
     text = (
-        "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent link='a'/>"
+        "<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='fixed'><parent "
+        "link='a'/>"
         f"<child link='b'/>{origin}</joint></robot>"
     )
     with tempfile.TemporaryDirectory() as folder:
@@ -183,7 +222,9 @@ def robot_with(origin):
 
 
 def urdf(axis, angle):
-    """The three angles of an element are made from the matrix, and the file's reader makes its own matrix of them."""
+    """The three angles of an element are made from the matrix, and the file's reader makes its own
+    matrix of them.
+    """
     x, y, z = axes_of_a_camera(axis, angle).T
     given = (np.arctan2(z[1], z[2]), np.arcsin(-z[0]), np.arctan2(y[0], x[0]))
     robot = robot_with(f'<origin rpy="{" ".join(map(repr, map(float, given)))}"/>')
@@ -233,8 +274,12 @@ def names_of(program):
         names["quat2mat"] = import_module("transforms3d.quaternions").quat2mat
     if program == "Eigen (C++)":
         module, units = import_module("eigenpy"), np.eye(3)
-        names["Vector3d"] = type("", (), {f"Unit{name}": lambda k=k: units[k] for k, name in enumerate("XYZ")})
-        names["AngleAxisd"] = lambda angle, axis: Factor(module.AngleAxis(angle, axis).toRotationMatrix())
+        names["Vector3d"] = type(
+            "", (), {f"Unit{name}": lambda k=k: units[k] for k, name in enumerate("XYZ")}
+        )
+        names["AngleAxisd"] = lambda angle, axis: Factor(
+            module.AngleAxis(angle, axis).toRotationMatrix()
+        )
         names["Quaterniond"] = lambda *parts: module.Quaternion(*parts).toRotationMatrix()
     if program == "COLMAP":
         names["pycolmap"] = import_module("pycolmap")
@@ -250,7 +295,9 @@ def names_of(program):
         import_module("bpy")
         names |= vars(import_module("mathutils"))
     if program == "Drake":
-        names |= vars(import_module("pydrake.math")) | vars(import_module("pydrake.common.eigen_geometry"))
+        names |= vars(import_module("pydrake.math")) | vars(
+            import_module("pydrake.common.eigen_geometry")
+        )
     if program == "PyBullet":
         names |= vars(import_module("pybullet"))
     return names
@@ -262,7 +309,9 @@ def matrix_by(program, line, names):
         module = import_module("mujoco")
         compiler, body = re.fullmatch(r"(<compiler [^>]*>)? ?(<body [^>]*)/>", line).groups()
         world = f"<worldbody>{body}><geom size='0.1'/></body></worldbody>"
-        data = module.MjData(model := module.MjModel.from_xml_string(f"<mujoco>{compiler or ''}{world}</mujoco>"))
+        data = module.MjData(
+            model := module.MjModel.from_xml_string(f"<mujoco>{compiler or ''}{world}</mujoco>")
+        )
         module.mj_forward(model, data)
         return data.xmat[1]
     if program == "URDF":
@@ -285,13 +334,15 @@ def matrix_by(program, line, names):
         made = names["getMatrixFromQuaternion"](made)
     for name in ("as_matrix", "to_matrix", "ToRotationMatrix", "matrix", "numpy"):
         made = (
-            getattr(made, name)() if callable(getattr(made, name, None)) and not isinstance(made, np.ndarray) else made
+            getattr(made, name)()
+            if callable(getattr(made, name, None)) and not isinstance(made, np.ndarray)
+            else made
         )
     return made
 
 
-#: For each program, as the table of programs calls it, the package of PyPI that brings it, what else that takes, and
-#: what asks it.
+#: For each program, as the table of programs calls it, the package of PyPI that brings it, what
+#: else that takes, and what asks it.
 PROGRAMS = {
     "SciPy": ("scipy", (), scipy),
     "pytransform3d": ("pytransform3d", (), pytransform3d),
@@ -302,7 +353,11 @@ PROGRAMS = {
     "OpenCV solvePnP": ("opencv-python-headless", (), solve_pnp),
     "COLMAP": ("pycolmap", (), colmap),
     "OpenGL view": ("PyGLM", (), opengl),
-    "nerfstudio": ("nerfstudio", ("torch", "jaxtyping", "rich", "typeguard", "tyro", "viser"), nerfstudio),
+    "nerfstudio": (
+        "nerfstudio",
+        ("torch", "jaxtyping", "rich", "typeguard", "tyro", "viser"),
+        nerfstudio,
+    ),
     "kornia": ("kornia", (), kornia),
     "Blender": ("bpy", (), blender),
     "Drake": ("drake", (), drake),
@@ -315,12 +370,25 @@ PROGRAMS = {
 def main():
     program, given = sys.argv[1], json.load(sys.stdin)
     (package, _, ask), asked, names = PROGRAMS[program], {}, names_of(program)
-    made = [np.array(matrix_by(program, line, names), float).ravel().tolist() for line in given["lines"]]
+    made = [
+        np.array(matrix_by(program, line, names), float).ravel().tolist() for line in given["lines"]
+    ]
     for axis, angle in given["orientations"]:
         for line, form, numbers in ask(np.array(axis, float), float(angle)):
             entry = asked.setdefault(line, {"asked": line, "form": form, "numbers": []})
-            entry["numbers"].append([float(number) for number in np.ravel(np.array(numbers, float))])
-    print(json.dumps({"package": package, "version": version(package), "answers": list(asked.values()), "made": made}))
+            entry["numbers"].append(
+                [float(number) for number in np.ravel(np.array(numbers, float))]
+            )
+    print(
+        json.dumps(
+            {
+                "package": package,
+                "version": version(package),
+                "answers": list(asked.values()),
+                "made": made,
+            }
+        )
+    )
 
 
 if __name__ == "__main__":

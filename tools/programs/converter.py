@@ -1,4 +1,6 @@
-"""The converter of the page, asked from here: every form and sequence of a program, and its lines of code."""
+"""The converter of the page, asked from here: every form and sequence of a program, and its lines
+of code.
+"""
 
 import itertools
 import json
@@ -33,9 +35,12 @@ def converted(jobs):
     Parameters
     ----------
     jobs : list of dict
-        ``side``, and ``dcm`` or ``text``; with ``source``, whose matrix it is, its axes are exchanged for the side's.
+        ``side``, and ``dcm`` or ``text``; with ``source``, whose matrix it is, its axes are
+        exchanged for the side's.
     """
-    program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace("BODY", bundle.body("converter"))
+    program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace(
+        "BODY", bundle.body("converter")
+    )
     done = subprocess.run([NODE, "--input-type=module", "-e", program], capture_output=True, text=True,
                           input=json.dumps({"programs": FOR_THE_PAGE, "jobs": jobs}))  # fmt: skip
     if done.returncode:
@@ -44,15 +49,25 @@ def converted(jobs):
 
 
 def sides(program):
-    """Every form and sequence that a program of the table takes; for another program every reading as well."""
+    """Every form and sequence that a program of the table takes; for another program every reading
+    as well.
+    """
     if program == OTHER:
         names = ("program", "form", "sequence", "matrix", "scalar", "unit")
         readings = itertools.product(
-            FORMS, ("zxy", "xyx"), ("as here", "transposed"), ("first", "last"), ("radians", "degrees")
+            FORMS,
+            ("zxy", "xyx"),
+            ("as here", "transposed"),
+            ("first", "last"),
+            ("radians", "degrees"),
         )
         return [dict(zip(names, (OTHER, *one))) for one in readings]
     found = []
     for form in PROGRAMS[program]["lines"]:
-        allowed = PROGRAMS[program].get("sequences", {}).get(form, SEQUENCES) if "angles" in form else ["zyx"]
+        allowed = (
+            PROGRAMS[program].get("sequences", {}).get(form, SEQUENCES)
+            if "angles" in form
+            else ["zyx"]
+        )
         found += [{"program": program, "form": form, "sequence": one} for one in allowed]
     return found

@@ -1,4 +1,6 @@
-"""The command ``coursework``: what authors and instructors run, and how students get newer exercises."""
+"""The command ``coursework``: what authors and instructors run, and how students get newer
+exercises.
+"""
 
 import argparse
 import sys
@@ -11,22 +13,30 @@ ROOMS = ("authoring", "grading")
 
 def main(arguments=None):
     rooms = [
-        import_module(f"coursework.{room}.commands") for room in ROOMS if find_spec(f"coursework.{room}") is not None
+        import_module(f"coursework.{room}.commands")
+        for room in ROOMS
+        if find_spec(f"coursework.{room}") is not None
     ]
     missing = (
-        "" if rooms else "Authors and instructors install the package from its repository, which has more commands."
+        ""
+        if rooms
+        else "Authors and instructors install the package from its repository, which has more "
+        "commands."
     )
     parser = argparse.ArgumentParser(prog="coursework", description=__doc__, epilog=missing)
     commands = parser.add_subparsers(dest="command", required=True)
-    update = commands.add_parser("update", help="unpack a newer archive beside your work, which stays as it is")
+    update = commands.add_parser(
+        "update", help="unpack a newer archive beside your work, which stays as it is"
+    )
     update.add_argument("archive")
     update.add_argument("--folder", default=".")
     for room in rooms:
         room.add_commands(commands)
     options = vars(parser.parse_args(arguments))
-    return {"update": _update, **{name: run for room in rooms for name, run in room.COMMANDS.items()}}[
-        options.pop("command")
-    ](**options)
+    return {
+        "update": _update,
+        **{name: run for room in rooms for name, run in room.COMMANDS.items()},
+    }[options.pop("command")](**options)
 
 
 def _update(archive, folder):

@@ -1,4 +1,6 @@
-"""What an author forgets or misspells is refused before anything is released, in words that say what to do."""
+"""What an author forgets or misspells is refused before anything is released, in words that say
+what to do.
+"""
 
 from pathlib import Path
 
@@ -13,12 +15,22 @@ from coursework.authoring.trial import trial
 SETUP = "import sympy as sm\nfrom coursework import check, student, variant\nx = sm.Symbol('x')"
 ANSWER = "### BEGIN SOLUTION\nanswer = 3 * x\n### END SOLUTION"
 CHECK = "check('trial/one', answer)"
-QUESTION = "### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x')\n### END HIDDEN TESTS"
+QUESTION = (
+    "### BEGIN HIDDEN TESTS\nquestion('trial/one', kind='expression', symbols='x')\n"
+    "### END HIDDEN TESTS"
+)
 DRAWN = "### BEGIN VARIANTS\ndrawn = draw('trial/one', count=3, n=[1, 2, 3])\n### END VARIANTS"
 
 
-def sources(folder, answer=ANSWER, check=CHECK, question=QUESTION, before=(), text="Give it as `answer`."):
-    cells = [("code", SETUP), *before, ("markdown", text), ("code", "\n".join([answer, check, question]))]
+def sources(
+    folder, answer=ANSWER, check=CHECK, question=QUESTION, before=(), text="Give it as `answer`."
+):
+    cells = [
+        ("code", SETUP),
+        *before,
+        ("markdown", text),
+        ("code", "\n".join([answer, check, question])),
+    ]
     return write_source(folder, *cells)
 
 
@@ -30,36 +42,88 @@ def changed(old, new, text=QUESTION):
 @pytest.mark.parametrize(
     "slip, said",
     [
-        ({"answer": "answer = 3 * x"}, "no solution in trial.ipynb sets `answer`, so students would get the answer"),
-        ({"answer": ANSWER.removesuffix("### END SOLUTION")}, "cell 2: `### BEGIN SOLUTION` has no `### END SOLUTION`"),
+        (
+            {"answer": "answer = 3 * x"},
+            "no solution in trial.ipynb sets `answer`, so students would get the answer",
+        ),
+        (
+            {"answer": ANSWER.removesuffix("### END SOLUTION")},
+            "cell 2: `### BEGIN SOLUTION` has no `### END SOLUTION`",
+        ),
         (
             {"answer": ANSWER.removeprefix("### BEGIN SOLUTION")},
             "`### END SOLUTION` has no `### BEGIN SOLUTION` before",
         ),
-        ({"answer": changed("BEGIN SOLUTION", "BEGIN SOLUTIONS", ANSWER)}, "`### BEGIN SOLUTIONS` is no mark; there"),
+        (
+            {"answer": changed("BEGIN SOLUTION", "BEGIN SOLUTIONS", ANSWER)},
+            "`### BEGIN SOLUTIONS` is no mark; there",
+        ),
         ({"answer": changed("### BEGIN", "# BEGIN", ANSWER)}, "`# BEGIN SOLUTION` is no mark"),
-        ({"answer": changed("BEGIN SOLUTION", "begin solution", ANSWER)}, "`### begin solution` is no mark"),
-        ({"question": QUESTION.removesuffix("### END HIDDEN TESTS")}, "has no `### END HIDDEN TESTS`"),
-        ({"question": "question('trial/one', kind='expression', symbols='x')"}, "or students would get it"),
-        ({"check": "check('trial/other', answer)"}, "stands before its check; what is checked so far: trial/other"),
+        (
+            {"answer": changed("BEGIN SOLUTION", "begin solution", ANSWER)},
+            "`### begin solution` is no mark",
+        ),
+        (
+            {"question": QUESTION.removesuffix("### END HIDDEN TESTS")},
+            "has no `### END HIDDEN TESTS`",
+        ),
+        (
+            {"question": "question('trial/one', kind='expression', symbols='x')"},
+            "or students would get it",
+        ),
+        (
+            {"check": "check('trial/other', answer)"},
+            "stands before its check; what is checked so far: trial/other",
+        ),
         ({"question": changed("kind='expression', ", "")}, "trial/one: say of which kind it is"),
-        ({"question": changed("symbols", "symbol")}, "a question has no `symbol`. Did you mean `symbols`?"),
-        ({"question": changed("'x')", "'x', hints=['Think.'])")}, "`hints` is a dictionary with texts as its keys"),
+        (
+            {"question": changed("symbols", "symbol")},
+            "a question has no `symbol`. Did you mean `symbols`?",
+        ),
+        (
+            {"question": changed("'x')", "'x', hints=['Think.'])")},
+            "`hints` is a dictionary with texts as its keys",
+        ),
         (
             {"question": changed("'x')", "'x', hints={'opposite': 'Think.'})")},
             "hints of 'opposite' are a list of texts",
         ),
-        ({"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")}, "`hints` names 'oposite', and this"),
-        ({"question": changed("'x')", "'x', after={'a/b': 'Think.'})")}, "hints of 'a/b' are a list of texts"),
-        ({"question": changed("'x')", "'x', credit={'oposite': 0.5})")}, "knows no such mistake. It knows 'opposite'"),
-        ({"question": changed("'x')", "'x', credit={'opposite': 50})")}, "is a share from 0 to 1, and this is 50"),
-        ({"question": changed("'x')", "'x', tolerance=0, relative=0.01)")}, "more than zero, and this is 0. With `rel"),
-        ({"question": changed("'x')", "'x', relative=2)")}, "`relative` is a share between 0 and 1, and this is 2"),
         (
-            {"question": changed("expression', symbols='x'", "function', result='expression', calls=[1, 2]")},
+            {"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")},
+            "`hints` names 'oposite', and this",
+        ),
+        (
+            {"question": changed("'x')", "'x', after={'a/b': 'Think.'})")},
+            "hints of 'a/b' are a list of texts",
+        ),
+        (
+            {"question": changed("'x')", "'x', credit={'oposite': 0.5})")},
+            "knows no such mistake. It knows 'opposite'",
+        ),
+        (
+            {"question": changed("'x')", "'x', credit={'opposite': 50})")},
+            "is a share from 0 to 1, and this is 50",
+        ),
+        (
+            {"question": changed("'x')", "'x', tolerance=0, relative=0.01)")},
+            "more than zero, and this is 0. With `rel",
+        ),
+        (
+            {"question": changed("'x')", "'x', relative=2)")},
+            "`relative` is a share between 0 and 1, and this is 2",
+        ),
+        (
+            {
+                "question": changed(
+                    "expression', symbols='x'", "function', result='expression', calls=[1, 2]"
+                )
+            },
             "`calls` is a list of calls, each a list of its arguments: calls=[[1], [2]]",
         ),
-        ({"answer": changed("3 * x", "3.14 * x", ANSWER)}, "the solution has 3.14 for pi, and a student who takes all"),
+        (
+            {"answer": changed("3 * x", "3.14 * x", ANSWER)},
+            "the solution has 3.14 for pi, and a student who takes all",
+        ),
         ({"answer": changed("3 * x", "3.1416 * x", ANSWER)}, "the solution has 3.1416 for pi"),
         ({"before": [("code", DRAWN)]}, "trial/one: students would not see n, which is drawn"),
         (
@@ -69,8 +133,14 @@ def changed(old, new, text=QUESTION):
             },
             "its text would show 0.30000000000000004 for n. Round it",
         ),
-        ({"question": changed("'x')", "'x', worth='two')")}, "`worth` is a number of points, and this is 'two'"),
-        ({"question": changed("'x')", "'x', mistakes={x: 'It is more.'})")}, "`mistakes` is a dictionary with texts"),
+        (
+            {"question": changed("'x')", "'x', worth='two')")},
+            "`worth` is a number of points, and this is 'two'",
+        ),
+        (
+            {"question": changed("'x')", "'x', mistakes={x: 'It is more.'})")},
+            "`mistakes` is a dictionary with texts",
+        ),
         (
             {
                 "question": changed("expression', symbols='x'", "measurement'"),
@@ -85,10 +155,14 @@ def changed(old, new, text=QUESTION):
             },
             "`°C` is no unit that is known here",
         ),
-        ({"before": [("code", DRAWN)], "text": "Add {{m}}."}, "its text shows {{m}}, which is not drawn; drawn are n."),
+        (
+            {"before": [("code", DRAWN)], "text": "Add {{m}}."},
+            "its text shows {{m}}, which is not drawn; drawn are n.",
+        ),
         (
             {"before": [("code", changed("trial/one", "trial/none", DRAWN))], "text": "Add {{n}}."},
-            "trial/none: trial.ipynb draws what varies in it, and asks no such question; it asks trial/one.",
+            "trial/none: trial.ipynb draws what varies in it, and asks no such question; it asks "
+            "trial/one.",
         ),
     ],
 )
@@ -102,7 +176,10 @@ def test_a_slip_is_refused_and_explained(tmp_path, slip, said):
 @pytest.mark.parametrize(
     "slip, said",
     [
-        ({"question": changed("'x')", "'x', mistakes={'Not so.': x + 2 * x})")}, "gives the right answer: Not so."),
+        (
+            {"question": changed("'x')", "'x', mistakes={'Not so.': x + 2 * x})")},
+            "gives the right answer: Not so.",
+        ),
         ({"before": [("code", DRAWN)], "text": "Add {{n}}."}, "students say nowhere who they are"),
     ],
 )
@@ -121,7 +198,11 @@ def test_line_ends_of_windows_and_spaces_after_a_mark_change_nothing(tmp_path):
         exercise_notebook(read_source(path))
         for path in (
             sources(tmp_path / "plain"),
-            sources(tmp_path / "crlf", answer=ANSWER.replace("\n", "\r\n"), question=QUESTION.replace("\n", "\r\n")),
+            sources(
+                tmp_path / "crlf",
+                answer=ANSWER.replace("\n", "\r\n"),
+                question=QUESTION.replace("\n", "\r\n"),
+            ),
             sources(tmp_path / "spaces", answer=ANSWER.replace("SOLUTION", "SOLUTION  ")),
         )
     ]
@@ -131,7 +212,9 @@ def test_line_ends_of_windows_and_spaces_after_a_mark_change_nothing(tmp_path):
 def test_hints_may_belong_to_one_mistake_of_the_author(tmp_path):
     hinted = "hints={'Too many.': ['Count again.'], 'authored': ['Count.']}"
     named = f"mistakes={{'Too few.': 2 * x, 'Too many.': 5 * x}}, {hinted}"
-    question = read_source(sources(tmp_path, question=changed("'x')", f"'x', {named})"))).questions["trial/one"]
+    question = read_source(sources(tmp_path, question=changed("'x')", f"'x', {named})"))).questions[
+        "trial/one"
+    ]
     hints = {
         entry.notes[0].details["text"]: list(entry.answers[0].hints)
         for entry in question.entries.values()
@@ -142,7 +225,10 @@ def test_hints_may_belong_to_one_mistake_of_the_author(tmp_path):
 
 def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
     """The heading above a question with variants and the figure above its text were left out."""
-    drawing = "class Line:\n    alt = 'A line'\n    picture = lambda self: '<svg width=\"9\"></svg>'\nLine()"
+    drawing = (
+        "class Line:\n    alt = 'A line'\n    picture = lambda self: '<svg "
+        'width="9"></svg>\'\nLine()'
+    )
     cells = [
         ("code", f"{SETUP}\nstudent('')"),
         ("markdown", "## Another heading"),
@@ -157,10 +243,14 @@ def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
     made = made_in(tmp_path)
     write_source(made.sources, *cells)
     page = Path(trial(made, "trial/one", tmp_path / "try.html")).read_text("utf8")
-    heading, figure, text = (page.index(part) for part in ("<h3>The heading</h3>", 'alt="A line"', "Add 1 to"))
+    heading, figure, text = (
+        page.index(part) for part in ("<h3>The heading</h3>", 'alt="A line"', "Add 1 to")
+    )
     assert heading < figure < text and "Another heading" not in page and "{{n}}" not in page
     # As wide as the screen of a telephone, and as dark as its reader wants it.
-    assert 'name="viewport"' in page and "color-scheme:light dark" in page and 'data-of="Kind"' in page
+    assert (
+        'name="viewport"' in page and "color-scheme:light dark" in page and 'data-of="Kind"' in page
+    )
 
 
 def test_variants_with_one_answer_are_refused(tmp_path):

@@ -38,18 +38,33 @@ def statics(tmp_path_factory):
 
 
 def contents(folder):
-    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    return {
+        path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()
+    }
 
 
 def test_a_new_course_is_whole(statics):
     course = find_course(statics / "exercises")
     assert course.title == "Plane statics" and course.root == statics
     names = {str(path.relative_to(statics)) for path in statics.rglob("*") if path.is_file()}
-    assert {"README.md", "course.toml", "tests/test_course.py", ".github/workflows/test.yml"} <= names
-    assert {"solutions/first-steps.ipynb", "exercises/first-steps.ipynb", "exercises/sealed/first-steps.json"} <= names
+    assert {
+        "README.md",
+        "course.toml",
+        "tests/test_course.py",
+        ".github/workflows/test.yml",
+    } <= names
+    assert {
+        "solutions/first-steps.ipynb",
+        "exercises/first-steps.ipynb",
+        "exercises/sealed/first-steps.json",
+    } <= names
     with zipfile.ZipFile(course.archive) as box:
         inside = set(box.namelist())
-    assert {"exercises/first-steps.ipynb", "exercises/sealed/first-steps.json", "exercises/README.txt"} < inside
+    assert {
+        "exercises/first-steps.ipynb",
+        "exercises/sealed/first-steps.json",
+        "exercises/README.txt",
+    } < inside
 
 
 def test_nothing_is_written_over_by_a_new_course(statics):
@@ -66,7 +81,9 @@ def test_a_release_from_the_wrong_folder_deletes_nothing(statics, tmp_path, monk
     (tmp_path / "course.toml").write_text("")
     before = contents(tmp_path)
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit, match=r"is made of no notebook in \S*mine, and neither are 1 other files"):
+    with pytest.raises(
+        SystemExit, match=r"is made of no notebook in \S*mine, and neither are 1 other files"
+    ):
         main(["release", "--sources", "mine"])
     assert contents(tmp_path) == before
 
@@ -113,7 +130,9 @@ def test_where_there_is_no_course(tmp_path, monkeypatch):
 
 
 def test_the_preview_shows_what_students_hear(statics, tmp_path):
-    text = Path(trial(find_course(statics), "first-steps/area", tmp_path / "try.html")).read_text("utf8")
+    text = Path(trial(find_course(statics), "first-steps/area", tmp_path / "try.html")).read_text(
+        "utf8"
+    )
     for part in (
         "A triangle has a base",
         "This is the area of the rectangle",
@@ -123,7 +142,9 @@ def test_the_preview_shows_what_students_hear(statics, tmp_path):
         assert part in text
     assert "slope" not in text and "Leaks" not in text
     assert "<math" in text and "$b$" not in text
-    with pytest.raises(AuthorError, match="first-steps.ipynb has first-steps/area, first-steps/slope"):
+    with pytest.raises(
+        AuthorError, match="first-steps.ipynb has first-steps/area, first-steps/slope"
+    ):
         trial(find_course(statics), "first-steps/none", tmp_path / "try.html")
 
 
@@ -131,7 +152,10 @@ def test_without_the_solutions_students_still_get_everything(statics, tmp_path):
     published = tmp_path / "published"
     shutil.copytree(statics, published, ignore=shutil.ignore_patterns("solutions", "build"))
     course = find_course(published)
-    with zipfile.ZipFile(archive(course)) as ours, zipfile.ZipFile(find_course(statics).archive) as theirs:
+    with (
+        zipfile.ZipFile(archive(course)) as ours,
+        zipfile.ZipFile(find_course(statics).archive) as theirs,
+    ):
         assert {name: ours.read(name) for name in ours.namelist()} == {
             name: theirs.read(name) for name in theirs.namelist()
         }
@@ -153,8 +177,8 @@ def test_the_students_package_has_no_grader(tmp_path):
     }
 
 
-#: What is imported only where it is there, or only on request: a browser's own modules, a cluster, pictures in replies;
-#: and by type checkers alone, which bring it.
+#: What is imported only where it is there, or only on request: a browser's own modules, a cluster,
+#: pictures in replies; and by type checkers alone, which bring it.
 ON_REQUEST = {"js", "pyodide_js", "distributed", "_typeshed"}
 OF_STUDENTS_ON_REQUEST = {"numpy", "latex2mathml"}
 
@@ -165,32 +189,57 @@ def test_what_the_packages_import_they_ask_for():
     for name, (patterns, needs, _) in DISTRIBUTIONS.items():
         asked = {re.match(r"[a-z0-9-]+", need)[0] for need in needs}
         if "coursework-checks" in asked:
-            asked |= {re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework-checks"][1]} | {"mpmath"}
-        allowed = asked | ON_REQUEST | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework-checks" else set())
+            asked |= {
+                re.match(r"[a-z0-9-]+", need)[0] for need in DISTRIBUTIONS["coursework-checks"][1]
+            } | {"mpmath"}
+        allowed = (
+            asked
+            | ON_REQUEST
+            | ({"mpmath"} | OF_STUDENTS_ON_REQUEST if name == "coursework-checks" else set())
+        )
         root = PROJECT / "src" / "coursework"
-        for path in {path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"}:
+        for path in {
+            path for pattern in patterns for path in root.glob(pattern) if path.suffix == ".py"
+        }:
             for node in ast.walk(ast.parse(path.read_text("utf8"))):
-                imported = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                imported = (
+                    [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                )
                 if isinstance(node, ast.ImportFrom) and not node.level:
                     imported = [node.module]
-                for module in {module.partition(".")[0] for module in imported} - set(sys.stdlib_module_names):
+                for module in {module.partition(".")[0] for module in imported} - set(
+                    sys.stdlib_module_names
+                ):
                     brought_by = {one.lower() for one in belongs_to.get(module, [module])}
                     assert module == "coursework" or brought_by & allowed, (name, path.name, module)
 
 
 def test_a_mended_package_has_another_version(tmp_path):
-    """What students hold is replaced by what is named otherwise: only what is released has the plain version."""
+    """What students hold is replaced by what is named otherwise: only what is released has the
+    plain version.
+    """
     shutil.copytree(
-        Path(coursework.__file__).parent, tmp_path / "coursework", ignore=shutil.ignore_patterns("__pycache__")
+        Path(coursework.__file__).parent,
+        tmp_path / "coursework",
+        ignore=shutil.ignore_patterns("__pycache__"),
     )
     stated = coursework.__version__
 
     def git(*arguments):
-        about = {"GIT_COMMITTER_DATE": "2026-12-01T08:00:00Z", "HOME": str(tmp_path), "PATH": os.environ["PATH"]}
+        about = {
+            "GIT_COMMITTER_DATE": "2026-12-01T08:00:00Z",
+            "HOME": str(tmp_path),
+            "PATH": os.environ["PATH"],
+        }
         name = ["-c", "user.name=An author", "-c", "user.email=author@example.org"]
-        subprocess.run(["git", *name, *arguments], cwd=tmp_path, env=about, check=True, capture_output=True)
+        subprocess.run(
+            ["git", *name, *arguments], cwd=tmp_path, env=about, check=True, capture_output=True
+        )
 
-    def built(place, code="import sys; from coursework.__main__ import main; main(['wheels', sys.argv[1]])"):
+    def built(
+        place,
+        code="import sys; from coursework.__main__ import main; main(['wheels', sys.argv[1]])",
+    ):
         environment = {**os.environ, "PYTHONPATH": str(place), "PYTHONDONTWRITEBYTECODE": "1"}
         command = [sys.executable, "-c", code, str(tmp_path / "wheels")]
         subprocess.run(command, env=environment, check=True, capture_output=True, cwd=tmp_path)
@@ -199,7 +248,8 @@ def test_a_mended_package_has_another_version(tmp_path):
         with zipfile.ZipFile(found["coursework_tools"]) as box:
             (about,) = (name for name in box.namelist() if name.endswith("METADATA"))
             assert [
-                f"Requires-Dist: coursework-checks=={version}" in box.read(about).decode() for version in versions
+                f"Requires-Dist: coursework-checks=={version}" in box.read(about).decode()
+                for version in versions
             ] == [True]
         kept = tmp_path / "kept" / found["coursework_checks"].name
         kept.parent.mkdir(exist_ok=True)
@@ -229,8 +279,12 @@ def test_a_mended_package_has_another_version(tmp_path):
     assert said.strip() == version
 
 
-def test_where_nothing_can_be_written_the_selftest_says_so_first(statics, tmp_path, monkeypatch, capsys):
-    """As in a checkout that belongs to somebody else; with another place for its page it runs, and keeps nothing."""
+def test_where_nothing_can_be_written_the_selftest_says_so_first(
+    statics, tmp_path, monkeypatch, capsys
+):
+    """As in a checkout that belongs to somebody else; with another place for its page it runs, and
+    keeps nothing.
+    """
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
     monkeypatch.chdir(course)
@@ -239,17 +293,30 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(statics, tmp_pa
     with pytest.raises(SystemExit, match="try.html cannot be written.*--page"):
         main(["try", "first-steps"])
     main(["selftest", "--page", str(tmp_path / "page.html"), "--budget", "64"])
-    assert "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
+    assert (
+        "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
+    )
 
 
-def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(statics, tmp_path, monkeypatch, capsys):
-    """The deflection of a beam, with numbers of one's own: an ordinary question, and soon guessed."""
+def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
+    statics, tmp_path, monkeypatch, capsys
+):
+    """The deflection of a beam, with numbers of one's own: an ordinary question, and soon
+    guessed.
+    """
     course = shutil.copytree(statics, tmp_path / "course")
     answer = (
-        "### BEGIN SOLUTION\ndeflection = 450 * 2**3 / (3 * 2000)\n### END SOLUTION\ncheck('beam/tip', deflection)\n"
+        "### BEGIN SOLUTION\ndeflection = 450 * 2**3 / (3 * 2000)\n### END SOLUTION\n"
+        "check('beam/tip', deflection)\n"
     )
-    hidden = "### BEGIN HIDDEN TESTS\nquestion('beam/tip', kind='expression', worth=3)\n### END HIDDEN TESTS"
-    text = "The load is 450 N, the length 2 m, and EI is 2000 N m2. Give the deflection F l^3 / 3EI as `deflection`."
+    hidden = (
+        "### BEGIN HIDDEN TESTS\nquestion('beam/tip', kind='expression', worth=3)\n"
+        "### END HIDDEN TESTS"
+    )
+    text = (
+        "The load is 450 N, the length 2 m, and EI is 2000 N m2. Give the deflection F l^3 / 3EI "
+        "as `deflection`."
+    )
     cells = [
         ("code", "import sympy as sm\nfrom coursework import check"),
         ("markdown", text),
@@ -266,14 +333,18 @@ def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
     assert "0% of 3 points are behind" in said and "first-steps" not in said
     assert measured_strengths(course / "solutions") == {"first-steps/area": 20, "beam/tip": tries}
     kept = (course / "solutions" / "strengths.json").read_bytes()
-    monkeypatch.setattr(selftest, "attack", lambda *_: pytest.fail("what is known is not tried again"))
+    monkeypatch.setattr(
+        selftest, "attack", lambda *_: pytest.fail("what is known is not tried again")
+    )
     main(["release", "beam"])
     assert f"beam/tip, 3 points: found after {tries} slow hashes" in capsys.readouterr().out
     assert (course / "solutions" / "strengths.json").read_bytes() == kept
     monkeypatch.undo()
     monkeypatch.chdir(course)
     main(["selftest", "beam"])
-    assert "0% of 3 points are behind more than" in (course / "build" / "selftest.html").read_text("utf8")
+    assert "0% of 3 points are behind more than" in (course / "build" / "selftest.html").read_text(
+        "utf8"
+    )
     source = course / "solutions" / "beam.ipynb"
     source.write_text(source.read_text("utf8").replace("worth=3", "exam=True, worth=3"), "utf8")
     main(["release", "beam"])
@@ -301,7 +372,9 @@ def test_an_update_brings_new_sealed_questions(statics, tmp_path):
     said = update(find_course(statics).archive, work)
     assert "replaced    sealed/first-steps.json" in said
     assert json.loads((work / "sealed" / "first-steps.json").read_text("utf8"))["questions"]
-    assert (work / "first-steps.ipynb").read_text() == "mine" and (work / "first-steps-new-1.ipynb").exists()
+    assert (work / "first-steps.ipynb").read_text() == "mine" and (
+        work / "first-steps-new-1.ipynb"
+    ).exists()
 
 
 SOLVE = """
@@ -319,10 +392,15 @@ def outside(tmp_path_factory):
     """Run Python in an environment that holds coursework and nothing of this book."""
     place = tmp_path_factory.mktemp("outside")
     venv.create(place / "environment", with_pip=True)
-    python, environment = place / "environment" / "bin" / "python", {**os.environ, **PINNED, "PYTHONPATH": ""}
+    python, environment = (
+        place / "environment" / "bin" / "python",
+        {**os.environ, **PINNED, "PYTHONPATH": ""},
+    )
 
     def run(*arguments, folder=place):
-        done = subprocess.run([python, *arguments], cwd=folder, env=environment, capture_output=True, text=True)
+        done = subprocess.run(
+            [python, *arguments], cwd=folder, env=environment, capture_output=True, text=True
+        )
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
 
@@ -345,7 +423,9 @@ def test_from_nothing_to_a_graded_notebook(outside):
 
 @pytest.mark.long
 def test_a_second_course_with_variants(outside):
-    """Plane statics: thirteen questions, seven of them in variants, with nothing of the book at hand."""
+    """Plane statics: thirteen questions, seven of them in variants, with nothing of the book at
+    hand.
+    """
     place, run = outside
     course = place / "plane-statics"
     shutil.copytree(EXAMPLE, course)
@@ -360,7 +440,9 @@ def graded(run, course, notebook):
     """Hand in a solved notebook and an untouched one, and give the points of both."""
     (course / "handed-in" / "ada").mkdir(parents=True)
     (course / "handed-in" / "ben").mkdir()
-    run("-c", SOLVE, f"solutions/{notebook}.ipynb", f"handed-in/ada/{notebook}.ipynb", folder=course)
+    run(
+        "-c", SOLVE, f"solutions/{notebook}.ipynb", f"handed-in/ada/{notebook}.ipynb", folder=course
+    )
     shutil.copy(course / "exercises" / f"{notebook}.ipynb", course / "handed-in" / "ben")
     run("-m", "coursework", "grade", "handed-in", "--out", "marks", folder=course)
     with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:

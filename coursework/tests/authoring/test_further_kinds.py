@@ -1,4 +1,6 @@
-"""Numbers with their units, orders, lists that are right in part, texts that a person reads, plots of Matplotlib."""
+"""Numbers with their units, orders, lists that are right in part, texts that a person reads, plots
+of Matplotlib.
+"""
 
 import random
 from types import SimpleNamespace
@@ -51,7 +53,9 @@ def test_the_size_of_units_that_are_made_of_others(text):
 
 
 def test_units_are_those_of_sympy():
-    """Each named unit against SymPy's own dimensions and factors; powers of a product are sums of exponents."""
+    """Each named unit against SymPy's own dimensions and factors; powers of a product are sums of
+    exponents.
+    """
     from sympy.physics import units as theirs
 
     names = {
@@ -59,7 +63,15 @@ def test_units_are_those_of_sympy():
         "F": "farad", "ohm": "ohm", "T": "tesla", "Wb": "weber", "H": "henry", "L": "liter", "bar": "bar",
         "min": "minute", "h": "hour", "d": "day",
     }  # fmt: skip
-    base = [theirs.meter, theirs.kilogram, theirs.second, theirs.ampere, theirs.kelvin, theirs.mole, theirs.candela]
+    base = [
+        theirs.meter,
+        theirs.kilogram,
+        theirs.second,
+        theirs.ampere,
+        theirs.kelvin,
+        theirs.mole,
+        theirs.candela,
+    ]
     for ours, name in names.items():
         converted = theirs.convert_to(getattr(theirs, name), base)
         exponents = converted.as_powers_dict()
@@ -70,7 +82,10 @@ def test_units_are_those_of_sympy():
         for name in WITH_PREFIX:
             if f"{prefix}{name}" not in ("min", "cd", "mol", "h", "d", "T", "Pa", "m"):
                 found = unit(f"{prefix}{name}")
-                assert float(found.size / unit(name).size) == pytest.approx(10.0**power), (prefix, name)
+                assert float(found.size / unit(name).size) == pytest.approx(10.0**power), (
+                    prefix,
+                    name,
+                )
 
 
 @pytest.mark.parametrize("text", ["Nm", "furlong", "N + m", "3 N", "kg m^99"])
@@ -79,7 +94,12 @@ def test_what_is_no_unit(text):
         unit(text)
 
 
-MOMENT = {"kind": "measurement", "answer": (sm.Rational(25, 2), "kN m"), "tolerance": 0.01, "relative": 0.001}
+MOMENT = {
+    "kind": "measurement",
+    "answer": (sm.Rational(25, 2), "kN m"),
+    "tolerance": 0.01,
+    "relative": 0.001,
+}
 
 
 @pytest.mark.parametrize(
@@ -108,7 +128,13 @@ MOMENT = {"kind": "measurement", "answer": (sm.Rational(25, 2), "kN m"), "tolera
     ],
 )
 def test_a_number_with_its_unit(answer, expected):
-    question = make(MOMENT["kind"], MOMENT["answer"], tolerance=0.01, relative=0.001, mistakes={"!": (12.5, "kN/m")})
+    question = make(
+        MOMENT["kind"],
+        MOMENT["answer"],
+        tolerance=0.01,
+        relative=0.001,
+        mistakes={"!": (12.5, "kN/m")},
+    )
     if expected[1] == "the unit of a load":
         expected = ("wrong", "authored")
     assert outcome(question, answer) == expected
@@ -121,7 +147,10 @@ def test_a_number_with_its_unit_is_tried_as_others_are():
     x = sm.Symbol("x")
     exact = make("measurement", (3 * x**2, "N m"), symbols={"x": (1, 2)})
     assert try_question(exact, budget=0, against_sealed=False).faults == []
-    assert outcome(exact, (3000 * x**2, "N mm"))[0] == "correct" and outcome(exact, (3 * x**2, "N"))[0] == "wrong"
+    assert (
+        outcome(exact, (3000 * x**2, "N mm"))[0] == "correct"
+        and outcome(exact, (3 * x**2, "N"))[0] == "wrong"
+    )
     easy = attack(make("measurement", (12, "N m")), "A force of 3 N at 4 m")
     assert easy.way.startswith("one small formula, in usual units") and easy.tries < 5000
     hard = make("measurement", (sm.Rational(3517, 83), "N m"), tolerance=1e-6)
@@ -189,7 +218,9 @@ def test_an_order_that_is_right_in_part_earns_its_share():
     question = make("order", PLANETS, options=sorted(PLANETS), partial=True, worth=10)
     assert share(question, PLANETS)[0] == 10
     points, said = share(question, ["Venus", "Mercury", *PLANETS[2:]])
-    assert points == 8 and said[-1] == "9 of 10 pairs stand in the right order."  # 0.9 beyond one half
+    assert (
+        points == 8 and said[-1] == "9 of 10 pairs stand in the right order."
+    )  # 0.9 beyond one half
     assert share(question, PLANETS[::-1])[0] == 0
     alone = make("order", PLANETS, options=sorted(PLANETS), worth=10)
     assert share(alone, ["Venus", "Mercury", *PLANETS[2:]])[0] == 0
@@ -199,10 +230,14 @@ def test_who_guesses_a_list_earns_nothing_on_average():
     chance = random.Random(SEED)
     right = [chance.random() < 0.5 for _ in range(12)]
     truths = make("truth values", right, length=12, partial=True, worth=12)
-    assert share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6  # 9 of 12, beyond 6
+    assert (
+        share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6
+    )  # 9 of 12, beyond 6
     words = ["N", "N m", "Pa", "N/m"]
     answer = [chance.choice(words) for _ in range(8)]
-    question = marking.contract_of(make("words", answer, options=words, length=8, partial=True), b"any secret")
+    question = marking.contract_of(
+        make("words", answer, options=words, length=8, partial=True), b"any secret"
+    )
     shares = []
     for _ in range(600):
         text = " | ".join(chance.choice(words) for _ in range(8)).lower()
@@ -214,7 +249,7 @@ def test_who_guesses_a_list_earns_nothing_on_average():
         make("expression", 3, partial=True)
 
 
-# --- texts that a person reads ---------------------------------------------------------------------
+# --- texts that a person reads --------------------------------------------------------------------
 
 ESSAY = "Two turns about different axes do not commute: " * 3
 RUBRIC = ["says that order matters", "gives an example"]
@@ -226,14 +261,23 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
     sealed = question.sealed()
     assert sealed.lockers == "" and "commute" not in str(sealed)
     reply = questions.judge("trial/one", sealed, to_plain("They do not."))
-    assert (reply.outcome, reply.note) == ("undecided", "for a person") and "3 words" in reply.messages[0]
+    assert (reply.outcome, reply.note) == (
+        "undecided",
+        "for a person",
+    ) and "3 words" in reply.messages[0]
     assert outcome(question, "  ")[0] == outcome(question, ...)[0] == "not attempted"
     assert outcome(question, 3) == ("invalid", "shape")
     about = Asked(marking.contract_of(question, b"any secret"))
-    for text, expected in (("They do not.", "undecided"), ("", "not attempted"), (ESSAY, "undecided")):
+    for text, expected in (
+        ("They do not.", "undecided"),
+        ("", "not attempted"),
+        (ESSAY, "undecided"),
+    ):
         mark = marking.mark("trial/one", about, Answer("recorded", to_plain(text)))
         assert (mark.outcome, mark.points) == (expected, 0)
-    assert try_question(make("free text", ESSAY)).faults == ["Nothing says what a person looks for: give a `rubric`."]
+    assert try_question(make("free text", ESSAY)).faults == [
+        "Nothing says what a person looks for: give a `rubric`."
+    ]
     with pytest.raises(author.AuthorError, match="a person reads"):
         make("expression", 3, rubric=RUBRIC)
     with pytest.raises(NotPlain, match="long"):
@@ -242,30 +286,36 @@ def test_a_text_goes_to_a_person_and_nothing_of_it_is_sealed(tmp_path):
 
 def test_the_rubric_stands_on_the_page_where_a_person_judges(tmp_path):
     graded = Class(tmp_path)
-    graded.questions = {"trial/one": marking.contract_of(make("free text", ESSAY, rubric=RUBRIC), b"any secret")}
+    graded.questions = {
+        "trial/one": marking.contract_of(make("free text", ESSAY, rubric=RUBRIC), b"any secret")
+    }
     lines = graded.lines(
-        SimpleNamespace(question="trial/one"), Record("ann", "trial", marks={"trial/one": Mark("undecided")})
+        SimpleNamespace(question="trial/one"),
+        Record("ann", "trial", marks={"trial/one": Mark("undecided")}),
     )
     assert [line for line, *_ in lines] == RUBRIC
 
 
-# --- a plot as a figure ----------------------------------------------------------------------------
+# --- a plot as a figure ---------------------------------------------------------------------------
 
 
 def test_a_plot_of_matplotlib_is_a_figure_of_a_question(tmp_path):
     course = made_in(tmp_path)
     plot = (
-        "import matplotlib.pyplot as plt\nfigure, axes = plt.subplots(figsize=(3, 2))\naxes.plot([0, 1], [0, 2])\n"
+        "import matplotlib.pyplot as plt\nfigure, axes = plt.subplots(figsize=(3, 2))\n"
+        "axes.plot([0, 1], [0, 2])\n"
         "plt.close(figure)\ndrawing(figure, 'A line that rises by 2')"
     )
     drawn = (
-        "### BEGIN VARIANTS\nimport matplotlib.pyplot as plt\n\n\ndef plot(drawn):\n    figure, axes = plt.subplots()\n"
+        "### BEGIN VARIANTS\nimport matplotlib.pyplot as plt\n\n\ndef plot(drawn):\n"
+        "    figure, axes = plt.subplots()\n"
         "    axes.plot([0, 1], [0, drawn['slope']])\n    plt.close(figure)\n"
         "    return drawing(figure, 'A line that rises')\n\n\n"
         "line = draw('trial/line', count=3, slope=[2, 3, 5], picture=plot)\n### END VARIANTS"
     )
     checked = (
-        "check('trial/line', rise)\n### BEGIN HIDDEN TESTS\nquestion('trial/line', kind='expression')\n"
+        "check('trial/line', rise)\n### BEGIN HIDDEN TESTS\n"
+        "question('trial/line', kind='expression')\n"
         "### END HIDDEN TESTS"
     )
     write_source(
@@ -285,5 +335,10 @@ def test_a_plot_of_matplotlib_is_a_figure_of_a_question(tmp_path):
     assert shown.startswith('<p><img alt="A line that rises by 2"') and "plt" not in "".join(
         cell.source for cell in cells
     )
-    first, again = (read_source(course.sources / "trial.ipynb", 1).questions["trial/line"] for _ in range(2))
-    assert first.public.variant.picture == again.public.variant.picture and first.public.salt == again.public.salt
+    first, again = (
+        read_source(course.sources / "trial.ipynb", 1).questions["trial/line"] for _ in range(2)
+    )
+    assert (
+        first.public.variant.picture == again.public.variant.picture
+        and first.public.salt == again.public.salt
+    )

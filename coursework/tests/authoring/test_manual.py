@@ -1,4 +1,6 @@
-"""The manual for authors: its examples are questions that pass, and the replies that it prints are the real ones."""
+"""The manual for authors: its examples are questions that pass, and the replies that it prints are
+the real ones.
+"""
 
 import csv
 import os
@@ -16,8 +18,13 @@ from coursework.authoring.selftest import _judge, try_question
 from coursework.authoring.source import read_source
 
 MANUAL = (PROJECT / "docs" / "manual.md").read_text("utf8")
-BLOCK = re.compile(r"<!-- (example|reply|the rest of it)(?:: (.*?))? -->\n```(?:python|text)\n(.*?)```", re.S)
-SETUP = "import sympy as sm\nfrom coursework import check, variant\nx, y, F_x, F_y = sm.symbols('x, y, F_x, F_y')"
+BLOCK = re.compile(
+    r"<!-- (example|reply|the rest of it)(?:: (.*?))? -->\n```(?:python|text)\n(.*?)```", re.S
+)
+SETUP = (
+    "import sympy as sm\nfrom coursework import check, variant\n"
+    "x, y, F_x, F_y = sm.symbols('x, y, F_x, F_y')"
+)
 TEXT = re.search(r"```text\n(A child .*?)```", MANUAL, re.S)[1]
 
 
@@ -34,7 +41,9 @@ def examples():
     return found
 
 
-@pytest.mark.parametrize("about, cells, replies", [pytest.param(*one, id=one[0]) for one in examples()])
+@pytest.mark.parametrize(
+    "about, cells, replies", [pytest.param(*one, id=one[0]) for one in examples()]
+)
 def test_an_example_is_a_question_that_passes(tmp_path, about, cells, replies):
     sources = [("code", SETUP), *(("markdown" if text is TEXT else "code", text) for text in cells)]
     path = write_source(tmp_path, *sources, name="manual")
@@ -57,19 +66,55 @@ def trimmed(numbers):
 
 BAR = "A bar of 2.5 m is clamped at one end; 300 N press on the other. Its stiffness is 4200 N m^2."
 BENT, SLOPE = 300 * 2.5**3 / (3 * 4200), 300 * 2.5**2 / (2 * 4200)
-WORDS = ["none", "sum", "mean", "mean", "sum", "none", "mean", "sum", "sum", "none", "mean", "none", "sum", "mean"]
+WORDS = [
+    "none",
+    "sum",
+    "mean",
+    "mean",
+    "sum",
+    "none",
+    "mean",
+    "sum",
+    "sum",
+    "none",
+    "mean",
+    "none",
+    "sum",
+    "mean",
+]
 FOURTEEN = {"options": ["sum", "mean", "none"], "length": 14}
 MEAN = {"result": "expression", "calls": [[[2, 4, 9]], [[-1.5]], [[0.25, 3.5]]]}
-TRIMMED = {"result": "expression", "calls": [[[2, 4, 9, 1]], [[-1.5, 3, 8]], [[0.25, 3.5, 7, 1, 2]]]}
+TRIMMED = {
+    "result": "expression",
+    "calls": [[[2, 4, 9, 1]], [[-1.5, 3, 8]], [[0.25, 3.5, 7, 1, 2]]],
+}
 STEPS = {
     "which of four": ("t/1", "choice", "d", {"options": ["a", "b", "c", "d"]}, ""),
-    "which of six claims hold": ("t/2", "truth values", [False, True, True, False, False, True], {"length": 6}, ""),
+    "which of six claims hold": (
+        "t/2",
+        "truth values",
+        [False, True, True, False, False, True],
+        {"length": 6},
+        "",
+    ),
     "of fourteen, which of three each is": ("t/3", "words", WORDS, FOURTEEN, ""),
     "the mean of 2, 4 and 9": ("t/4", "expression", 5, {}, "Give the mean of 2, 4 and 9."),
     "a function that gives the mean": ("t/5", "function", mean, MEAN, ""),
-    "a function that gives the mean without the least and the largest": ("t/6", "function", trimmed, TRIMMED, ""),
+    "a function that gives the mean without the least and the largest": (
+        "t/6",
+        "function",
+        trimmed,
+        TRIMMED,
+        "",
+    ),
     "how far the end is bent": ("t/7", "expression", BENT, {"tolerance": 1e-4}, BAR),
-    "that, and the slope there": ("t/8", "vector", [BENT, SLOPE], {"length": 2, "tolerance": 1e-4}, BAR),
+    "that, and the slope there": (
+        "t/8",
+        "vector",
+        [BENT, SLOPE],
+        {"length": 2, "tolerance": 1e-4},
+        BAR,
+    ),
     "both, and both in the middle": (
         "t/9",
         "vector",
@@ -83,7 +128,9 @@ STEPS = {
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.long
 def test_each_step_to_a_question_that_is_hard_to_guess_was_tried(step, monkeypatch):
-    """With the ideas of coursework alone: a plug-in that is installed has more, which come first and are counted."""
+    """With the ideas of coursework alone: a plug-in that is installed has more, which come first
+    and are counted.
+    """
     for module in (attacks, typed):
         monkeypatch.setattr(module, "plugins", list)
     name, kind, answer, about, text = STEPS[step]
@@ -102,10 +149,16 @@ def test_the_manual_has_examples_of_most_kinds_and_names_all():
 
 @pytest.mark.long
 def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_path):
-    """From an empty folder to the marks, as one who has nothing but the manual and the two packages."""
+    """From an empty folder to the marks, as one who has nothing but the manual and the two
+    packages.
+    """
     blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
     assert (
-        "venv" in blocks[0] and "new" in blocks[1] and "try" in blocks[2] and "grade" in blocks[3] and len(blocks) == 5
+        "venv" in blocks[0]
+        and "new" in blocks[1]
+        and "try" in blocks[2]
+        and "grade" in blocks[3]
+        and len(blocks) == 5
     )
     blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parent)))
     (rules,) = re.findall(r"```toml\n(time-zone.*?)```", MANUAL, re.S)
@@ -116,16 +169,26 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
         "cp exercises/first-steps.ipynb handed-in/ben\n"
     )
     (tmp_path / "rules.toml").write_text(rules)
-    script = "\n".join(["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]])
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | PINNED
-    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    script = "\n".join(
+        ["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]]
+    )
+    environment = {
+        name: value for name, value in os.environ.items() if name != "PYTHONPATH"
+    } | PINNED
+    done = subprocess.run(
+        ["bash", "-c", script], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     course = tmp_path / "first-course"
-    assert (course / "build" / "try.html").is_file() and (course / "build" / "exercises.zip").is_file()
+    assert (course / "build" / "try.html").is_file() and (
+        course / "build" / "exercises.zip"
+    ).is_file()
     assert (course / "marks" / "report.html").is_file() and len(
         list((course / "marks" / "feedback").rglob("*.html"))
     ) >= 2
-    assert (course / "feedback.zip").is_file() and (course / "marks" / "course" / "course.csv").is_file()
+    assert (course / "feedback.zip").is_file() and (
+        course / "marks" / "course" / "course.csv"
+    ).is_file()
     with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
         points = {row["student"]: float(row["points"]) for row in csv.DictReader(file)}
     assert points["ada"] > 0 == points["ben"]

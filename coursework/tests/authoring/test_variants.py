@@ -1,4 +1,6 @@
-"""Variants of a question: drawn by rule, sealed one by one, and each student's own found without a server."""
+"""Variants of a question: drawn by rule, sealed one by one, and each student's own found without a
+server.
+"""
 
 import base64
 import collections
@@ -36,14 +38,19 @@ from coursework.grading.reporting.reports import feedback_of
 from coursework.grading.submissions import intake
 
 NAME = "levers/see-saw"
-TEXT = "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as `moment`, in N m."
+TEXT = (
+    "## See-saw\n\nA force of ${{force}}$ N acts ${{arm}}$ m from the hinge. Give its moment as "
+    "`moment`, in N m."
+)
 SOLVED = "### BEGIN SOLUTION\nmoment = lever.force * lever.arm\n### END SOLUTION"
 DRAWN = (
-    "### BEGIN VARIANTS\nlever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, 3, 7])\n"
+    "### BEGIN VARIANTS\nlever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, "
+    "3, 7])\n"
     "### END VARIANTS"
 )
 CHECKED = (
-    "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression', "
+    "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\n"
+    "question('levers/see-saw', kind='expression', "
     "mistakes={'Force and arm are multiplied, not added.': lever.force + lever.arm}, "
     "solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n### END HIDDEN TESTS"
 )
@@ -58,7 +65,8 @@ CELLS = [
     ("code", "### BEGIN SOLUTION\nplain = 7\n### END SOLUTION"),
     (
         "code",
-        "check('levers/plain', plain)\n### BEGIN HIDDEN TESTS\nquestion('levers/plain', kind='expression')\n"
+        "check('levers/plain', plain)\n### BEGIN HIDDEN TESTS\n"
+        "question('levers/plain', kind='expression')\n"
         "### END HIDDEN TESTS",
     ),
 ]
@@ -91,7 +99,9 @@ def beside(course, monkeypatch, tmp_path):
 
 def student_with(number):
     return next(
-        f"{k}@uni.example" for k in range(999) if variants.variant_of(f"{k}@uni.example", "levers/see-saw", 6) == number
+        f"{k}@uni.example"
+        for k in range(999)
+        if variants.variant_of(f"{k}@uni.example", "levers/see-saw", 6) == number
     )
 
 
@@ -106,23 +116,38 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     text = f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. "
     text += "Give its moment as moment, in N m."
     # Whoever has not said who they are reads it at the question, before anything is answered.
-    assert repr(lever) == text + (f"\n\n{re.sub('[*`]', '', identity.FORGOTTEN)}" if number == 0 else "")
+    assert repr(lever) == text + (
+        f"\n\n{re.sub('[*`]', '', identity.FORGOTTEN)}" if number == 0 else ""
+    )
     # Whoever has not said who they are hears it in each reply to an answer.
-    replies = [coursework.check("levers/see-saw", answer) for answer in (lever.force * lever.arm, 0, "a text", ...)]
-    assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [False]
-    assert identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages  # without variants
+    replies = [
+        coursework.check("levers/see-saw", answer)
+        for answer in (lever.force * lever.arm, 0, "a text", ...)
+    ]
+    assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [
+        False
+    ]
+    assert (
+        identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages
+    )  # without variants
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
     for other in range(6):
-        given = read_source(course.sources / "levers.ipynb", other).questions["levers/see-saw"].public.given
+        given = (
+            read_source(course.sources / "levers.ipynb", other)
+            .questions["levers/see-saw"]
+            .public.given
+        )
         right = given["force"] * given["arm"] == lever.force * lever.arm
         outcome = coursework.check("levers/see-saw", given["force"] * given["arm"]).outcome
         assert (outcome == "correct") == right
 
 
 def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
-    """Pasted with the classmate's numbers, or worked out with everybody's: it is no help, no try, and earns no hint."""
+    """Pasted with the classmate's numbers, or worked out with everybody's: it is no help, no try,
+    and earns no hint.
+    """
     lever = coursework.variant(NAME)
     for other in (number for number in range(6) if number != 2):
         given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
@@ -133,12 +158,18 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
     assert coursework.check(NAME, 1234567).note == ""
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and not right.help and not right.sibling
-    others = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]["others"]
+    others = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME][
+        "others"
+    ]
     assert len(base64.b85decode(others[1])) % (8 * sealing.NAME) == 0
 
 
-def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(beside, course, monkeypatch, tmp_path, capsys):
-    """Solved with everybody's numbers, and only then said who one is: both are said, in every place that tells."""
+def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(
+    beside, course, monkeypatch, tmp_path, capsys
+):
+    """Solved with everybody's numbers, and only then said who one is: both are said, in every place
+    that tells.
+    """
     monkeypatch.setattr(progress, "KEPT", tmp_path / ".coursework" / "progress.json")
     coursework.student("")
     lever = coursework.variant(NAME)
@@ -148,10 +179,15 @@ def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(beside, co
     assert "that everybody sees" in said and NAME in said and student_with(2) in said
     assert f"not with yours yet: {NAME}" in repr(coursework.progress())
     reply = coursework.check(NAME, lever.force * lever.arm)
-    assert (reply.outcome, reply.tries) == ("wrong", 0) and "right for the numbers that everybody" in reply.messages[0]
+    assert (reply.outcome, reply.tries) == (
+        "wrong",
+        0,
+    ) and "right for the numbers that everybody" in reply.messages[0]
     own = coursework.variant(NAME)
     assert coursework.check(NAME, own.force * own.arm).outcome == "correct"
-    assert "not with yours" not in repr(coursework.progress()) and "is right" in repr(coursework.progress())
+    assert "not with yours" not in repr(coursework.progress()) and "is right" in repr(
+        coursework.progress()
+    )
     coursework.student(student_with(2))
     assert NAME not in capsys.readouterr().out
 
@@ -161,14 +197,20 @@ NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
 
 
 @pytest.mark.parametrize("first", ["answer", "slip", *NUMBERS])
-def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(first, monkeypatch, tmp_path):
-    """All orders of answers, names (one of them mistyped, one of a classmate with the same numbers) and editions."""
+def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(
+    first, monkeypatch, tmp_path
+):
+    """All orders of answers, names (one of them mistyped, one of a classmate with the same numbers)
+    and editions.
+    """
     monkeypatch.setattr(progress, "KEPT", tmp_path / "progress.json")
 
     def question():
         number = NUMBERS[who]
         force, arm = EDITIONS[edition][number]
-        return Sealed(Question("expression", variant=Variant(number, 3, {"force": force, "arm": arm})))
+        return Sealed(
+            Question("expression", variant=Variant(number, 3, {"force": force, "arm": arm}))
+        )
 
     def judged(name, sealed, plain, student):
         given = sealed.question.given
@@ -183,7 +225,10 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
     monkeypatch.setattr(
         check_module,
         "own_numbers",
-        lambda name, student: (NUMBERS[who], variants.names_of_variants([question().question.variant])[0]),
+        lambda name, student: (
+            NUMBERS[who],
+            variants.names_of_variants([question().question.variant])[0],
+        ),
     )
     others = [step for step in ["answer", "slip", "ada", "eda", "ida", "edition"] if step != first]
     for steps in itertools.permutations(others, 4):
@@ -205,55 +250,80 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
             # The file is read anew each time, as after a reload.
             own = EDITIONS[edition][NUMBERS[who]]
             kept = progress.Progress.read().entry(NAME)
-            assert sum(one.outcome == "correct" for one in (kept, *kept.others)) == len(right), steps
+            assert sum(one.outcome == "correct" for one in (kept, *kept.others)) == len(right), (
+                steps
+            )
             said = repr(check_module.progress())
             assert ("is right" in said) == (own in right), (steps, step, said)
-            assert ("not with yours yet" in said) == bool(right - {own} and own not in right), (steps, step, said)
+            assert ("not with yours yet" in said) == bool(right - {own} and own not in right), (
+                steps,
+                step,
+                said,
+            )
 
 
 def test_how_many_pages_there_are_tells_no_variant_from_another(course, tmp_path):
     made = made_in(tmp_path)
-    told = CHECKED.replace("mistakes={", "mistakes={'Where is the arm?': lever.force + (lever.arm > 2), ")
+    told = CHECKED.replace(
+        "mistakes={", "mistakes={'Where is the arm?': lever.force + (lever.arm > 2), "
+    )
     assert told != CHECKED
     write_source(made.sources, *CELLS[:5], ("code", told), name="levers")
     release(made, run=False)
     first, *rest = (
         json.loads(path.read_text("utf8"))["questions"][NAME]
-        for path in [made.sealed / "levers.json", *sorted((made.sealed / "variants").glob("levers-*.json"))]
+        for path in [
+            made.sealed / "levers.json",
+            *sorted((made.sealed / "variants").glob("levers-*.json")),
+        ]
     )
     assert len(first["pages"]) % 4 == 0 and len({len(one["pages"]) for one in rest}) == 1
-    known = [read_source(made.sources / "levers.ipynb", number).questions[NAME] for number in range(1, 6)]
+    known = [
+        read_source(made.sources / "levers.ipynb", number).questions[NAME] for number in range(1, 6)
+    ]
     assert len({len(one.entries) for one in known}) > 1  # without that it would show nothing
 
 
 def test_the_exercise_notebook_shows_the_variant_and_hides_the_rule(course):
     notebook = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
     sources = [cell.source for cell in notebook.cells]
-    assert sources[2] == 'lever = variant("levers/see-saw")\nlever' and sources[3].startswith("moment = ...")
+    assert sources[2] == 'lever = variant("levers/see-saw")\nlever' and sources[3].startswith(
+        "moment = ..."
+    )
     assert "draw" not in "".join(sources) and "{{" not in "".join(sources)
 
 
 def test_variants_are_different_fair_and_of_the_students_own(course):
-    numbers = collections.Counter(variants.variant_of(f"student-{k}", "a/b", 16) for k in range(4000))
+    numbers = collections.Counter(
+        variants.variant_of(f"student-{k}", "a/b", 16) for k in range(4000)
+    )
     assert set(numbers) == set(range(16)) and min(numbers.values()) > 180
     same = [
-        variants.variant_of(f"student-{k}", "a/b", 16) == variants.variant_of(f"student-{k}", "a/c", 16)
+        variants.variant_of(f"student-{k}", "a/b", 16)
+        == variants.variant_of(f"student-{k}", "a/c", 16)
         for k in range(2000)
     ]
     assert 60 < sum(same) < 200  # one in 16: what one question gives tells nothing of the next
-    drawn = [json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number)) for number in range(12)]
+    drawn = [
+        json.dumps(Rule("a/b", 12, {"x": range(3), "y": range(4)}).parameters(number))
+        for number in range(12)
+    ]
     assert len(set(drawn)) == 12 and drawn[0] == '{"x": 0, "y": 0}'
 
 
 def test_empty_lockers_are_like_the_others_and_come_again(course):
-    """A second release gives the same; what the first one sealed is all there, and opens as before."""
+    """A second release gives the same; what the first one sealed is all there, and opens as
+    before.
+    """
     known = sorted(course.sealed.rglob("*.json"))
     before = {path: path.read_bytes() for path in known}
     release(course, run=False)
     assert {path: path.read_bytes() for path in known} == before
     about = json.loads((course.sealed / "levers.json").read_text("utf8"))["questions"][NAME]
     data = base64.b85decode(about["lockers"])
-    assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(about["lockers"])
+    assert len({data[start : start + 16] for start in range(0, len(data), 16)}) == sealing.count_of(
+        about["lockers"]
+    )
 
 
 def test_the_grader_finds_the_same_variant_from_the_roster():
@@ -267,7 +337,11 @@ def test_answers_to_another_students_numbers_earn_nothing_and_are_flagged(course
     found = marking.load_questions([course.sources / "levers.ipynb"], tmp_path, b"any secret")
     assert len(found[NAME]) == 6 and len(found["levers/plain"]) == 1
     for number in (0, 4):
-        student = student_with(number) if number else next(f"{k}" for k in range(99) if not variant(f"{k}"))
+        student = (
+            student_with(number)
+            if number
+            else next(f"{k}" for k in range(99) if not variant(f"{k}"))
+        )
         own, _ = marking.of_student(found, student)
         for other in range(6):
             given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
@@ -291,7 +365,10 @@ def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
         assert not list(tmp_path.iterdir()) and identity._identity == ""
         coursework.student(" Ada@Uni.example")
         coursework.student("")
-        assert identity._identity == "ada@uni.example" and "those of ada@uni.example" in capsys.readouterr().out
+        assert (
+            identity._identity == "ada@uni.example"
+            and "those of ada@uni.example" in capsys.readouterr().out
+        )
         coursework.student("ben")  # another one says it anew
         coursework.student("")
         assert identity._identity == "ben"
@@ -321,28 +398,39 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     assert coursework.check(NAME, lever.force + lever.arm).outcome == "wrong"
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and right.help == "mistake"
-    assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(right)
-    assert right.sibling == f"{NAME}/sibling" and f'data-sibling="{NAME}/sibling"' in right._repr_html_()
+    assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(
+        right
+    )
+    assert (
+        right.sibling == f"{NAME}/sibling"
+        and f'data-sibling="{NAME}/sibling"' in right._repr_html_()
+    )
     assert "a sibling earns the rest: levers/see-saw." in repr(coursework.progress())
     twin = coursework.variant(f"{NAME}/sibling")
     assert (twin.force, twin.arm) != (lever.force, lever.arm)
     # The first sibling with a mistake, too: then there is one more, and no third.
     coursework.check(f"{NAME}/sibling", twin.force + twin.arm)
-    assert f"check('{NAME}/sibling-2'" in repr(coursework.check(f"{NAME}/sibling", twin.force * twin.arm))
+    assert f"check('{NAME}/sibling-2'" in repr(
+        coursework.check(f"{NAME}/sibling", twin.force * twin.arm)
+    )
     last = coursework.variant(f"{NAME}/sibling-2")
     alone = coursework.check(f"{NAME}/sibling-2", last.force * last.arm)
     assert alone.outcome == "correct" and not alone.help and "in full" in alone.messages[0]
-    assert "a sibling earns" not in repr(coursework.progress()) and "you have tried is right" in repr(
+    assert "a sibling earns" not in repr(
         coursework.progress()
-    )
-    with pytest.raises(questions.NoSuchQuestion, match="its siblings are levers/see-saw/sibling and"):
+    ) and "you have tried is right" in repr(coursework.progress())
+    with pytest.raises(
+        questions.NoSuchQuestion, match="its siblings are levers/see-saw/sibling and"
+    ):
         coursework.check(f"{NAME}/sibling-3", 1)
     with pytest.raises(questions.NoSuchQuestion, match="it has no other numbers"):
         coursework.variant("levers/plain/sibling")
 
 
 def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
-    """The record is of a variant: with an identity the points are still to be earned, and no hint is brought along."""
+    """The record is of a variant: with an identity the points are still to be earned, and no hint
+    is brought along.
+    """
     coursework.student(" ")
     everybody = coursework.variant(NAME)
     for wrong in (11, 12, 13):
@@ -350,22 +438,32 @@ def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recor
     assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
     assert "tried is right" in repr(coursework.progress())
     coursework.student(student_with(3))
-    assert "not with yours yet" in repr(coursework.progress()) and "no hint yet" in repr(coursework.hint(NAME))
+    assert "not with yours yet" in repr(coursework.progress()) and "no hint yet" in repr(
+        coursework.hint(NAME)
+    )
     first = coursework.check(NAME, 11)
-    assert first.tries == 1 and "Hint:" not in repr(first) and "not right yet" in repr(coursework.progress())
+    assert (
+        first.tries == 1
+        and "Hint:" not in repr(first)
+        and "not right yet" in repr(coursework.progress())
+    )
     lever = coursework.variant(NAME)
     assert coursework.check(NAME, lever.force * lever.arm).help == ""
     # Back again: nothing of the first record is lost.
     identity._identity = ""
     again = coursework.check(NAME, everybody.force * everybody.arm)
-    assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(coursework.progress())
+    assert (again.tries, again.help) == (4, "hint") and "Right with help" in repr(
+        coursework.progress()
+    )
 
 
 def test_a_name_that_is_no_text_or_names_a_notebook_is_explained(recorded):
     for wrong in (None, 3, [1, 2]):
         with pytest.raises(questions.NoSuchQuestion, match="comes first"):
             coursework.check(wrong, NAME)
-    with pytest.raises(questions.NoSuchQuestion, match="'levers' is a notebook. Its questions are 'levers/"):
+    with pytest.raises(
+        questions.NoSuchQuestion, match="'levers' is a notebook. Its questions are 'levers/"
+    ):
         coursework.check("levers", 1)
     with pytest.raises(questions.NoSuchQuestion, match=f"Did you mean '{NAME}'"):
         coursework.check(NAME.upper(), 1)
@@ -406,7 +504,10 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
     missing = Answer("missing")
 
     def marked(answers, **helped):
-        remembered = {{"own": NAME, "first": first}[one]: Remembered(3, help=had) for one, had in helped.items()}
+        remembered = {
+            {"own": NAME, "first": first}[one]: Remembered(3, help=had)
+            for one, had in helped.items()
+        }
         return marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
 
     for answers, helped, points, note in (
@@ -415,13 +516,23 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
         ({NAME: right[NAME]}, {"own": "mistake"}, 0.8, "with help"),
         ({NAME: right[NAME], first: right[first]}, {"own": "hint"}, 1, "by a sibling"),
         ({NAME: right[NAME], first: right[NAME]}, {"own": "hint"}, 0.8, "with help"),
-        ({NAME: right[NAME], first: right[first]}, {"own": "hint", "first": "mistake"}, 0.8, "with help"),
+        (
+            {NAME: right[NAME], first: right[first]},
+            {"own": "hint", "first": "mistake"},
+            0.8,
+            "with help",
+        ),
         (right, {"own": "hint", "first": "mistake"}, 1, "by a sibling"),
         ({NAME: missing, first: right[first]}, {"own": "solution"}, 0, "by a sibling alone"),
         ({NAME: right[NAME], first: right[first]}, {"own": "solution"}, 1, "by a sibling"),
         ({NAME: missing}, {"own": "solution"}, 0, "missing"),
         # The answer of one who has the numbers of the third one after one's own.
-        ({NAME: right[NAME], f"{NAME}/sibling-3": right[second]}, {"own": "hint"}, 0.8, "with help"),
+        (
+            {NAME: right[NAME], f"{NAME}/sibling-3": right[second]},
+            {"own": "hint"},
+            0.8,
+            "with help",
+        ),
     ):
         mark = marked(answers, **helped)
         assert (mark.points, mark.note) == (points, note), (answers, helped)
@@ -430,29 +541,44 @@ def test_the_grader_counts_a_sibling_that_was_solved_without_help(course, tmp_pa
     mark = marked({NAME: right[NAME]}, own="mistake")
     assert mark.points == 1 and mark.messages == ()  # an author who wants help to cost nothing
     asked = marking.asked_of_sandbox(marking.with_second_chances(own, {first}))
-    assert set(asked) == {NAME, "levers/plain", first} and asked[first]["given"] == chances[first].question.given
+    assert (
+        set(asked) == {NAME, "levers/plain", first}
+        and asked[first]["given"] == chances[first].question.given
+    )
 
 
 def test_a_notebook_remembers_tries_and_help(recorded):
     lever = coursework.variant(NAME)
-    shown = [coursework.check(NAME, lever.force + lever.arm), coursework.check(NAME, lever.force * lever.arm)]
+    shown = [
+        coursework.check(NAME, lever.force + lever.arm),
+        coursework.check(NAME, lever.force * lever.arm),
+    ]
     cells = [
-        nbformat.v4.new_code_cell("check", outputs=[nbformat.v4.new_output("display_data", {"text/html": text})])
+        nbformat.v4.new_code_cell(
+            "check", outputs=[nbformat.v4.new_output("display_data", {"text/html": text})]
+        )
         for text in [one._repr_html_() for one in shown]
         + ['<div class="coursework-reply" data-question="a" data-tries="x">']
     ]
     data = nbformat.writes(nbformat.v4.new_notebook(cells=cells)).encode()
     found = intake.remembered_in(data)
     tried = found[NAME].tried
-    assert found == {NAME: Remembered(2, tried, "mistake")} and [*tried] == shown[0].tried == shown[1].tried
+    assert (
+        found == {NAME: Remembered(2, tried, "mistake")}
+        and [*tried] == shown[0].tried == shown[1].tried
+    )
     assert len(tried) == 1 and shown[0].answer.startswith(tried[0])
-    assert intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
+    assert (
+        intake.remembered_in(b"{}") == {} and intake.remembered_in(b'\xff coursework-reply "') == {}
+    )
 
 
 def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
     """Three hand in: one right at once, one with help, and one with help and then a sibling."""
     solved = nbformat.read(course.exercises / "levers.ipynb", as_version=4)
-    answer, check_cell = (next(c for c in solved.cells if word in c.source) for word in ("moment =", "check('lev"))
+    answer, check_cell = (
+        next(c for c in solved.cells if word in c.source) for word in ("moment =", "check('lev")
+    )
     answer.source = "moment = lever.force * lever.arm"
     students = {"ada": student_with(1), "ben": student_with(3), "eve": student_with(4)}
     for name, student in students.items():
@@ -465,20 +591,29 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
             reply = coursework.check(NAME, given.force * given.arm)
             cell = next(c for c in notebook.cells if c.source == check_cell.source)
             cell.outputs = [
-                nbformat.v4.new_output("execute_result", {"text/html": reply._repr_html_()}, execution_count=1)
+                nbformat.v4.new_output(
+                    "execute_result", {"text/html": reply._repr_html_()}, execution_count=1
+                )
             ]
         if name == "eve":
-            twin = f"twin = variant('{NAME}/sibling')\ncheck('{NAME}/sibling', twin.force * twin.arm)"
+            twin = (
+                f"twin = variant('{NAME}/sibling')\ncheck('{NAME}/sibling', twin.force * twin.arm)"
+            )
             notebook.cells.append(nbformat.v4.new_code_cell(twin))
         place = tmp_path / "handed-in" / student
         place.mkdir(parents=True)
         nbformat.write(notebook, place / "levers.ipynb")
     measured = {NAME: [0, 20, None, 30, None, None], "levers/plain": [0]}
-    about = {one: {"worth": 1, "digest": "", "tries": tries, "way": ""} for one, tries in measured.items()}
+    about = {
+        one: {"worth": 1, "digest": "", "tries": tries, "way": ""}
+        for one, tries in measured.items()
+    }
     strengths = course.sources / MEASURED
     strengths.write_text(json.dumps({"format": FORMAT_OF_MEASURED, "questions": about}), "utf8")
     show = io.StringIO()
-    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=show)
+    done = grade(
+        tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1, show=show
+    )
     strengths.unlink()
     assert done["graded"] == 3
     text = (tmp_path / "marks" / "grades.csv").read_text("utf8")
@@ -494,13 +629,18 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
 
 def test_an_edition_draws_afresh():
     rule = Rule("a/b", 4, {"x": range(1000), "y": lambda chance: chance.randint(0, 10**6)})
-    first, exam = ([rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam"))
+    first, exam = (
+        [rule.parameters(number, edition) for number in range(4)] for edition in ("", "exam")
+    )
     assert not [one for one in first if one in exam]
     assert first == [rule.parameters(number) for number in range(4)]
 
 
 def test_salts_differ_so_that_a_guess_serves_one_variant(course):
-    salts = [read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public.salt for k in range(6)]
+    salts = [
+        read_source(course.sources / "levers.ipynb", k).questions["levers/see-saw"].public.salt
+        for k in range(6)
+    ]
     assert len(set(salts)) == 6
 
 
@@ -512,7 +652,9 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
     again = made_in(tmp_path / "again")
     (again.sealed / "variants" / "levers-extra-5.json").write_text("of another notebook")
     write_source(
-        again.sources, *((kind, text.replace("count=6", "count=3")) for kind, text, *_ in CELLS), name="levers"
+        again.sources,
+        *((kind, text.replace("count=6", "count=3")) for kind, text, *_ in CELLS),
+        name="levers",
     )
     release(again, run=False)
     assert sorted(path.name for path in (again.sealed / "variants").iterdir()) == [
@@ -523,10 +665,16 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
 
 
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
-    """Their pages follow upon those of the first variant, which another machine's numbers had made others."""
+    """Their pages follow upon those of the first variant, which another machine's numbers had made
+    others.
+    """
     made = made_in(tmp_path)
     solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
-    write_source(made.sources, *((kind, solved if text == SOLVED else text) for kind, text in CELLS), name="levers")
+    write_source(
+        made.sources,
+        *((kind, solved if text == SOLVED else text) for kind, text in CELLS),
+        name="levers",
+    )
     monkeypatch.chdir(tmp_path)
     try:
         for moved in (0, 1e-4, 2e-4, 3e-4):
@@ -536,8 +684,14 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
                 questions.notebook_questions.cache_clear()
                 coursework.me(student_with(number) if number else "")
                 lever = coursework.variant("levers/see-saw")
-                assert coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome == "correct"
-                assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+                assert (
+                    coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome
+                    == "correct"
+                )
+                assert (
+                    "not added"
+                    in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
+                )
     finally:
         coursework.me("")
         questions.notebook_questions.cache_clear()
@@ -551,17 +705,32 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
     ],
 )
 def test_an_author_is_told(tmp_path, old, new, says):
-    path = write_source(tmp_path, *((kind, text.replace(old, new)) for kind, text, *_ in CELLS), name="levers")
+    path = write_source(
+        tmp_path, *((kind, text.replace(old, new)) for kind, text, *_ in CELLS), name="levers"
+    )
     with pytest.raises(AuthorError, match=says):
         read_source(path, 12)
 
 
 def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
-    """Of 2 N at 2 m the sum is the product: one variant in which a mistake gives the right answer."""
+    """Of 2 N at 2 m the sum is the product: one variant in which a mistake gives the right
+    answer.
+    """
     made = made_in(tmp_path)
-    drawn = DRAWN.replace("20, 30, 45, 65", "3, 2").replace("2, 3, 7", "3, 2").replace("count=6", "count=4")
-    write_source(made.sources, *((kind, drawn if text == DRAWN else text) for kind, text, *_ in CELLS), name="levers")
-    with pytest.raises(AuthorError, match=r"levers/see-saw, variant \d, {'force': 2, 'arm': 2}: This authored mistake"):
+    drawn = (
+        DRAWN.replace("20, 30, 45, 65", "3, 2")
+        .replace("2, 3, 7", "3, 2")
+        .replace("count=6", "count=4")
+    )
+    write_source(
+        made.sources,
+        *((kind, drawn if text == DRAWN else text) for kind, text, *_ in CELLS),
+        name="levers",
+    )
+    with pytest.raises(
+        AuthorError,
+        match=r"levers/see-saw, variant \d, {'force': 2, 'arm': 2}: This authored mistake",
+    ):
         release(made, run=False)
 
 
@@ -580,7 +749,8 @@ PICTURED = [
     ("code", "### BEGIN SOLUTION\nmoment = lever.force\n### END SOLUTION"),
     (
         "code",
-        "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\nquestion('levers/see-saw', kind='expression')\n"
+        "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\n"
+        "question('levers/see-saw', kind='expression')\n"
         "### END HIDDEN TESTS",
     ),
 ]
@@ -595,13 +765,20 @@ def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
     seen = set()
     try:
         for number in range(3):
-            student = next(f"s{k}" for k in range(99) if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number)
+            student = next(
+                f"s{k}"
+                for k in range(99)
+                if variants.variant_of(f"s{k}", "levers/see-saw", 3) == number
+            )
             coursework.student(student)
             lever = coursework.variant("levers/see-saw")
             data = re.search(
-                r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>', lever._repr_markdown_()
+                r'<p><img alt="A beam &amp; (\d) arrows" width="9" src="data:[^,]+,(.*?)"></p>',
+                lever._repr_markdown_(),
             )
-            assert f"{data[1]} arrows</svg>" in base64.b64decode(data[2]).decode() and data[1] == str(lever.force)
+            assert f"{data[1]} arrows</svg>" in base64.b64decode(data[2]).decode() and data[
+                1
+            ] == str(lever.force)
             assert repr(lever) == f"A beam & {lever.force} arrows\n\nHow many arrows?"
             assert coursework.check("levers/see-saw", lever.force).outcome == "correct"
             seen.add(lever.force)
@@ -613,7 +790,7 @@ def test_a_picture_differs_from_variant_to_variant(tmp_path, monkeypatch):
 
 def test_parameters_are_shown_in_a_text():
     x = sympy.Symbol("x")
-    assert variants.shown("{{a}} and ${{b}}$, {{c}}; {{d}}", written({"a": "up", "b": x**2 / 3, "c": [1, 2]})) == (
-        r"up and $\frac{x^{2}}{3}$, 1, 2; {{d}}"
-    )
+    assert variants.shown(
+        "{{a}} and ${{b}}$, {{c}}; {{d}}", written({"a": "up", "b": x**2 / 3, "c": [1, 2]})
+    ) == (r"up and $\frac{x^{2}}{3}$, 1, 2; {{d}}")
     assert drawn_in("x = 1") is None and drawn_in(DRAWN) == ("lever", "levers/see-saw")

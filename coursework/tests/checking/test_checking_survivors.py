@@ -21,7 +21,9 @@ def test_what_agrees_to_three_digits_is_told_so_and_nothing_else(count):
 
     assert {reply(share) for share in (1e-3, -1e-3, 5e-4, -3e-4)} == {"rounded too far"}
     assert "rounded too far" not in {reply(share) for share in (0.1 * count, -0.1 * count)}
-    assert len(one.near) <= 4  # with cells as narrow as what it may be off by, there would be hundreds
+    assert (
+        len(one.near) <= 4
+    )  # with cells as narrow as what it may be off by, there would be hundreds
 
 
 # ---- work and powers ---------------------------------------------------------------------------
@@ -35,7 +37,9 @@ def test_nothing_to_the_power_of_nothing_is_one():
 
 @pytest.mark.parametrize(("operation", "count"), [("sin", 1_500), ("Add", 12_000), ("Mul", 12_000)])
 def test_complex_numbers_are_dearer(operation, count):
-    """Many times the time of real ones: what is enough for real numbers is too much for complex ones."""
+    """Many times the time of real ones: what is enough for real numbers is too much for complex
+    ones.
+    """
 
     def last(first):
         return evaluate.values([first, *([operation, 0] for _ in range(count))], {})[-1]
@@ -48,7 +52,8 @@ def test_complex_numbers_are_dearer(operation, count):
 
 
 @pytest.mark.parametrize(
-    ("text", "same"), [("\u03bcm", "\u00b5m"), ("um", "\u00b5m"), ("\u2126", "\u03a9"), ("k\u2126 A", "kV")]
+    ("text", "same"),
+    [("\u03bcm", "\u00b5m"), ("um", "\u00b5m"), ("\u2126", "\u03a9"), ("k\u2126 A", "kV")],
 )
 def test_signs_that_look_alike_are_one_unit(text, same):
     assert unit(text) == unit(same)

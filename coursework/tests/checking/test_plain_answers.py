@@ -122,7 +122,11 @@ def test_shapes():
     matrix = sm.Matrix([[1, x], [y, 2]])
     assert to_plain(matrix)["value"][:3] == ["matrix", 2, 2]
     assert to_plain(sm.ImmutableMatrix(matrix)) == to_plain(matrix)
-    assert to_plain(sm.MatMul(sm.ImmutableMatrix(matrix), sm.Identity(2)))["value"][:3] == ["matrix", 2, 2]
+    assert to_plain(sm.MatMul(sm.ImmutableMatrix(matrix), sm.Identity(2)))["value"][:3] == [
+        "matrix",
+        2,
+        2,
+    ]
     assert to_plain(np.eye(3))["value"][0] == "list"
     assert to_plain([[1, 2], [3, 4]])["value"][0] == "list"
     assert to_plain(sm.Quaternion(1, x, 0, y))["value"][0] == "list"
@@ -231,7 +235,32 @@ DAMAGED = [
             [
                 [
                     "list",
-                    [["list", [["list", [["list", [["list", [["list", [["list", [["list", [["list", []]]]]]]]]]]]]]]]],
+                    [
+                        [
+                            "list",
+                            [
+                                [
+                                    "list",
+                                    [
+                                        [
+                                            "list",
+                                            [
+                                                [
+                                                    "list",
+                                                    [
+                                                        [
+                                                            "list",
+                                                            [["list", [["list", [["list", []]]]]]],
+                                                        ]
+                                                    ],
+                                                ]
+                                            ],
+                                        ]
+                                    ],
+                                ]
+                            ],
+                        ]
+                    ],
                 ]
             ],
         ],
@@ -274,7 +303,10 @@ def test_random_data_is_refused_or_read_without_any_other_error():
         ["Heaviside", 0],
     ]
     for _ in range(3000):
-        data = {"value": chance.choice(pieces), "nodes": [chance.choice(pieces) for _ in range(chance.randint(0, 6))]}
+        data = {
+            "value": chance.choice(pieces),
+            "nodes": [chance.choice(pieces) for _ in range(chance.randint(0, 6))],
+        }
         try:
             plain = read_plain(data)
         except NotPlain:
@@ -285,7 +317,8 @@ def test_random_data_is_refused_or_read_without_any_other_error():
 def test_a_student_needs_no_numpy():
     code = (
         "import sys; sys.modules['numpy'] = None\n"
-        "import sympy\nfrom coursework import check\nfrom coursework.checking.plain import to_plain\n"
+        "import sympy\nfrom coursework import check\nfrom coursework.checking.plain import "
+        "to_plain\n"
         "to_plain(sympy.eye(3) * sympy.Symbol('x'))"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)

@@ -1,4 +1,6 @@
-"""What is read from outside: what is wrong is said with its key and value, and what is right is written again."""
+"""What is read from outside: what is wrong is said with its key and value, and what is right is
+written again.
+"""
 
 import json
 
@@ -17,7 +19,13 @@ LEVER = {
     "variant": 1, "variants": 2, "given": {"arm": 2}, "shown": {"arm": "2"}, "text": "{{arm}}", "sequence": "zxy",
 }  # fmt: skip
 MARK = {"outcome": "wrong", "note": "", "messages": [], "points": 0, "worth": 2}
-RECORD = {"student": "ann", "assignment": "levers", "notebooks": [], "answers": {}, "marks": {"levers/one": MARK}}
+RECORD = {
+    "student": "ann",
+    "assignment": "levers",
+    "notebooks": [],
+    "answers": {},
+    "marks": {"levers/one": MARK},
+}
 DECISION = {
     "id": "1", "when": "2026-10-05T12:00:00", "who": "Bea", "student": "ann", "assignment": "levers",
     "question": "levers/one", "answer": "a", "credit": 0.5,
@@ -34,13 +42,38 @@ def test_a_sealed_question_is_written_as_it_was_read():
     "reader, found, change, said",
     [
         (Question.from_json, LEVER, {"kind": None}, "'kind'"),
-        (Question.from_json, LEVER, {"tolerance": "small"}, "'tolerance' should be a number, and is 'small'"),
-        (Question.from_json, LEVER, {"symbols": {"F": [1, 2, 3]}}, "'symbols': 'F' should be a list of two"),
+        (
+            Question.from_json,
+            LEVER,
+            {"tolerance": "small"},
+            "'tolerance' should be a number, and is 'small'",
+        ),
+        (
+            Question.from_json,
+            LEVER,
+            {"symbols": {"F": [1, 2, 3]}},
+            "'symbols': 'F' should be a list of two",
+        ),
         (Sealed.from_json, LEVER, {"worth": True}, "'worth' should be a number, and is True"),
-        (Locker.from_json, {}, {"cases": [{"outcome": "right"}]}, "'outcome' should be one of 'correct', 'mistake'"),
-        (Contract.from_json, {"title": "One", "public": LEVER}, {"worth": "2"}, "'worth' should be a number"),
+        (
+            Locker.from_json,
+            {},
+            {"cases": [{"outcome": "right"}]},
+            "'outcome' should be one of 'correct', 'mistake'",
+        ),
+        (
+            Contract.from_json,
+            {"title": "One", "public": LEVER},
+            {"worth": "2"},
+            "'worth' should be a number",
+        ),
         (Record.from_json, RECORD, {"student": 7}, "'student' should be a text, and is 7"),
-        (Record.from_json, RECORD, {"marks": {"levers/one": {**MARK, "points": "0"}}}, "'points' should be a number"),
+        (
+            Record.from_json,
+            RECORD,
+            {"marks": {"levers/one": {**MARK, "points": "0"}}},
+            "'points' should be a number",
+        ),
     ],
 )
 def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, found, change, said):
@@ -54,7 +87,9 @@ def test_a_student_whose_sealed_file_is_damaged_is_told_what_to_do(tmp_path, mon
     content = {"format": questions.FORMAT, "questions": {"levers/one": {**LEVER, "worth": "two"}}}
     (tmp_path / "sealed" / "levers.json").write_text(json.dumps(content))
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"):
+    with pytest.raises(
+        RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"
+    ):
         questions.find_question("levers/one", "")
 
 

@@ -1,4 +1,6 @@
-"""Decisions, appeals and lines of a rubric are events: what they come to is told, and nothing counts unseen."""
+"""Decisions, appeals and lines of a rubric are events: what they come to is told, and nothing
+counts unseen.
+"""
 
 import csv
 import datetime
@@ -20,13 +22,26 @@ from coursework.grading.execution.sandbox import Limits
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import secret
-from coursework.grading.judging.ledger import APPEALS, FORMAT, REJECTED, UNDER_REVIEW, Collision, Ledger
+from coursework.grading.judging.ledger import (
+    APPEALS,
+    FORMAT,
+    REJECTED,
+    UNDER_REVIEW,
+    Collision,
+    Ledger,
+)
 from coursework.grading.review import Class
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 SCRIPT = "<script>alert(1)</script>"
 ESSAY, SUM = "essays/why", "essays/sum"
 RUBRIC = {"names the couple": 2, "says why": 1, "forgets the point": -1}
@@ -38,12 +53,15 @@ def write_essays(folder, rubric=RUBRIC, right="5", text="Why?"):
     cells = [
         "import sympy as sm\nfrom coursework import check",
         ("markdown", text),
-        "### BEGIN SOLUTION\nwhy = 'A couple has the same moment about every point.'\n### END SOLUTION",
-        f"check('{ESSAY}', why)\n### BEGIN HIDDEN TESTS\nquestion('{ESSAY}', kind='free text', worth=3, "
+        "### BEGIN SOLUTION\nwhy = 'A couple has the same moment about every point.'\n"
+        "### END SOLUTION",
+        f"check('{ESSAY}', why)\n### BEGIN HIDDEN TESTS\n"
+        f"question('{ESSAY}', kind='free text', worth=3, "
         f"rubric={rubric!r})\n### END HIDDEN TESTS",
         ("markdown", "How much is 2 + 3?"),
         f"### BEGIN SOLUTION\ntotal = sm.Integer({right})\n### END SOLUTION",
-        f"check('{SUM}', total)\n### BEGIN HIDDEN TESTS\nquestion('{SUM}', kind='expression', worth=2)\n"
+        f"check('{SUM}', total)\n### BEGIN HIDDEN TESTS\n"
+        f"question('{SUM}', kind='expression', worth=2)\n"
         "### END HIDDEN TESTS",
     ]
     nbformat.write(notebook(cells), folder / "essays.ipynb")
@@ -108,7 +126,9 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
         ledger.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
     with pytest.raises(ValueError, match="why it is rejected"):
         ledger.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
-    ledger.appeal(record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann")
+    ledger.appeal(
+        record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann"
+    )
     assert state().state == "rejected" and not state().is_open
     late = ledger.decision(record, SUM, 1, who="Ben", appeal=first.id)
     with pytest.raises(Collision, match="settled the appeal"):
@@ -122,7 +142,10 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     # Once it is closed, another one may be raised.
     ledger.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
     ledger.appeal(record, SUM, "I ask once more.", who="Ann")
-    assert [one.state for one in Ledger(out.folder).standing().appeals[key]] == ["rejected", "raised"]
+    assert [one.state for one in Ledger(out.folder).standing().appeals[key]] == [
+        "rejected",
+        "raised",
+    ]
 
 
 def form(**fields):
@@ -149,12 +172,19 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         long = form(form="appeal", state="raised", only=place, words="x" * 4_001)
         assert served.decide(cluster.id, long).status == 409  # and nothing is cut off
         _, text = served.ask(f"/{served.secret}/?show=appeals")
-        assert re.findall(r"answer/([0-9a-f]{16})", text) == [cluster.id] and "1 answer waits" in text
+        assert (
+            re.findall(r"answer/([0-9a-f]{16})", text) == [cluster.id] and "1 answer waits" in text
+        )
         capsys.readouterr()
         main(command)
-        assert "An appeal is open: what is filled in may change (1):\n  ben: essays/sum" in capsys.readouterr().out
+        assert (
+            "An appeal is open: what is filled in may change (1):\n  ben: essays/sum"
+            in capsys.readouterr().out
+        )
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
-        assert "ben appeals: raised" in page and SCRIPT not in page and "&lt;script&gt;alert" in page
+        assert (
+            "ben appeals: raised" in page and SCRIPT not in page and "&lt;script&gt;alert" in page
+        )
         (of,) = re.findall(r'name="of" value="(\w+)"', page)
         step = re.search(r'name="step" value="(\w+)"', page)[1]
         taken_up = form(form="appeal", state="under review", of=of, step=step, only=place, words="")
@@ -167,12 +197,20 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
     main(["regrade", str(out.folder), "--solutions", str(begun / "solutions"), "--yes"])
     assert points_of(out) == {"ada": 5, "ben": 5, "cem": 3}
     page = (out.folder / "feedback" / "ben" / "essays.html").read_text()
-    assert "<strong>accepted</strong>" in page and "You are." in page and "I am right" in page and SCRIPT not in page
+    assert (
+        "<strong>accepted</strong>" in page
+        and "You are." in page
+        and "I am right" in page
+        and SCRIPT not in page
+    )
     capsys.readouterr()
     main(command)
     said = capsys.readouterr().out
     assert "ben: 3 -> 5" in said and "An appeal" not in said
-    marks = {row["SIS Login ID"]: row["Essays (7)"] for row in csv.DictReader(book.read_text().splitlines())}
+    marks = {
+        row["SIS Login ID"]: row["Essays (7)"]
+        for row in csv.DictReader(book.read_text().splitlines())
+    }
     assert marks == {"ada": "5", "ben": "5", "cem": "3"}
 
 
@@ -181,7 +219,9 @@ def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
     appeal = ledger.appeal(record, SUM, "Right!", who="Ann")
     made = [
         appeal._replace(when="2026-02-01T00:00:00.000000+00:00"),
-        ledger.decision(record, SUM, 1, who="Ann", appeal=appeal.id)._replace(when="2026-03-01T00:00:00.000000+00:00"),
+        ledger.decision(record, SUM, 1, who="Ann", appeal=appeal.id)._replace(
+            when="2026-03-01T00:00:00.000000+00:00"
+        ),
     ]
     ledger.path.unlink()
     Ledger(out.folder).append(made)
@@ -190,16 +230,23 @@ def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
         marks = gradebooks.Marks(out, as_of=day)
         (found,) = [one for one in marks.records if one.student == "ben"]
         appeals = found.marks[SUM].appeals
-        assert [one["state"] for one in appeals] == ([state] if state else []) and found.points == 2 * (month == 3)
+        assert [one["state"] for one in appeals] == (
+            [state] if state else []
+        ) and found.points == 2 * (month == 3)
 
 
 def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
-    table = "student,question,words\n" + f'ben,{SUM},"=1+1 {SCRIPT}"\nnobody,{SUM},Why?\ncem,{SUM},\n'
+    table = (
+        "student,question,words\n" + f'ben,{SUM},"=1+1 {SCRIPT}"\nnobody,{SUM},Why?\ncem,{SUM},\n'
+    )
     (out.folder / APPEALS).write_text(table)
     for _ in range(2):
         main(["regrade", str(out.folder), "--solutions", str(begun / "solutions"), "--yes"])
     said = capsys.readouterr()
-    assert "line 3: there is no answer of 'nobody'" in said.err and "1 appeal is open (ben)" in said.err
+    assert (
+        "line 3: there is no answer of 'nobody'" in said.err
+        and "1 appeal is open (ben)" in said.err
+    )
     (appeals,) = Ledger(out.folder).standing().appeals.values()
     assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]
     for path in out.folder.rglob("*.csv"):
@@ -237,21 +284,31 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     said = io.StringIO()
     regrade(out.folder, solutions=reworded, show=said)
     assert "changed since" not in said.getvalue()
-    # Handed in anew, the answer is judged anew, and what was decided on the earlier one is not forgotten.
+    # Handed in anew, the answer is judged anew, and what was decided on the earlier one is not
+    # forgotten.
     put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
     grade(tmp_path / "in", out.folder, show=said, **options)
     assert out.read("ben", "essays").points == 0
-    assert "1 decision is on an answer or a question that has changed since (ben)" in said.getvalue()
+    assert (
+        "1 decision is on an answer or a question that has changed since (ben)" in said.getvalue()
+    )
     # The question itself is mended: the decision counts, and somebody is to look.
     mended, said = write_essays(tmp_path / "mended", right="6"), io.StringIO()
     regrade(out.folder, solutions=mended, show=said)
-    assert points_of(out)["cem"] == 1 and "2 decisions are on answers or questions that have" in said.getvalue()
+    assert (
+        points_of(out)["cem"] == 1
+        and "2 decisions are on answers or questions that have" in said.getvalue()
+    )
     with Served(out.folder, grader="Ann") as served:
         _, text = served.ask(f"/{served.secret}/?show=earlier")
         clusters = set(re.findall(r"answer/([0-9a-f]{16})", text))
         assert len(clusters) == 2
-        pages = "".join(served.ask(f"/{served.secret}/answer/{one}?show=earlier")[1] for one in clusters)
-        assert "The question was another when Ann decided" in pages and "to an earlier answer" in pages
+        pages = "".join(
+            served.ask(f"/{served.secret}/answer/{one}?show=earlier")[1] for one in clusters
+        )
+        assert (
+            "The question was another when Ann decided" in pages and "to an earlier answer" in pages
+        )
         cluster = cluster_of(out, SUM, "cem")
         assert served.decide(cluster.id, "credit=2").status == 303
         _, text = served.ask(f"/{served.secret}/?show=earlier")
@@ -272,7 +329,10 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
     with Served(out.folder, grader="Ann") as served:
         assert decide_by_rubric(served, out, "ada", names, says).status == 303
         assert decide_by_rubric(served, out, "ben", names, forgets).status == 303
-        assert decide_by_rubric(served, out, "cem", says, new="is polite", new_points="0.5").status == 303
+        assert (
+            decide_by_rubric(served, out, "cem", says, new="is polite", new_points="0.5").status
+            == 303
+        )
         regrade(out.folder, solutions=solutions, show=io.StringIO())
         assert points_of(out) == {"ada": 5, "ben": 1, "cem": 1.5}
         # On the page: who changes it says which value was seen.
@@ -282,18 +342,34 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         lines = re.findall(r'name="line" value="([^"]*)"', worths)
         steps = re.findall(r'name="step" value="([^"]*)"', worths)
         shown = re.findall(r'name="points"[^>]*value="([^"]*)"', worths)
-        assert dict(zip(lines, shown, strict=True)) == {names: "2", says: "1", forgets: "-1", "is polite": "0.5"}
+        assert dict(zip(lines, shown, strict=True)) == {
+            names: "2",
+            says: "1",
+            forgets: "-1",
+            "is polite": "0.5",
+        }
         shown[lines.index(says)], shown[lines.index("is polite")] = "0.5", "1"
         fields = zip(lines, shown, steps, strict=True)
-        body = "&".join(["form=worths", *(form(line=line, points=one, step=step) for line, one, step in fields)])
+        body = "&".join(
+            ["form=worths", *(form(line=line, points=one, step=step) for line, one, step in fields)]
+        )
         assert served.decide(cluster.id, body).status == 303
         body = body.replace("points=0.5", "points=0.75")
         assert served.decide(cluster.id, body).status == 409  # Ann saw what it was before
-        assert served.decide(cluster.id, form(form="worths", line=says, points=9, step="-")).status == 400
-        assert served.decide(cluster.id, form(form="worths", line="no line", points=1, step="-")).status == 400
+        assert (
+            served.decide(cluster.id, form(form="worths", line=says, points=9, step="-")).status
+            == 400
+        )
+        assert (
+            served.decide(
+                cluster.id, form(form="worths", line="no line", points=1, step="-")
+            ).status
+            == 400
+        )
     regrade(out.folder, solutions=solutions, show=io.StringIO())
     assert points_of(out) == {"ada": 4.5, "ben": 1, "cem": 1.5}
-    # In the source: what it says last is newer than what the page said; nobody has more than all, or less than nothing.
+    # In the source: what it says last is newer than what the page said; nobody has more than all,
+    # or less than nothing.
     mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
     found = regrade(out.folder, solutions=mended, dry_run=True)
     assert {one.student: (one.before, one.after) for one in found.changes} == {
@@ -321,17 +397,36 @@ def test_older_ledgers_are_read_and_newer_ones_refused(out):
     ledger.add(record, SUM, 0.5, who="Ann")
     line = json.loads(ledger.path.read_text())
     assert line["format"] == FORMAT
-    first = ("id", "when", "who", "student", "assignment", "question", "answer", "credit", "comment", "rubric", "why")
+    first = (
+        "id",
+        "when",
+        "who",
+        "student",
+        "assignment",
+        "question",
+        "answer",
+        "credit",
+        "comment",
+        "rubric",
+        "why",
+    )
     ledger.path.write_text(json.dumps({name: line[name] for name in first}) + "\n")
     old = Ledger(out.folder)
     assert old.current()["ben", "essays", SUM].credit == 0.5
     old.take_back([record], SUM, "Ann")
     assert Ledger(out.folder).current() == {}
     whole = ledger.path.read_text()
-    ledger.path.write_text(whole + json.dumps({**line, "format": FORMAT + 1, "event": "mood"}) + "\n")
+    ledger.path.write_text(
+        whole + json.dumps({**line, "format": FORMAT + 1, "event": "mood"}) + "\n"
+    )
     with pytest.raises(ValueError, match="line 3: a later version"):
         Ledger(out.folder)
-    for wrong in ({"when": "yesterday"}, {"credit": 2}, {"event": "mood"}, {"student": 3, "id": None}):
+    for wrong in (
+        {"when": "yesterday"},
+        {"credit": 2},
+        {"event": "mood"},
+        {"student": 3, "id": None},
+    ):
         ledger.path.write_text(json.dumps({**line, **wrong}) + "\n" + whole)
         with pytest.raises(ValueError, match="line 1: this is no decision"):
             Ledger(out.folder)
@@ -340,7 +435,9 @@ def test_older_ledgers_are_read_and_newer_ones_refused(out):
 def test_who_saw_another_decision_decided_later_whatever_the_clock_says(out):
     record, ledger = out.read("ben", "essays"), Ledger(out.folder)
     one = ledger.decision(record, SUM, 0.5, who="Ann")
-    other = ledger.decision(record, SUM, 1, who="Ben", after=one.id)._replace(when="2020-01-01T00:00:00.000000+00:00")
+    other = ledger.decision(record, SUM, 1, who="Ben", after=one.id)._replace(
+        when="2020-01-01T00:00:00.000000+00:00"
+    )
     third = ledger.decision(record, SUM, 0, who="Cem", after=other.id)._replace(when=one.when)
     for events, credit in (([one, other], 1), ([one, other, third], 0), ([third, other, one], 0)):
         ledger.path.unlink(missing_ok=True)
@@ -357,7 +454,11 @@ def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
     made = (regrade_page := "regrade.html"), "regrade.csv", "whose.csv", "lock"
 
     def contents():
-        return {path: path.read_bytes() for path in out.folder.rglob("*") if path.is_file() and path.name not in made}
+        return {
+            path: path.read_bytes()
+            for path in out.folder.rglob("*")
+            if path.is_file() and path.name not in made
+        }
 
     before, solutions = contents(), ["--solutions", str(begun / "solutions")]
     main(["merge", str(out.folder), str(other.path), "--dry-run"])

@@ -1,4 +1,6 @@
-"""Every attack of the corpus fails, and costs nobody else anything; without its layer it succeeds."""
+"""Every attack of the corpus fails, and costs nobody else anything; without its layer it
+succeeds.
+"""
 
 import contextlib
 import ctypes
@@ -20,10 +22,12 @@ from attacks.corpus import ATTACKS
 from coursework.grading.execution.sandbox import Limits, Sandbox, run_notebooks
 from coursework.grading.execution.scratch import remove_folder
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+)
 
-# What ends by processor time gets all the time it wants by the clock, so that a busy machine changes
-# nothing; what only the clock ends is run on its own.
+# What ends by processor time gets all the time it wants by the clock, so that a busy machine
+# changes nothing; what only the clock ends is run on its own.
 LIMITS = Limits(
     cell_seconds=1,
     cell_wall_seconds=60,
@@ -51,7 +55,9 @@ class Surroundings:
         self.outside.mkdir()
         self.canary = self.outside / "canary"
         self.reset()
-        self.tcp, self.udp = (socket.socket(socket.AF_INET, kind) for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM))
+        self.tcp, self.udp = (
+            socket.socket(socket.AF_INET, kind) for kind in (socket.SOCK_STREAM, socket.SOCK_DGRAM)
+        )
         self.local = socket.socket(socket.AF_UNIX)
         for inet in (self.tcp, self.udp):
             inet.bind(("127.0.0.1", 0))
@@ -72,7 +78,10 @@ class Surroundings:
 
     def state(self):
         status = self.canary.stat() if self.canary.exists() else None
-        return (sorted(os.listdir(self.outside)), status and (status.st_mode, status.st_mtime, status.st_size))
+        return (
+            sorted(os.listdir(self.outside)),
+            status and (status.st_mode, status.st_mtime, status.st_size),
+        )
 
     def heard(self):
         """How many of the listeners have something waiting; takes it away."""
@@ -87,7 +96,8 @@ class Surroundings:
     def names(self):
         return (
             f"CANARY, TRAP = {str(self.canary)!r}, {str(self.outside / 'trap')!r}\n"
-            f"TCP, UDP, LOCAL = {self.tcp.getsockname()[1]}, {self.udp.getsockname()[1]}, {self.local_name!r}\n"
+            f"TCP, UDP, LOCAL = {self.tcp.getsockname()[1]}, {self.udp.getsockname()[1]}, "
+            f"{self.local_name!r}\n"
             f"GRADER, SECRET = {os.getpid()}, {HALVES!r}\n"
         )
 
@@ -106,7 +116,8 @@ class Surroundings:
 
 def neighbour(number):
     source = (
-        f"from coursework import check\nimport os\n# {''.join(HALVES)}\nmarker = '{''.join(HALVES)}'\n"
+        f"from coursework import check\nimport os\n# {''.join(HALVES)}\n"
+        f"marker = '{''.join(HALVES)}'\n"
         f"assert os.listdir() == []\nopen('mine', 'w').write(marker)\ncheck('question', {number})"
     )
     return {"id": f"neighbour {number}", "cells": [{"source": source}], "questions": HONEST}
@@ -122,7 +133,8 @@ def taken(result):
 
 @contextlib.contextmanager
 def attackable():
-    # Not pytest's own folder, which is closed to other users: that is not what must keep attacks out.
+    # Not pytest's own folder, which is closed to other users: that is not what must keep attacks
+    # out.
     folder = Path(tempfile.mkdtemp(prefix="attacked-"))
     folder.chmod(0o755)
     attacked = Surroundings(folder)
@@ -138,7 +150,9 @@ def surroundings():
 
 
 def suffer(answer):
-    """Run all attacks, each followed by an honest notebook, on two workers; send what they left behind."""
+    """Run all attacks, each followed by an honest notebook, on two workers; send what they left
+    behind.
+    """
     # Orphans become children of this process, so that none can hide.
     assert ctypes.CDLL(None).prctl(36, 1, 0, 0, 0) == 0
     os.environ["TOKEN"] = "SEALED"
@@ -154,7 +168,9 @@ def suffer(answer):
                 if attack.waits == waits
                 for job in (surroundings.job(attack), neighbour(number))
             ]
-            results |= {result["id"]: result for result in run_notebooks(jobs, workers=2, limits=limits)}
+            results |= {
+                result["id"]: result for result in run_notebooks(jobs, workers=2, limits=limits)
+            }
         left = [str(child) for child in psutil.Process().children(recursive=True)]
         answer.send(
             {
@@ -220,7 +236,9 @@ UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("layers", UNPROTECTED, ids=" and ".join)
 def test_attacks_succeed_without_their_layers(layers, surroundings):
-    """The same cells take the loot when the layers against them are off: what stops them is known."""
+    """The same cells take the loot when the layers against them are off: what stops them is
+    known.
+    """
     with Sandbox(LIMITS, allow_weak_isolation=True, without=layers) as sandbox:
         for attack in ATTACKS:
             if attack.without == layers:
@@ -245,5 +263,7 @@ print(json.dumps({"mark": int(answers["loot"] == 42)}))
 @pytest.mark.parametrize("attack", [a for a in ATTACKS if a.forges], ids=lambda attack: attack.name)
 def test_a_verdict_in_the_students_process_is_forged(attack):
     """What a grader that compares in the student's process would make of the same cell."""
-    run = subprocess.run([sys.executable, "-c", NAIVE, attack.code], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [sys.executable, "-c", NAIVE, attack.code], capture_output=True, text=True, check=True
+    )
     assert json.loads(run.stdout)["mark"] == 1

@@ -1,4 +1,6 @@
-"""The same grading on a Dask cluster: no byte differs, and a captured worker reaches nobody but itself."""
+"""The same grading on a Dask cluster: no byte differs, and a captured worker reaches nobody but
+itself.
+"""
 
 import contextlib
 import io
@@ -20,23 +22,39 @@ from coursework.grading.grade import grade
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.skipif(
+        not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+    ),
     pytest.mark.filterwarnings("ignore"),
 ]
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 
 
 @contextlib.contextmanager
 def cluster(folder, workers=1, preload=None, keys=()):
-    """The scheduler and workers of a cluster, in processes of their own: its address and its processes."""
+    """The scheduler and workers of a cluster, in processes of their own: its address and its
+    processes.
+    """
     place = folder / "scheduler.json"
     address = ["--scheduler-file", str(place)]
     local = ["--host", "127.0.0.1", "--no-dashboard", *keys]
     commands = [["scheduler", *address, *local, "--port", "0"]]
     loads = ["--preload", str(preload)] if preload else []
-    commands += [["worker", *address, *local, "--nthreads", "1", "--local-directory", str(folder), *loads]] * workers
+    commands += [
+        ["worker", *address, *local, "--nthreads", "1", "--local-directory", str(folder), *loads]
+    ] * workers
     processes = [
-        subprocess.Popen([sys.executable, "-m", "dask", *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.Popen(
+            [sys.executable, "-m", "dask", *command],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         for command in commands
     ]
     try:
@@ -54,7 +72,11 @@ def cluster(folder, workers=1, preload=None, keys=()):
 def submissions(tmp_path):
     """The notebooks of a few students."""
     for number in range(6):
-        put(tmp_path / "submissions", f"student-{number}", handed_in(sum=f"sine = {number}*sm.sin(alpha + beta)"))
+        put(
+            tmp_path / "submissions",
+            f"student-{number}",
+            handed_in(sum=f"sine = {number}*sm.sin(alpha + beta)"),
+        )
     put(tmp_path / "submissions", "leaves", handed_in(sum="import os\nos._exit(0)"))
     return tmp_path / "submissions"
 
@@ -65,7 +87,14 @@ def solutions(tmp_path):
 
 
 def graded(submissions, solutions, out, scheduler=None):
-    return grade(submissions, out, solutions=solutions, limits=LIMITS, scheduler=scheduler, show=io.StringIO())
+    return grade(
+        submissions,
+        out,
+        solutions=solutions,
+        limits=LIMITS,
+        scheduler=scheduler,
+        show=io.StringIO(),
+    )
 
 
 def contents(folder):
@@ -134,13 +163,22 @@ cluster.run_job = run_job
         {"cells": [{"outcome": 3}]},
         {"cells": "done"},
         {"isolation": {"layers": [], "weak": 0}},
-        {"answers": {"turns/sum": {"outcome": "recorded", "plain": {"nodes": [], "value": ["no such kind"]}}}},
+        {
+            "answers": {
+                "turns/sum": {
+                    "outcome": "recorded",
+                    "plain": {"nodes": [], "value": ["no such kind"]},
+                }
+            }
+        },
         {"answers": {}},
         {"id": "another"},
     ],
 )
 def test_what_a_captured_worker_sends_is_read_as_strictly_as_what_a_notebook_sends(damage):
-    from coursework.grading.execution import cluster as of_a_cluster  # not before it is known that Dask is there
+    from coursework.grading.execution import (
+        cluster as of_a_cluster,
+    )  # not before it is known that Dask is there
 
     job = {"id": "1", "cells": [], "questions": {"turns/sum": {}}}
     result, ours = given_up(job, "a trial"), {"python": "3"}
@@ -164,7 +202,9 @@ def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, d
 
 
 @pytest.mark.long
-def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tmp_path, monkeypatch):
+def test_a_lost_scheduler_is_said_and_nothing_is_lost(
+    submissions, solutions, tmp_path, monkeypatch
+):
     from coursework.grading.execution import cluster as running
 
     monkeypatch.setattr(running, "CONNECT_WITHIN", "8s")  # it is given up after as long
@@ -176,7 +216,10 @@ def test_a_lost_scheduler_is_said_and_nothing_is_lost(submissions, solutions, tm
         while not over.wait(0.01):
             if len(list((out / "records").glob("*/*.json"))) >= 2:
                 # The command that was started may wait for the scheduler, which is below it.
-                for victim in [processes[0], *psutil.Process(processes[0].pid).children(recursive=True)]:
+                for victim in [
+                    processes[0],
+                    *psutil.Process(processes[0].pid).children(recursive=True),
+                ]:
                     with contextlib.suppress(psutil.NoSuchProcess):
                         victim.kill()
                 return

@@ -1,4 +1,6 @@
-"""Questions of an exam: nothing that a student has tells whether an answer is right, and the grader marks it."""
+"""Questions of an exam: nothing that a student has tells whether an answer is right, and the grader
+marks it.
+"""
 
 import io
 import json
@@ -22,13 +24,18 @@ question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='th
          solution='The axis is shared.')
 ### END HIDDEN TESTS"""
 theta = sm.symbols("theta")
-RIGHT = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])
+RIGHT = sm.Matrix(
+    [[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]]
+)
 
 
 def released(folder, solution=SOLUTION, hidden=HIDDEN):
     folder.mkdir(exist_ok=True)
     write_source(
-        folder / "sources", ("code", SETUP), ("code", solution), ("code", f"check('trial/about-x', A_C_N)\n{hidden}")
+        folder / "sources",
+        ("code", SETUP),
+        ("code", solution),
+        ("code", f"check('trial/about-x', A_C_N)\n{hidden}"),
     )
     course = made_in(folder)
     release.release(course, run=False)
@@ -46,7 +53,9 @@ def exam(tmp_path, monkeypatch):
 
 
 def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
-    other = SOLUTION.replace("[0, -working", "[0, 0*working").replace("[0, sm.cos(theta), working]", "[0, 1, 0*theta]")
+    other = SOLUTION.replace("[0, -working", "[0, 0*working").replace(
+        "[0, sm.cos(theta), working]", "[0, 1, 0*theta]"
+    )
     assert other != SOLUTION
     plain = HIDDEN.replace("turns=[('x', theta)],", "")
     first, second = (
@@ -55,7 +64,11 @@ def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
     )
     assert first == second
     (sealed,) = json.loads(first)["questions"].values()
-    assert sealed["exam"] and sealed["lockers"] == "" and not {"pages", "ladder", "every symbol"} & set(sealed)
+    assert (
+        sealed["exam"]
+        and sealed["lockers"] == ""
+        and not {"pages", "ladder", "every symbol"} & set(sealed)
+    )
     # The same question with a check is another file for another answer.
     local = plain.replace("exam=True, ", "")
     assert (
@@ -70,8 +83,13 @@ def test_what_students_receive_would_be_the_same_with_another_answer(tmp_path):
 
 
 def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
-    replies = [checks.check("trial/about-x", answer) for answer in (RIGHT, RIGHT.T, RIGHT.subs(theta, 2 * theta))]
-    assert {reply.outcome for reply in replies} == {"recorded"} and len({str(reply) for reply in replies}) == 1
+    replies = [
+        checks.check("trial/about-x", answer)
+        for answer in (RIGHT, RIGHT.T, RIGHT.subs(theta, 2 * theta))
+    ]
+    assert {reply.outcome for reply in replies} == {"recorded"} and len(
+        {str(reply) for reply in replies}
+    ) == 1
     assert "marked later" in replies[0].messages[0]
     assert checks.check("trial/about-x", 2 * RIGHT).outcome == "invalid"
     assert checks.check("trial/about-x", ...).outcome == "not attempted"
@@ -94,10 +112,16 @@ def test_the_selftest_is_content_and_finds_nothing_to_guess(exam):
 
 def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
     for student, answer in (("right", RIGHT), ("turned", RIGHT.T), ("wrong", sm.eye(3))):
-        cells = [SETUP, f"A_C_N = sm.sympify({str(answer.tolist())!r})", "check('trial/about-x', A_C_N)"]
+        cells = [
+            SETUP,
+            f"A_C_N = sm.sympify({str(answer.tolist())!r})",
+            "check('trial/about-x', A_C_N)",
+        ]
         put(tmp_path / "handed-in", student, notebook(cells), "trial.ipynb")
     grade(tmp_path / "handed-in", tmp_path / "out", solutions=exam.sources, show=io.StringIO())
-    marks = {record.student: record.marks["trial/about-x"] for record in Store(tmp_path / "out").all()}
+    marks = {
+        record.student: record.marks["trial/about-x"] for record in Store(tmp_path / "out").all()
+    }
     assert [(marks[name].outcome, marks[name].points) for name in ("right", "turned", "wrong")] == [
         ("correct", 2),
         ("wrong", 1),

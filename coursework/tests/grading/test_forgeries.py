@@ -1,4 +1,6 @@
-"""Nobody's work counts as another's, and no answer earns more than it is worth: the corpus of forgeries."""
+"""Nobody's work counts as another's, and no answer earns more than it is worth: the corpus of
+forgeries.
+"""
 
 import io
 import shutil
@@ -21,7 +23,9 @@ from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import Roster
 
 pytestmark = [
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.skipif(
+        not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+    ),
     pytest.mark.usefixtures("libraries_are_loaded_once"),
 ]
 
@@ -54,15 +58,21 @@ def lay_out(place, attack, in_archive):
 def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
     (tmp_path / "roster.csv").write_text(attack.roster, "utf8")
     roster = Roster(tmp_path / "roster.csv") if attack.roster else None
-    notebooks, refused = intake.take_in(lay_out(tmp_path, attack, in_archive), ["turns", "axes"], roster)
+    notebooks, refused = intake.take_in(
+        lay_out(tmp_path, attack, in_archive), ["turns", "axes"], roster
+    )
     found = {one.file: one.student for one in notebooks}
     if attack.asked:
         assert found == {}
         why = {one.file: one.why for one in refused}
-        assert all(why[name].endswith(("whose are they?", intake.NOT_MATCHED)) for name in attack.handed_in), why
+        assert all(
+            why[name].endswith(("whose are they?", intake.NOT_MATCHED)) for name in attack.handed_in
+        ), why
     else:
         leading_out = {name for name in attack.handed_in if "/../" in name}
-        assert found == {name: owner for name, owner in attack.handed_in.items() if name not in leading_out}
+        assert found == {
+            name: owner for name, owner in attack.handed_in.items() if name not in leading_out
+        }
         assert leading_out <= {one.file for one in refused}
 
 
@@ -70,13 +80,18 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
 
 
 def cell_of_what_is_known(questions):
-    """What a student may find out: where the check looks, and what a friend's right answer comes to there."""
+    """What a student may find out: where the check looks, and what a friend's right answer comes to
+    there.
+    """
     places = points(questions["turns/sum"][0].question)
     calls = [call[0] for call in questions["turns/doubled"][0].question.calls]
     with MP.workdps(40):
         values = [MP.nstr(MP.sin(place["alpha"] + place["beta"]), 40) for place in places]
     texts = [{name: MP.nstr(value, 40) for name, value in place.items()} for place in places]
-    return f"POINTS = {texts!r}\nVALUES = {values!r}\nCALLS = {calls!r}\nTABLE = { {x: 2 * x for x in calls}!r}"
+    return (
+        f"POINTS = {texts!r}\nVALUES = {values!r}\nCALLS = {calls!r}\n"
+        f"TABLE = { {x: 2 * x for x in calls}!r}"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +109,13 @@ def records(tmp_path_factory):
             path = place / "submissions" / attack.name / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(data)
-    grade(place / "submissions", place / "out", solutions=solutions, show=io.StringIO(), allow_weak_isolation=False)
+    grade(
+        place / "submissions",
+        place / "out",
+        solutions=solutions,
+        show=io.StringIO(),
+        allow_weak_isolation=False,
+    )
     store = Store(place / "out")
     assert not list(place.rglob("forged"))
     return {record.student: record for record in store.all()}
@@ -109,10 +130,16 @@ def test_who_does_not_forge_has_all_points(records):
 def test_an_answer_that_is_not_right_earns_nothing(records, attack):
     marks = records[attack.name].marks
     asked = f"turns/{attack.question.replace('_', '-')}"
-    assert (marks[asked].points, marks[asked].outcome in attack.outcome.split(" or ")) == (0, True), marks[asked]
+    assert (marks[asked].points, marks[asked].outcome in attack.outcome.split(" or ")) == (
+        0,
+        True,
+    ), marks[asked]
     for name, mark in marks.items():
         if name != asked:
-            assert mark.points in ((0, mark.worth) if attack.spoils else (mark.worth,)), (name, mark)
+            assert mark.points in ((0, mark.worth) if attack.spoils else (mark.worth,)), (
+                name,
+                mark,
+            )
 
 
 def test_many_of_them_pass_the_check_that_a_student_has(records):
@@ -125,7 +152,9 @@ def test_many_of_them_pass_the_check_that_a_student_has(records):
 
 
 class Class:
-    """Marks of a class whose students are known by their folders alone, or by what a system or a roster says."""
+    """Marks of a class whose students are known by their folders alone, or by what a system or a
+    roster says.
+    """
 
     def __init__(self, folder, **identities):
         self.students, self.worth, self.store = identities, 6, Store(folder)
@@ -156,11 +185,19 @@ OF_MOODLE = (
 @pytest.mark.parametrize(
     "book, students, filled",
     [
-        (OF_CANVAS, {"Bob": {}, "bob": {}, "eve": {}}, ["eve"]),  # whoever comes first has no better claim
+        (
+            OF_CANVAS,
+            {"Bob": {}, "bob": {}, "eve": {}},
+            ["eve"],
+        ),  # whoever comes first has no better claim
         (OF_CANVAS, {"eve": {"own": ["eve"]}, "other": {"own": ["EVE"]}}, []),
         (OF_CANVAS, {"b\u043eb": {}}, []),
         (OF_CANVAS, {"2": {}}, []),  # a name is no number of Canvas
-        (OF_CANVAS, {"bob": {"canvas": "9", "own": ["bob"]}}, []),  # the system's number is surer than a name
+        (
+            OF_CANVAS,
+            {"bob": {"canvas": "9", "own": ["bob"]}},
+            [],
+        ),  # the system's number is surer than a name
         (OF_MOODLE, {"robert": {}, "bob": {}}, ["bob"]),  # who is called so at home
         (OF_MOODLE, {"bob@mail.example": {"email": "bob@mail.example", "own": []}}, []),
         (OF_MOODLE, {"x": {"email": "ann@uni.example", "own": []}, "ann": {}}, []),
@@ -170,13 +207,34 @@ def test_a_line_of_a_gradebook_is_filled_for_nobody_else(tmp_path, book, student
     (tmp_path / "book.csv").write_text(book, "utf8")
     said = gradebooks.fill(tmp_path / "book.csv", Class(tmp_path, **students))
     after = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1:]
-    changed = [line.lower() for line, old in zip(after, book.splitlines()[1:], strict=True) if line != old]
-    assert len(changed) == len(filled) and all(name in line for name, line in zip(filled, changed, strict=True))
-    assert all(any(f"  {student}" in line for line in said) for student in students if student not in filled)
+    changed = [
+        line.lower() for line, old in zip(after, book.splitlines()[1:], strict=True) if line != old
+    ]
+    assert len(changed) == len(filled) and all(
+        name in line for name, line in zip(filled, changed, strict=True)
+    )
+    assert all(
+        any(f"  {student}" in line for line in said)
+        for student in students
+        if student not in filled
+    )
 
 
 def test_records_of_two_lie_in_two_places_on_every_system():
-    names = ["con", "CON", "nul.txt", "aux", "com1", "lpt9.ipynb", "prn", "bob", "Bob", "bob.", "bob ", "b\u043eb"]
+    names = [
+        "con",
+        "CON",
+        "nul.txt",
+        "aux",
+        "com1",
+        "lpt9.ipynb",
+        "prn",
+        "bob",
+        "Bob",
+        "bob.",
+        "bob ",
+        "b\u043eb",
+    ]
     places = [file_name(name) for name in names]
     assert len({place.casefold() for place in places}) == len(names)
     for place in places:
@@ -208,7 +266,16 @@ def test_a_name_begins_no_line_of_its_own(tmp_path):
 
 def test_at_least_so_many_kinds_have_been_tried():
     """The corpus in numbers: by names, by answers, by taking what decides for right."""
-    by_names, by_answers, by_deceit = names.ATTACKS, answers.ATTACKS, [one for one in corpus.ATTACKS if one.forges]
+    by_names, by_answers, by_deceit = (
+        names.ATTACKS,
+        answers.ATTACKS,
+        [one for one in corpus.ATTACKS if one.forges],
+    )
     for kinds in (by_names, by_answers, by_deceit, corpus.ATTACKS):
         assert len({one.name for one in kinds}) == len(kinds)
-    assert (len(by_names) >= 45, len(by_answers) >= 40, len(by_deceit) >= 6, len(corpus.ATTACKS) >= 80) == (True,) * 4
+    assert (
+        len(by_names) >= 45,
+        len(by_answers) >= 40,
+        len(by_deceit) >= 6,
+        len(corpus.ATTACKS) >= 80,
+    ) == (True,) * 4

@@ -1,4 +1,6 @@
-"""The autograder for Gradescope, whole: in a machine laid out as Gradescope's, with nothing of this one but Python."""
+"""The autograder for Gradescope, whole: in a machine laid out as Gradescope's, with nothing of this
+one but Python.
+"""
 
 import json
 import os
@@ -18,13 +20,17 @@ from coursework.grading.export.gradescope import requirements
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
 BWRAP = ["bwrap", "--bind", "/", "/", "true"]
-IMITATED = shutil.which("bwrap") and subprocess.run(BWRAP, stderr=subprocess.DEVNULL).returncode == 0
+IMITATED = (
+    shutil.which("bwrap") and subprocess.run(BWRAP, stderr=subprocess.DEVNULL).returncode == 0
+)
 needs_a_machine = pytest.mark.skipif(not IMITATED, reason="the machine is imitated with bubblewrap")
 
 
 @pytest.fixture(scope="module")
 def machine(tmp_path_factory):
-    """A folder that is ``/autograder`` there: unpacked, and set up with the packages of this environment."""
+    """A folder that is ``/autograder`` there: unpacked, and set up with the packages of this
+    environment.
+    """
     place = tmp_path_factory.mktemp("gradescope")
     home = place / "autograder"
     (place / "roster.csv").write_text("student,name,email\nann,Ann Right,ann@uni.example\n")
@@ -41,7 +47,8 @@ def machine(tmp_path_factory):
         subprocess.run(["bash", "-n", home / "source" / name], check=True)
         (home / "source" / name).chmod(0o755)
     shutil.copy(home / "source" / "run_autograder", home)
-    # In place of what setup.sh installs: the very files that these requirements brought here, and nothing else.
+    # In place of what setup.sh installs: the very files that these requirements brought here, and
+    # nothing else.
     venv.create(home / "venv", with_pip=False, symlinks=True)
     (site,) = (home / "venv" / "lib").glob("python*/site-packages")
     (site / "autograder.pth").write_text("/autograder/source/packages\n")
@@ -52,7 +59,13 @@ def machine(tmp_path_factory):
                 shutil.copyfile(file.locate(), site / file)
     (home / "results").mkdir()
     (home / "submission").mkdir()
-    done = there(home, "/autograder/venv/bin/python", "-m", "coursework.grading.export.gradescope", "--prepare")
+    done = there(
+        home,
+        "/autograder/venv/bin/python",
+        "-m",
+        "coursework.grading.export.gradescope",
+        "--prepare",
+    )
     assert done.returncode == 0, done.stderr
     assert len(list((home / "questions").glob("turns-*.json"))) == 1
     return home
@@ -66,7 +79,19 @@ def there(home, *command):
         if name not in ("proc", "dev", "tmp", "autograder")
         for argument in ("--bind", f"/{name}", f"/{name}")
     ]
-    layout = ["--tmpfs", "/", *outside, "--dev-bind", "/dev", "/dev", "--bind", "/proc", "/proc", "--tmpfs", "/tmp"]
+    layout = [
+        "--tmpfs",
+        "/",
+        *outside,
+        "--dev-bind",
+        "/dev",
+        "/dev",
+        "--bind",
+        "/proc",
+        "/proc",
+        "--tmpfs",
+        "/tmp",
+    ]
     return subprocess.run(
         ["bwrap", *layout, "--bind", str(home), "/autograder", "--chdir", "/", *command],
         capture_output=True,
@@ -78,8 +103,14 @@ def there(home, *command):
 def graded(home, made, email="ann@uni.example", name="turns.ipynb"):
     for path in [*(home / "submission").iterdir(), *(home / "results").iterdir()]:
         path.unlink()
-    (home / "submission" / name).write_text(made if isinstance(made, str) else nbformat.writes(made))
-    about = {"id": 7, "created_at": "2026-11-21T20:01:00-07:00", "users": [{"email": email, "id": 1, "name": "A. R."}]}
+    (home / "submission" / name).write_text(
+        made if isinstance(made, str) else nbformat.writes(made)
+    )
+    about = {
+        "id": 7,
+        "created_at": "2026-11-21T20:01:00-07:00",
+        "users": [{"email": email, "id": 1, "name": "A. R."}],
+    }
     (home / "submission_metadata.json").write_text(json.dumps(about))
     done = there(home, "/autograder/run_autograder")
     assert done.returncode == 0, done.stderr
@@ -114,7 +145,12 @@ def test_a_submission_gets_its_results(machine):
     undecided = graded(machine, handed_in(sum="sine = sm.sin(alpha + beta)*1.0004"))["tests"][1]
     assert "status" not in undecided and "undecided" in undecided["output"]
     # Nothing of this working copy took part.
-    said = there(machine, "/autograder/venv/bin/python", "-c", "import coursework; print(coursework.__file__)").stdout
+    said = there(
+        machine,
+        "/autograder/venv/bin/python",
+        "-c",
+        "import coursework; print(coursework.__file__)",
+    ).stdout
     assert said.startswith("/autograder/source/packages/coursework/")
 
 
@@ -123,14 +159,19 @@ def test_a_submission_gets_its_results(machine):
 def test_a_submission_reaches_neither_the_solutions_nor_its_results(machine):
     results = graded(machine, handed_in(also=[STEAL, "assert not found, found"]))
     assert results["score"] == 6
-    stolen = graded(machine, handed_in(sum=STEAL + "sine = sm.Symbol(str(found).replace(' ', '_'))"))
+    stolen = graded(
+        machine, handed_in(sum=STEAL + "sine = sm.Symbol(str(found).replace(' ', '_'))")
+    )
     assert stolen["score"] == 5
 
 
 @pytest.mark.long
 @needs_a_machine
 def test_what_cannot_be_graded_is_told_to_the_student(machine):
-    assert "not in the list of this course" in graded(machine, handed_in(), "stranger@uni.example")["output"]
+    assert (
+        "not in the list of this course"
+        in graded(machine, handed_in(), "stranger@uni.example")["output"]
+    )
     results = graded(machine, "{")
     assert results["score"] == 0 and "not well-formed JSON" in results["output"]
     assert "answers.pdf: This is no notebook" in graded(machine, "x", name="answers.pdf")["output"]
@@ -138,6 +179,8 @@ def test_what_cannot_be_graded_is_told_to_the_student(machine):
 
 def test_the_packages_are_named_in_the_versions_that_are_here():
     named = dict(line.split("==") for line in requirements())
-    assert {"sympy", "mpmath", "numpy", "matplotlib", "jinja2", "tornado", "latex2mathml"} <= set(named)
+    assert {"sympy", "mpmath", "numpy", "matplotlib", "jinja2", "tornado", "latex2mathml"} <= set(
+        named
+    )
     assert "distributed" not in named and "pytest" not in named and "nbgrader" not in named
     assert not any(name.startswith("orientation") for name in named)

@@ -1,4 +1,6 @@
-"""A class is graded: every notebook on its own, nothing lost or done twice, the same wherever it is run."""
+"""A class is graded: every notebook on its own, nothing lost or done twice, the same wherever it is
+run.
+"""
 
 import csv
 import dataclasses
@@ -24,7 +26,13 @@ from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
 from coursework.grading import sample_class
-from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation, WorkerDied, given_up
+from coursework.grading.execution.sandbox import (
+    Limits,
+    Sandbox,
+    WeakIsolation,
+    WorkerDied,
+    given_up,
+)
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import NothingToGrade, grade, regrade
 from coursework.grading.judging.ledger import Ledger
@@ -38,11 +46,19 @@ from coursework.grading.tables import as_cell, as_written, table
 from coursework.grading.workers import TaskLost, side_by_side
 
 pytestmark = [
-    pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only"),
+    pytest.mark.skipif(
+        not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+    ),
     pytest.mark.usefixtures("libraries_are_loaded_once"),
 ]
 
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 SCRIPT = "<script>alert(1)</script>"
 
 
@@ -52,16 +68,25 @@ def students():
     yield (
         "mistaken",
         handed_in(
-            about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, sm.sin(theta), "
+            about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, "
+            "sm.sin(theta), "
             "sm.cos(theta)]])",
             sum="sine = -sm.sin(alpha + beta)",
         ),
     )
-    yield "blank", handed_in(about_x="A_C_N = ...", sum="sine = ...", doubled="def doubled(x):\n    ...")
+    yield (
+        "blank",
+        handed_in(about_x="A_C_N = ...", sum="sine = ...", doubled="def doubled(x):\n    ..."),
+    )
     yield "broken", handed_in(sum="sine = (sm.sin(")
     yield "leaves", handed_in(sum="import os\nos._exit(0)")
     yield "endless", handed_in(sum="while True:\n    pass")
-    yield "no-checks", notebook([SETUP["turns"], *(RIGHT[f"turns/{name}"] for name in ("about-x", "sum", "doubled"))])
+    yield (
+        "no-checks",
+        notebook(
+            [SETUP["turns"], *(RIGHT[f"turns/{name}"] for name in ("about-x", "sum", "doubled"))]
+        ),
+    )
     backwards = notebook([RIGHT["turns/sum"], "check('turns/sum', sine)", SETUP["turns"]])
     for count, cell in zip((2, 3, 1), backwards.cells):
         cell.execution_count = count
@@ -70,7 +95,10 @@ def students():
     yield "warns", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)")
     yield (
         "corrects",
-        handed_in(sum="sine = -sm.sin(alpha + beta)", also=[RIGHT["turns/sum"], "check('turns/sum', sine)"]),
+        handed_in(
+            sum="sine = -sm.sin(alpha + beta)",
+            also=[RIGHT["turns/sum"], "check('turns/sum', sine)"],
+        ),
     )
     yield "blank-again", handed_in(also=["sine = ...\ncheck('turns/sum', sine)"])
     yield "later", handed_in(sum="sine = ...", also=[RIGHT["turns/sum"]])
@@ -78,7 +106,8 @@ def students():
     yield (
         SCRIPT.replace("/", ""),
         handed_in(
-            doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} $\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
+            doubled=f"def doubled(x):\n    raise ValueError('{SCRIPT} "
+            f"$\\\\href{{javascript:alert(1)}}{{x}}$ ` `')",
             also=[("markdown", SCRIPT), f"raise KeyError('{SCRIPT}')"],
         ),
     )
@@ -107,7 +136,9 @@ def copied(course, tmp_path):
 
 @pytest.fixture
 def prepared(course, tmp_path):
-    """A folder for results that has the questions already: working them out again is not what is tested."""
+    """A folder for results that has the questions already: working them out again is not what is
+    tested.
+    """
     shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
     return tmp_path / "out"
 
@@ -141,7 +172,11 @@ def contents(folder):
     "student, expected, points",
     [
         ("right", ["correct"] * 3, 6),
-        ("mistaken", ["wrong", "wrong", "correct"], 4),  # half of two for the transpose, by its author's word
+        (
+            "mistaken",
+            ["wrong", "wrong", "correct"],
+            4,
+        ),  # half of two for the transpose, by its author's word
         ("blank", ["not attempted"] * 3, 0),
         ("broken", ["correct", "not attempted", "correct"], 5),
         ("leaves", ["correct", "not attempted", "correct"], 5),
@@ -172,7 +207,11 @@ def test_a_record_says_what_it_rests_on(course):
     assert [cell.outcome for cell in one.cells][3] == "timeout"
     assert found.limits == dataclasses.asdict(LIMITS)
     assert set(found.software) >= {"python", "sympy", "numpy", "coursework"}
-    assert set(found.answers) == set(found.marks) == {name for name in RIGHT if name.startswith("turns/")}
+    assert (
+        set(found.answers)
+        == set(found.marks)
+        == {name for name in RIGHT if name.startswith("turns/")}
+    )
     assert all(mark.version for mark in found.marks.values())
 
 
@@ -184,8 +223,14 @@ def test_out_of_order_is_said(course):
 
 def test_submissions_were_only_read(course):
     for student, made in students():
-        assert (course / "submissions" / student / "turns.ipynb").read_text() == nbformat.writes(made)
-    assert {path.name for path in (course / "submissions").rglob("*") if path.is_file() or path.is_symlink()} == {
+        assert (course / "submissions" / student / "turns.ipynb").read_text() == nbformat.writes(
+            made
+        )
+    assert {
+        path.name
+        for path in (course / "submissions").rglob("*")
+        if path.is_file() or path.is_symlink()
+    } == {
         "turns.ipynb",
         "link.ipynb",
         "answers.pdf",
@@ -216,13 +261,28 @@ def test_pages_hold_nothing_that_could_run_or_load(course):
     for path in paths:
         tags = Tags()
         tags.feed(path.read_text("utf8"))
-        assert not tags.found & {"script", "iframe", "img", "object", "embed", "link", "base", "form", "style-src"}
+        assert not tags.found & {
+            "script",
+            "iframe",
+            "img",
+            "object",
+            "embed",
+            "link",
+            "base",
+            "form",
+            "style-src",
+        }
         assert not [
-            name for name in tags.attributes if name.startswith("on") or name in ("href", "src", "style", "srcdoc")
+            name
+            for name in tags.attributes
+            if name.startswith("on") or name in ("href", "src", "style", "srcdoc")
         ]
         # Links lead to pages of feedback, whatever a student is called.
         for link in tags.links:
-            assert re.fullmatch(r"feedback/[A-Za-z0-9._-]+/[a-z0-9._-]+\.html", link) and (path.parent / link).exists()
+            assert (
+                re.fullmatch(r"feedback/[A-Za-z0-9._-]+/[a-z0-9._-]+\.html", link)
+                and (path.parent / link).exists()
+            )
         assert "default-src 'none'" in path.read_text("utf8")
     student = SCRIPT.replace("/", "")
     assert "&lt;script&gt;alert(1)" in page(course, student)
@@ -232,7 +292,9 @@ def test_pages_hold_nothing_that_could_run_or_load(course):
 def test_nothing_in_a_table_is_a_formula(course):
     for path in (course / "out").glob("*.csv"):
         for row in csv.reader(io.StringIO(path.read_text("utf8"))):
-            assert not [cell for cell in row if cell.startswith(("=", "+", "-", "@", "\t", "\r"))], path
+            assert not [
+                cell for cell in row if cell.startswith(("=", "+", "-", "@", "\t", "\r"))
+            ], path
     rows = rows_of(course / "out" / "grades.csv")
     assert {as_written(row["student"]) for row in rows} == {student for student, _ in students()}
     assert {row["student"]: row["points"] for row in rows}["'=1+1"] == "5"
@@ -240,13 +302,30 @@ def test_nothing_in_a_table_is_a_formula(course):
 
 
 @pytest.mark.parametrize(
-    "text", ["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", "\uff1d1", "'=1", '"=1', "a,b", "\u202egnp"]
+    "text",
+    [
+        "=1+1",
+        "+1",
+        "-1",
+        "@SUM(A1)",
+        "\t=1",
+        "\r=1",
+        "\n=1",
+        "\uff1d1",
+        "'=1",
+        '"=1',
+        "a,b",
+        "\u202egnp",
+    ],
 )
 def test_cells(text):
     (row,) = list(csv.reader(io.StringIO(table([text], []))))
     assert row == [text] or text in ("\r=1",)
     (_, row) = list(csv.reader(io.StringIO(table(["x"], [[text]]))))
-    assert not row[0].startswith(("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d")) and "\u202e" not in row[0]
+    assert (
+        not row[0].startswith(("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d"))
+        and "\u202e" not in row[0]
+    )
     assert as_cell(3) == "3" and as_cell(-0.5) == "-0.5"
 
 
@@ -287,8 +366,13 @@ def test_one_function_makes_a_message_a_page_and_loses_no_sign(said, shown):
 def test_a_number_is_shown_with_the_digits_that_make_it_nearly_right():
     from coursework.grading.reporting.mathematics import answer_as_mathematics
 
-    nearly = {"value": ["expression", 2], "nodes": [["symbol", "x"], ["float", "1.0000001"], ["Mul", 1, 0]]}
-    assert "1.0000001" in answer_as_mathematics(nearly) and "1.0000001" in pages.answer_as_text(nearly)
+    nearly = {
+        "value": ["expression", 2],
+        "nodes": [["symbol", "x"], ["float", "1.0000001"], ["Mul", 1, 0]],
+    }
+    assert "1.0000001" in answer_as_mathematics(nearly) and "1.0000001" in pages.answer_as_text(
+        nearly
+    )
 
 
 def test_an_answer_is_printed_in_bounded_length():
@@ -297,7 +381,10 @@ def test_an_answer_is_printed_in_bounded_length():
         "nodes": [["symbol", "x"], *(["Add", order, order] for order in range(60))],
     }
     assert len(pages.answer_as_text(doubling)) < 400
-    deep = {"value": ["expression", 5_000], "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))]}
+    deep = {
+        "value": ["expression", 5_000],
+        "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))],
+    }
     assert len(pages.answer_as_text(deep)) < 400
     import sympy as sm
 
@@ -332,13 +419,18 @@ def test_the_report_tells_what_was_misunderstood(course):
 
 
 def test_identical_wrong_answers_are_put_together(tmp_path, course):
-    plain = {"value": ["expression", 2], "nodes": [["integer", "42"], ["symbol", "alpha"], ["Mul", 0, 1]]}
+    plain = {
+        "value": ["expression", 2],
+        "nodes": [["integer", "42"], ["symbol", "alpha"], ["Mul", 0, 1]],
+    }
 
     def report(*groups):
         store = Store(tmp_path)
         for number, group in enumerate(groups):
             found = record(course, "right")
-            mark = replace(found.marks["turns/sum"], outcome="wrong", note="", group=group, points=0)
+            mark = replace(
+                found.marks["turns/sum"], outcome="wrong", note="", group=group, points=0
+            )
             store.save(
                 replace(
                     found,
@@ -377,14 +469,20 @@ def test_reports_hold_one_record_at_a_time(tmp_path, course, monkeypatch):
 
 
 def graded_lines(folder):
-    return [line.split("graded: ")[1] for line in (folder / "run.log").read_text().splitlines() if "graded: " in line]
+    return [
+        line.split("graded: ")[1]
+        for line in (folder / "run.log").read_text().splitlines()
+        if "graded: " in line
+    ]
 
 
 def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     out = prepared
     code = (
-        f"from coursework.grading.grade import grade; from coursework.grading.execution.sandbox import Limits; "
-        f"grade({str(course / 'submissions')!r}, {str(out)!r}, solutions={str(course / 'solutions')!r}, workers=1, "
+        "from coursework.grading.grade import grade; from coursework.grading.execution.sandbox "
+        "import Limits; "
+        f"grade({str(course / 'submissions')!r}, {str(out)!r}, "
+        f"solutions={str(course / 'solutions')!r}, workers=1, "
         f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))"
     )
     running = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
@@ -395,7 +493,13 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     done = len(list((out / "records").glob("*/*.json")))
     (out / "records" / "right").mkdir(exist_ok=True)
     (out / "records" / "right" / ".half-written").write_text("{")
-    said = grade(course / "submissions", out, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    said = grade(
+        course / "submissions",
+        out,
+        solutions=course / "solutions",
+        limits=LIMITS,
+        show=io.StringIO(),
+    )
     assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3}
     lines = graded_lines(out)
     # The last one may have been recorded and not yet logged when the run was killed.
@@ -405,9 +509,16 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
 
 def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
     monkeypatch.setattr(
-        "coursework.grading.execution.sandbox.Sandbox", lambda *arguments, **options: pytest.fail("it was run")
+        "coursework.grading.execution.sandbox.Sandbox",
+        lambda *arguments, **options: pytest.fail("it was run"),
     )
-    said = grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    said = grade(
+        course / "submissions",
+        copied,
+        solutions=course / "solutions",
+        limits=LIMITS,
+        show=io.StringIO(),
+    )
     assert said == {"graded": 0, "kept": 15, "refused": 3}
     assert contents(copied) == contents(course / "out")
 
@@ -415,7 +526,9 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
 def test_what_changed_is_graded_again(course, copied, tmp_path):
     submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
     put(submissions, "right", handed_in(sum="sine = 0"))
-    said = grade(submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    said = grade(
+        submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO()
+    )
     assert said == {"graded": 1, "kept": 14, "refused": 3}
     assert Store(copied).read("right", "turns").points == 5
 
@@ -425,7 +538,9 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     from coursework.grading import versions
 
     copies = [
-        shutil.copytree(package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(
+            package, tmp_path / package.name, ignore=shutil.ignore_patterns("__pycache__")
+        )
         for package in versions.folders()
     ]
     ours, theirs = copies[0], tmp_path / "turning_course"
@@ -461,13 +576,19 @@ def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, t
     assert said["graded"] == 1
     assert regrade(copied, solutions=course / "solutions") == []
     (copied / "course.json").unlink()
-    with pytest.raises(NothingToGrade, match="does not say which notebooks make up 'other', 'turns'"):
+    with pytest.raises(
+        NothingToGrade, match="does not say which notebooks make up 'other', 'turns'"
+    ):
         regrade(copied, solutions=course / "solutions")
 
 
 def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_path):
     few, shown = tmp_path / "few", io.StringIO()
-    put(few, "renamed", handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)"))
+    put(
+        few,
+        "renamed",
+        handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)"),
+    )
     grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=shown)
     assert "'warns' is now 'renamed'" in shown.getvalue()
     students = {row["student"] for row in rows_of(copied / "grades.csv")}
@@ -476,15 +597,21 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
 
 
 @pytest.mark.long
-def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(course, copied, tmp_path):
-    """Names of folders first, a roster afterwards: two handed in the same, and each keeps the own decision."""
+def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(
+    course, copied, tmp_path
+):
+    """Names of folders first, a roster afterwards: two handed in the same, and each keeps the own
+    decision.
+    """
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
     for name in ("b", "c"):
         put(few, name, same)
     options = {"solutions": course / "solutions", "limits": LIMITS}
     grade(few, copied, show=io.StringIO(), **options)
     for name, credit in (("b", 0.5), ("c", 1)):
-        Ledger(copied).add(Store(copied).read(name, "turns"), "turns/sum", credit, who="Ann", why="appeal")
+        Ledger(copied).add(
+            Store(copied).read(name, "turns"), "turns/sum", credit, who="Ann", why="appeal"
+        )
     roster = tmp_path / "roster.csv"
     roster.write_text("student,name\nanother,c\nsomebody,b\n")
     grade(few, copied, roster=roster, show=shown, **options)
@@ -499,7 +626,10 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
         (few / name).rename(few / f"{name}{name}")
     shown = io.StringIO()
     grade(few, copied, show=shown, **options)
-    assert "'somebody' is now 'bb' or 'cc'" in shown.getvalue() and "count for nobody now" in shown.getvalue()
+    assert (
+        "'somebody' is now 'bb' or 'cc'" in shown.getvalue()
+        and "count for nobody now" in shown.getvalue()
+    )
     assert Store(copied).read("bb", "turns").points == 5
 
 
@@ -512,7 +642,10 @@ def test_a_ledger_of_other_answers_is_said(course, copied, capsys, tmp_path):
     other.add(replace(found, answers={}), "turns/about-x", 1)
     main(["merge", str(copied), str(other.path)])
     said = capsys.readouterr().out
-    assert "3 decisions from" in said and "2 of them are on answers that are not here: stranger, mistaken. They" in said
+    assert (
+        "3 decisions from" in said
+        and "2 of them are on answers that are not here: stranger, mistaken. They" in said
+    )
 
 
 def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path, monkeypatch):
@@ -525,7 +658,9 @@ def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path
     with monkeypatch.context() as patched:
         patched.setattr(Sandbox, "run", die)
         grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
-    assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {"undecided"}
+    assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {
+        "undecided"
+    }
     again = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert again["graded"] == 1 and Store(copied).read("right", "turns").points == 5
 
@@ -537,15 +672,23 @@ def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, work
 
 
 def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypatch):
-    monkeypatch.setattr("coursework.grading.grade.side_by_side", lambda *arguments: pytest.fail("it was run"))
+    monkeypatch.setattr(
+        "coursework.grading.grade.side_by_side", lambda *arguments: pytest.fail("it was run")
+    )
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
     shown = io.StringIO()
     grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", roster=tmp_path / "roster.csv",
           dry_run=True, show=shown)  # fmt: skip
     said = shown.getvalue()
     assert "right <- right/turns.ipynb  (turns; the name of the folder)" in said
-    assert "? <- endless/turns.ipynb: Nobody in the roster fits." in said and "1 handed in nothing: absent" in said
-    assert {row["student"] for row in rows_of(tmp_path / "out" / "whose.csv")} == {"right", "mistaken"}
+    assert (
+        "? <- endless/turns.ipynb: Nobody in the roster fits." in said
+        and "1 handed in nothing: absent" in said
+    )
+    assert {row["student"] for row in rows_of(tmp_path / "out" / "whose.csv")} == {
+        "right",
+        "mistaken",
+    }
 
 
 def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course, copied, tmp_path):
@@ -554,33 +697,54 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
     page, marks = copied / "feedback" / "right" / "turns.html", record(course, "right").marks
     said.write_text('chapter = "https://book.example/{notebook}.html"\n')
     regrade(copied, solutions=solutions)
-    assert page.read_text("utf8").count('<a href="https://book.example/turns.html">the chapter</a>') == len(marks)
+    assert page.read_text("utf8").count(
+        '<a href="https://book.example/turns.html">the chapter</a>'
+    ) == len(marks)
     assert "worked solution" not in page.read_text("utf8")
-    said.write_text(said.read_text() + 'solution = "https://book.example/solved#{notebook}-{question}"\n')
+    said.write_text(
+        said.read_text() + 'solution = "https://book.example/solved#{notebook}-{question}"\n'
+    )
     regrade(copied, solutions=solutions)
-    assert '<a href="https://book.example/solved#turns-about-x">the worked solution</a>' in page.read_text("utf8")
+    assert (
+        '<a href="https://book.example/solved#turns-about-x">the worked solution</a>'
+        in page.read_text("utf8")
+    )
     said.unlink()
     regrade(copied, solutions=solutions)
     assert "Read on" not in page.read_text("utf8")
-    for address in ("javascript:alert('{notebook}')", "https://book.example/all", "https://book.example/{student}"):
+    for address in (
+        "javascript:alert('{notebook}')",
+        "https://book.example/all",
+        "https://book.example/{student}",
+    ):
         said.write_text(f'chapter = "{address}"')
         with pytest.raises(ValueError, match="is an address with {notebook}"):
             regrade(copied, solutions=solutions)
 
 
 def test_feedback_gives_no_outputs_of_calls_away(course):
-    """What a function returned to the check would do for a friend's answer, and the secret calls for all later ones."""
+    """What a function returned to the check would do for a friend's answer, and the secret calls
+    for all later ones.
+    """
     found = record(course, "right").answers["turns/doubled"]
     assert found.plain["value"][0] == found.secret["plain"]["value"][0] == "function"
     said = page(course, "right")
     numbers = [node[1] for plain in (found.plain, found.secret["plain"]) for node in plain["nodes"]]
     assert len(numbers) == 5 and not [number for number in numbers if number[:6] in said]
-    assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(course, "blank")
+    assert "in place of" not in page(course, "blank") and "Nothing was answered." in page(
+        course, "blank"
+    )
 
 
 def test_two_runs_on_one_folder_are_refused(course, copied):
     with Store(copied).locked(), pytest.raises(InUse):
-        grade(course / "submissions", copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+        grade(
+            course / "submissions",
+            copied,
+            solutions=course / "solutions",
+            limits=LIMITS,
+            show=io.StringIO(),
+        )
 
 
 def test_names_lead_nowhere_and_stay_apart():
@@ -627,18 +791,34 @@ class Stub:
             raise WorkerDied("again and again")
         if code == "process":
             os._exit(1)
-        blank = {"outcome": "recorded", "plain": {"nodes": [], "value": ["blank"]}, "from": "check", "cell": 0}
+        blank = {
+            "outcome": "recorded",
+            "plain": {"nodes": [], "value": ["blank"]},
+            "from": "check",
+            "cell": 0,
+        }
         isolation = {"layers": [], "weak": False, "namespaces made by": None, "not stopped": []}
         return {**given_up(job, ""), "finished": True, "notes": [], "isolation": isolation,
                 "answers": dict.fromkeys(job["questions"], blank)}  # fmt: skip
 
 
 @pytest.mark.parametrize("victim", ["sandbox", "process"])
-def test_what_dies_under_a_notebook_costs_only_that_one(course, prepared, tmp_path, monkeypatch, victim):
+def test_what_dies_under_a_notebook_costs_only_that_one(
+    course, prepared, tmp_path, monkeypatch, victim
+):
     for number in range(9):
-        put(tmp_path / "few", f"student-{number}", handed_in(also=[victim if number == 4 else "pass"]))
+        put(
+            tmp_path / "few",
+            f"student-{number}",
+            handed_in(also=[victim if number == 4 else "pass"]),
+        )
     monkeypatch.setattr("coursework.grading.execution.sandbox.Sandbox", Stub)
-    options = {"solutions": course / "solutions", "limits": LIMITS, "workers": 2, "show": io.StringIO()}
+    options = {
+        "solutions": course / "solutions",
+        "limits": LIMITS,
+        "workers": 2,
+        "show": io.StringIO(),
+    }
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 9
     for found in Store(prepared).all():
         expected = "undecided" if found.student == "student-4" else "not attempted"
@@ -661,7 +841,10 @@ def test_no_process_is_left_and_errors_are_told():
         return do
 
     done = list(side_by_side(range(20), 3, prepare))
-    assert sorted(task for task, _ in done) == list(range(20)) and len({process for _, process in done}) <= 3
+    assert (
+        sorted(task for task, _ in done) == list(range(20))
+        and len({process for _, process in done}) <= 3
+    )
     with pytest.raises(RuntimeError, match="KeyError: 'some fault'"):
         list(side_by_side(["right", "wrong"], 2, prepare))
     with pytest.raises(WorkerDied, match="named"):
@@ -693,7 +876,9 @@ def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
 def test_it_fails_closed(course, prepared, monkeypatch):
     from coursework.grading.execution import isolation
 
-    monkeypatch.setattr(isolation, "lacking", lambda report: ["namespaces: switched off for this test"])
+    monkeypatch.setattr(
+        isolation, "lacking", lambda report: ["namespaces: switched off for this test"]
+    )
     with pytest.raises(WeakIsolation):
         grade(
             course / "submissions",
@@ -750,7 +935,9 @@ def test_a_person_decides_what_is_undecided(course, copied):
     assert (mark.outcome, mark.points, mark.messages) == ("decided", 0.5, ("Rounded.",))
     assert [row["student"] for row in rows_of(copied / "undecided.csv")] == ["endless"]
     (copied / "decisions.csv").write_text("student,question,credit\r\nnearly,turns/sum,much\r\n")
-    with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"):
+    with pytest.raises(
+        ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"
+    ):
         regrade(copied, solutions=course / "solutions")
 
 
@@ -761,18 +948,26 @@ def test_a_person_decides_what_is_undecided(course, copied):
         ("Student;Question;Credit\r\nnearly;turns/sum;0,5\r\n", 5.5, ""),
         ("\ufeffID\tcredit\n{id}\t1\n", 6, ""),
         ("id,student,question,credit\n{id},n\u200cearly,any,1\n", 6, ""),
-        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5, "line 2: .*'nerly'.*line 3: .*"),
+        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5, "line 2: .*'nerly'.*line "
+            "3: "
+            ".*"),
         # Every outcome can be overridden, also one that is right.
         ("student,question,credit\nnearly,turns/doubled,0\nnearly,turns/sum,1\n", 3, ""),
     ],
 )  # fmt: skip
-def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(course, copied, capsys, decisions, points, said):
+def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(
+    course, copied, capsys, decisions, points, said
+):
     _, row = rows_of(copied / "undecided.csv")
     (copied / "decisions.csv").write_text(decisions.format(id=row["id"]), "utf8")
     regrade(copied, solutions=course / "solutions")
     assert Store(copied).read("nearly", "turns").points == points
     assert re.search(said, capsys.readouterr().err, re.S)
-    lines = (copied / "ledger.jsonl").read_text().splitlines() if (copied / "ledger.jsonl").exists() else []
+    lines = (
+        (copied / "ledger.jsonl").read_text().splitlines()
+        if (copied / "ledger.jsonl").exists()
+        else []
+    )
     assert regrade(copied, solutions=course / "solutions") == []
     assert len(lines) == len((copied / "ledger.jsonl").read_text().splitlines() if lines else [])
 
@@ -792,7 +987,11 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     assert ledger.path.read_bytes().startswith(before)
     assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4.25]
     mark = store.read("mistaken", "turns").marks["turns/sum"]
-    assert mark.before.note == "opposite" and mark.decided["who"] == "Bea" and mark.messages == ("Sign",)
+    assert (
+        mark.before.note == "opposite"
+        and mark.decided["who"] == "Bea"
+        and mark.messages == ("Sign",)
+    )
     Ledger(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
     assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4]
     ledger = Ledger(copied)
@@ -814,7 +1013,10 @@ def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     mine.add(found, "turns/sum", 1, who="Ann")
     other.add(found, "turns/about-x", 1, who="Bea")
     assert mine.merge(other.path) == (other.events, []) and mine.merge(other.path) == ([], [])
-    assert {key[2]: one.who for key, one in mine.current().items()} == {"turns/sum": "Ann", "turns/about-x": "Bea"}
+    assert {key[2]: one.who for key, one in mine.current().items()} == {
+        "turns/sum": "Ann",
+        "turns/about-x": "Bea",
+    }
     other.add(found, "turns/sum", 0, who="Bea")
     new, ((first, second),) = mine.merge(other.path)
     assert (len(new), first.who, second.who) == (1, "Ann", "Bea")
@@ -850,13 +1052,15 @@ CANVAS = (
         (CANVAS, "mistaken", 'x,"8",9'),
         (
             'Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
-            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n"Participant '
+            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n'
+            '"Participant '
             '7";D;broken;"";6,00;Yes\n',
             "right",
             "right;6;6,00",
         ),
         (
-            "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric MaxPoints:3>\tEnd-of-Line "
+            "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric "
+            "MaxPoints:3>\tEnd-of-Line "
             "Indicator\r\n"
             "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n",
             "broken",
@@ -865,41 +1069,62 @@ CANVAS = (
     ],
     ids=["canvas with mark", "canvas", "moodle", "brightspace"],
 )
-def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(marks, tmp_path, before, student, written):
+def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
+    marks, tmp_path, before, student, written
+):
     path = tmp_path / "book.csv"
     path.write_bytes(before.encode())
     (marks.store.folder / gradebooks.WRITTEN).unlink(missing_ok=True)
-    said = gradebooks.fill(path, marks, overwrite={"mistaken", "broken"} & set(re.findall(r"\w+", before)))
+    said = gradebooks.fill(
+        path, marks, overwrite={"mistaken", "broken"} & set(re.findall(r"\w+", before))
+    )
     after = (tmp_path / "book-filled.csv").read_bytes().decode()
     assert written in after
     assert path.read_bytes() == before.encode()
     book, filled = gradebooks.Gradebook(before.encode()), gradebooks.Gradebook(after.encode())
     place = gradebooks._column(book, gradebooks._system(book), None)
     for (old, old_end), (new, new_end) in zip(book.lines, filled.lines, strict=True):
-        assert old[:place] == new[:place] and old[place + 1 :] == new[place + 1 :] and old_end == new_end
+        assert (
+            old[:place] == new[:place]
+            and old[place + 1 :] == new[place + 1 :]
+            and old_end == new_end
+        )
     assert after.startswith("\ufeff") == before.startswith("\ufeff")
     text = "\n".join(said)
     assert "blank" in text.partition("not in the gradebook")[2]
     if "nobody" in before:
         assert "Nobody, Student" in text and "2,S2,nobody,,3," in after
-        assert "nearly" in text.partition("a person has still to decide")[2] and "Nearly,3,S3,nearly,,,\r\n" in after
+        assert (
+            "nearly" in text.partition("a person has still to decide")[2]
+            and "Nearly,3,S3,nearly,,,\r\n" in after
+        )
     if "Moodle" in text:
-        assert "C;mistaken;-;6,00;No" in after and "mistaken" in text.partition("allows no change")[2]
+        assert (
+            "C;mistaken;-;6,00;No" in after and "mistaken" in text.partition("allows no change")[2]
+        )
 
 
 def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     """Canvas's EX excuses a student; a mark that a person entered is not lost unsaid."""
     path = tmp_path / "book.csv"
     path.write_text(
-        "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,right,,EX\nB,2,,mistaken,,5.00\n"
+        "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,right,,EX\n"
+        "B,2,,mistaken,,5.00\n"
         "C,3,,blank,,0.00\nD,4,,warns,,\n"
     )
     said = "\n".join(gradebooks.fill(path, marks))
     after = (tmp_path / "book-filled.csv").read_text().splitlines()
     assert [line.rpartition(",")[2] for line in after[1:]] == ["EX", "5.00", "0", "6"]
-    assert "right: EX, and graded 6" in said and "mistaken: 5.00, and graded 4" in said and "blank:" not in said
+    assert (
+        "right: EX, and graded 6" in said
+        and "mistaken: 5.00, and graded 4" in said
+        and "blank:" not in said
+    )
     said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"], dry_run=True))
-    assert "nothing was written" in said and (tmp_path / "book-filled.csv").read_text().splitlines() == after
+    assert (
+        "nothing was written" in said
+        and (tmp_path / "book-filled.csv").read_text().splitlines() == after
+    )
     said = "\n".join(gradebooks.fill(path, marks, overwrite=["mistaken", "right"]))
     after = (tmp_path / "book-filled.csv").read_text().splitlines()
     # An excuse is none that could be written over; a mark by hand is, of whom it is said.
@@ -912,12 +1137,17 @@ def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
 def test_what_was_written_from_here_is_brought_up_to_date(marks, tmp_path):
     """After an appeal 17 stayed where 18 was due, since something stood there."""
     path = tmp_path / "book.csv"
-    path.write_text("Student,ID,SIS User ID,SIS Login ID,Section,Essay (5)\nA,1,,right,,\nB,2,,mistaken,,\n")
+    path.write_text(
+        "Student,ID,SIS User ID,SIS Login ID,Section,Essay (5)\nA,1,,right,,\nB,2,,mistaken,,\n"
+    )
     gradebooks.fill(path, marks)
     known = marks.store.folder / gradebooks.WRITTEN
-    # Later the same marks are others; what stands in the system is what was written from here, or is not.
+    # Later the same marks are others; what stands in the system is what was written from here, or
+    # is not.
     known.write_text(known.read_text().replace('"6"', '"5.5"'))
-    path.write_text(path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3"))
+    path.write_text(
+        path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3")
+    )
     said = "\n".join(gradebooks.fill(path, marks))
     after = (tmp_path / "book-filled.csv").read_text().splitlines()
     assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "3"]
@@ -937,10 +1167,18 @@ def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, la
     )
     said = "\n".join(gradebooks.fill(path, marks))
     lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
-    assert f"Moodle: column {grade!r}" in said and 'x.example,3,"3,00"' in lines[1] and '"2,5","3,00"' in lines[3]
+    assert (
+        f"Moodle: column {grade!r}" in said
+        and 'x.example,3,"3,00"' in lines[1]
+        and '"2,5","3,00"' in lines[3]
+    )
     closed = "mistaken" in said.partition("allows no change")[2]
     assert ('x.example,,"3,00"' in lines[2] and closed) == bool(may)
-    assert Roster(path).find((("moodle", "1"),))[0] == Roster(path).find((("own", "r@x.example"),))[0] == "right"
+    assert (
+        Roster(path).find((("moodle", "1"),))[0]
+        == Roster(path).find((("own", "r@x.example"),))[0]
+        == "right"
+    )
 
 
 def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
@@ -949,9 +1187,16 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
     with pytest.raises(gradebooks.CannotExport, match="German, .*--name 'identifier=") as found:
         gradebooks.fill(path, marks)
     assert "Its columns: Tunniste, Koko nimi" in str(found.value)
-    names = {"identifier": "Tunniste", "full name": "Koko nimi", "id number": "Numero", "grade": "Arvosana"}
+    names = {
+        "identifier": "Tunniste",
+        "full name": "Koko nimi",
+        "id number": "Numero",
+        "grade": "Arvosana",
+    }
     gradebooks.fill(path, marks, names=names)
-    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1] == "Osallistuja9,A,right,6,6"
+    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
+        1
+    ] == "Osallistuja9,A,right,6,6"
     with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
         gradebooks.fill(path, marks, names={"grade": "Note"})
 
@@ -960,17 +1205,24 @@ def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks
     """Its columns are English everywhere; numbers are as the language writes them."""
     path = tmp_path / "book.csv"
     path.write_text(
-        "\ufeffLastName;FirstName;ID;SIS Login ID;Section;Turns (7)\n    Points Possible;;;;;12,00\n"
+        "\ufeffLastName;FirstName;ID;SIS Login ID;Section;Turns (7)\n"
+        "    Points Possible;;;;;12,00\n"
         "A;Right;1;right;x;\nB;Broken;2;broken;x;\nC;Excused;3;mistaken;x;N/A\n",
         "utf8",
     )
     said = "\n".join(gradebooks.fill(path, marks))
     lines = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()
-    assert lines[2:] == ["A;Right;1;right;x;12", "B;Broken;2;broken;x;10", "C;Excused;3;mistaken;x;N/A"]
+    assert lines[2:] == [
+        "A;Right;1;right;x;12",
+        "B;Broken;2;broken;x;10",
+        "C;Excused;3;mistaken;x;N/A",
+    ]
     assert "mistaken: N/A, and graded 8" in said
     path.write_text(path.read_text("utf8").replace("12,00", "3,00"), "utf8")
     gradebooks.fill(path, marks)
-    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[3] == "B;Broken;2;broken;x;2,5"
+    assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
+        3
+    ] == "B;Broken;2;broken;x;2,5"
     assert Roster(path).find((("canvas", "2"),)) == ("broken", "Canvas's number")
     assert Roster(path).find((("name", "Right A"),))[0] == "right"
 
@@ -997,9 +1249,17 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
 
         from coursework.grading.submissions.identity import Layout
 
-        names = [name for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist() if name.endswith("ipynb")]
+        names = [
+            name
+            for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist()
+            if name.endswith("ipynb")
+        ]
         whose = {one.student: dict(one.keys) for one in map(Layout(names, ["turns"]).claim, names)}
-        stub = type("Marks", (), {"students": whose, "identity": lambda self, student: Identity(whose[student])})()
+        stub = type(
+            "Marks",
+            (),
+            {"students": whose, "identity": lambda self, student: Identity(whose[student])},
+        )()
         first = gradebooks._scale(book, layout.title(), 4)[1]
         found, several = gradebooks._match(book, layout.title(), stub, first)
         assert len(found) == 3 and several == []
@@ -1009,7 +1269,9 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
 
 def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
     path = tmp_path / "book.csv"
-    path.write_text('Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\n"A",1,,right,,\n"B",2,,right,,\n')
+    path.write_text(
+        'Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\n"A",1,,right,,\n"B",2,,right,,\n'
+    )
     said = gradebooks.fill(path, marks)
     assert "right" in "\n".join(said).partition("more than once")[2]
     assert (tmp_path / "book-filled.csv").read_text() == path.read_text()
@@ -1019,7 +1281,10 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
     "header, message",
     [
         ("Name,Points\nA,1\n", "no gradebook of Canvas"),
-        ("Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n", "'Turns (1)', 'Axes (2)'"),
+        (
+            "Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n",
+            "'Turns (1)', 'Axes (2)'",
+        ),
         ("Student,ID\n", "no students"),
     ],
 )
@@ -1033,7 +1298,8 @@ def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, mess
 
 # ---- from a system's download to what it takes back
 
-#: The notebook's name as a student may have chosen it, which each system keeps at the end of its own name for it.
+#: The notebook's name as a student may have chosen it, which each system keeps at the end of its
+#: own name for it.
 CHOSEN = ("turns.ipynb", "my_2_turns_linked.ipynb", "work.zip")
 
 
@@ -1057,21 +1323,29 @@ def download(system, students):
             lines.append(f'"{student.title()}, Ann",{number},{student},Section 1,,')
         elif system == "moodle":
             files[f"{name}_{number}_assignsubmission_file/{chosen}"] = data
-            lines.append(f'"Participant {number}","{name}",{student}@uni.example,Submitted,,6.00,Yes')
+            lines.append(
+                f'"Participant {number}","{name}",{student}@uni.example,Submitted,,6.00,Yes'
+            )
         else:
             files[f"{number}-4711 - {name} - Nov 21, 2026 801 PM/{chosen}"] = data
             lines.append(f"#{student},{name.split()[1]},Ann,,#")
     header = {
-        "canvas": "Student,ID,SIS Login ID,Section,Homework (17),Final Score\n    Points Possible,,,,6,(read only)",
-        "moodle": 'Identifier,"Full name","Email address",Status,Grade,"Maximum grade","Grade can be changed"',
-        "brightspace": "OrgDefinedId,Last Name,First Name,Homework Points Grade <Numeric MaxPoints:6>,"
+        "canvas": "Student,ID,SIS Login ID,Section,Homework (17),Final Score\n"
+        "    Points Possible,,,,6,(read only)",
+        "moodle": 'Identifier,"Full name","Email address",Status,Grade,"Maximum '
+        'grade","Grade can be '
+        'changed"',
+        "brightspace": "OrgDefinedId,Last Name,First Name,Homework Points Grade <Numeric "
+        "MaxPoints:6>,"
         "End-of-Line Indicator",
     }[system]
     return files, "\n".join([header, *lines, ""])
 
 
 def canvas_takes(name, uploads):
-    """Whom Canvas gives a file of an archive to, as its ``infer_comment_context_from_filename`` does."""
+    """Whom Canvas gives a file of an archive to, as its ``infer_comment_context_from_filename``
+    does.
+    """
     parts = name.rpartition("/")[2].split("_")
     numbers = [part for part in parts if re.fullmatch("[0-9]+", part)][:2]
     if len(numbers) < 2 or parts[-1].startswith("link") or name.startswith("._"):
@@ -1086,14 +1360,18 @@ def moodle_takes(name, participants):
     for part in name.split("/"):
         parts = part.split("_", 4)
         if len(parts) >= 4 and parts[1].isdigit() and int(parts[1]) in participants:
-            return participants[int(parts[1])] if parts[2:4] == ["assignsubmission", "file"] else None
+            return (
+                participants[int(parts[1])] if parts[2:4] == ["assignsubmission", "file"] else None
+            )
     return None
 
 
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("system", ["canvas", "moodle", "brightspace"])
 @pytest.mark.parametrize("around", ["", "Homework 1_2/"])
-def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course, tmp_path, capsys, system, around):
+def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
+    course, tmp_path, capsys, system, around
+):
     solutions = str(course / "solutions")
     students = {
         "right": handed_in(),
@@ -1101,7 +1379,9 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course,
         "blank": handed_in(sum="sine = ..."),
         "nearly": handed_in(sum="sine = sm.sin(alpha + beta)*1.0004"),
     }
-    files, gradebook = download(system, [(name, nbformat.writes(made).encode()) for name, made in students.items()])
+    files, gradebook = download(
+        system, [(name, nbformat.writes(made).encode()) for name, made in students.items()]
+    )
     with zipfile.ZipFile(tmp_path / "submissions.zip", "w") as archive:
         for name, data in files.items():
             archive.writestr(around + name, data)
@@ -1109,7 +1389,14 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course,
     out, feedback = str(tmp_path / "out"), tmp_path / "feedback.zip"
     shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
     main(
-        ["grade", str(tmp_path / "submissions.zip"), "--roster", str(tmp_path / "gradebook.csv"), "--out", out]
+        [
+            "grade",
+            str(tmp_path / "submissions.zip"),
+            "--roster",
+            str(tmp_path / "gradebook.csv"),
+            "--out",
+            out,
+        ]
         + ["--solutions", solutions]
     )
     (waiting,) = rows_of(tmp_path / "out" / "undecided.csv")
@@ -1130,12 +1417,16 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(course,
     numbered = dict(zip(range(101, 105), students))
     for name, page in pages_of.items():
         if system == "canvas":
-            student = canvas_takes(name, {(number, number + 5000): who for number, who in numbered.items()})
+            student = canvas_takes(
+                name, {(number, number + 5000): who for number, who in numbered.items()}
+            )
         elif system == "moodle":
             student = moodle_takes(name, numbered)
         else:
             # Brightspace: the folder as it was handed out, at the top.
-            assert name.count("/") == 1 and any(file.startswith(name.partition("/")[0] + "/") for file in files)
+            assert name.count("/") == 1 and any(
+                file.startswith(name.partition("/")[0] + "/") for file in files
+            )
             student = numbered[int(name.partition("-")[0])]
         assert f"{points[student]} of 6 points" in page, name
     shutil.rmtree(tmp_path / "out" / "feedback")
@@ -1160,14 +1451,20 @@ def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
     )
     rows = {row["student_id"]: row for row in rows_of(tmp_path / "grades.csv")}
     assert list(rows["right"]) == list(gradebooks.NBGRADER)
-    assert (rows["mistaken"]["assignment"], rows["mistaken"]["score"], rows["mistaken"]["max_score"]) == (
+    assert (
+        rows["mistaken"]["assignment"],
+        rows["mistaken"]["score"],
+        rows["mistaken"]["max_score"],
+    ) == (
         "turns",
         "4",
         "6",
     )
     results = json.loads((tmp_path / "results.json").read_text())
     assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
-    assert results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
+    assert (
+        results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
+    )
     with pytest.raises(SystemExit, match="one student at a time"):
         main(["export", out, "--gradescope", str(tmp_path / "results.json")])
     with pytest.raises(SystemExit, match="name what to write"):
@@ -1235,9 +1532,15 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
             mark = found.marks[name]
             if any(did.startswith("hostile") for did in about["did"]):
-                assert not mark.points or outcome != "not attempted"  # it may have spoilt its own, and gained nothing
+                assert (
+                    not mark.points or outcome != "not attempted"
+                )  # it may have spoilt its own, and gained nothing
             else:
-                assert mark.outcome == outcome and (not note or mark.note == note), (student, about["did"], name)
+                assert mark.outcome == outcome and (not note or mark.note == note), (
+                    student,
+                    about["did"],
+                    name,
+                )
                 compared += 1
     assert compared > 200
     main(["regrade", str(tmp_path / "out"), "--solutions", solutions])

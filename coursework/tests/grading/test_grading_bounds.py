@@ -1,4 +1,6 @@
-"""Judging is bounded, whatever was answered; whenever the machine goes down, nothing is lost and nothing done twice."""
+"""Judging is bounded, whatever was answered; whenever the machine goes down, nothing is lost and
+nothing done twice.
+"""
 
 import hashlib
 import json
@@ -28,7 +30,9 @@ alpha, beta = sm.symbols("alpha beta")
 
 @pytest.fixture(scope="module")
 def questions(tmp_path_factory):
-    return marking.questions_of(write_sources(tmp_path_factory.mktemp("bounds") / "s") / "turns.ipynb", b"secret")
+    return marking.questions_of(
+        write_sources(tmp_path_factory.mktemp("bounds") / "s") / "turns.ipynb", b"secret"
+    )
 
 
 def ordinary(dice, depth=0):
@@ -37,9 +41,24 @@ def ordinary(dice, depth=0):
         size = dice.choice([1, 1, 10, 1e-3, 1e-30, 1e30, 1e-300, 1e300])
         number = sm.Float(dice.uniform(-3, 3) * size)
         power = sm.Float(10) ** dice.choice([-40, -2000, -99999, 40, 5000, 999999])
-        return dice.choice([alpha, beta, alpha, beta, sm.Integer(dice.randint(-9, 9)), number, sm.pi, sm.I, power])
+        return dice.choice(
+            [alpha, beta, alpha, beta, sm.Integer(dice.randint(-9, 9)), number, sm.pi, sm.I, power]
+        )
     parts = [ordinary(dice, depth + 1) for _ in range(2)]
-    unary = [sm.sin, sm.cos, sm.tan, sm.exp, sm.log, sm.sqrt, sm.asin, sm.atan, sm.Abs, sm.sinh, sm.conjugate, sm.arg]
+    unary = [
+        sm.sin,
+        sm.cos,
+        sm.tan,
+        sm.exp,
+        sm.log,
+        sm.sqrt,
+        sm.asin,
+        sm.atan,
+        sm.Abs,
+        sm.sinh,
+        sm.conjugate,
+        sm.arg,
+    ]
     way = dice.randrange(6)
     with sm.evaluate(False):
         if way == 0:
@@ -58,12 +77,18 @@ def judged(answers, questions, folder):
     said = []
     with Judge({"turns": {NAME: questions[NAME]}}, Contracts(folder), said.append) as judge:
         for number, plain in enumerate(answers):
-            record = Record(f"{number}", "turns", answers={NAME: Answer("recorded", plain, source="check", cell=0)})
+            record = Record(
+                f"{number}",
+                "turns",
+                answers={NAME: Answer("recorded", plain, source="check", cell=0)},
+            )
             yield judge.marks(record)[NAME]
     assert said == []
 
 
-@pytest.mark.parametrize("number", [300, *(pytest.param((1_000, k), marks=pytest.mark.long) for k in range(10))])
+@pytest.mark.parametrize(
+    "number", [300, *(pytest.param((1_000, k), marks=pytest.mark.long) for k in range(10))]
+)
 def test_ordinary_answers_are_judged_in_bounded_time_and_memory(number, questions, tmp_path):
     dice, answers = random.Random(f"answers {number}"), []
     number = number if isinstance(number, int) else number[0]
@@ -74,12 +99,20 @@ def test_ordinary_answers_are_judged_in_bounded_time_and_memory(number, question
             pass
     # None takes so much that the judge has to be ended: that would be said.
     outcomes = {mark.outcome for mark in judged(answers, questions, tmp_path)}
-    assert outcomes <= {"wrong", "invalid", "undecided", "correct"} and {"wrong", "invalid"} <= outcomes
+    assert (
+        outcomes <= {"wrong", "invalid", "undecided", "correct"}
+        and {"wrong", "invalid"} <= outcomes
+    )
 
 
 def _tower(dice, what):
     """An answer of many nodes each of which is made to cost much."""
-    nodes = [["symbol", "alpha"], ["constant", "ImaginaryUnit"], ["float", "1e-999999"], ["integer", "9999"]]
+    nodes = [
+        ["symbol", "alpha"],
+        ["constant", "ImaginaryUnit"],
+        ["float", "1e-999999"],
+        ["integer", "9999"],
+    ]
     nodes += [["float", "1e-300"], ["rational", "1", "3"], ["Add", 1, 2], ["Mul", 2, 1]]
     for _ in range(3_000):
         last = len(nodes) - 1
@@ -121,8 +154,9 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
 
 # --- the machine goes down ----------------------------------------------------------------------
 
-#: A process that has everything loaded, and for each line that it reads begins a copy of itself, which is killed after
-#: a time, or comes to its end; it gives back what the copy said and how long it took.
+#: A process that has everything loaded, and for each line that it reads begins a copy of itself,
+#: which is killed after a time, or comes to its end; it gives back what the copy said and how long
+#: it took.
 PROGRAM = """
 import io, json, os, select, signal, sys, time, traceback, warnings
 sys.path.insert(0, {tests!r})
@@ -189,7 +223,9 @@ for line in sys.stdin:
 
 @pytest.fixture(scope="module")
 def run():
-    """Run a command in a copy of a process; what it said, of which a part is missing if it was killed, and its time."""
+    """Run a command in a copy of a process; what it said, of which a part is missing if it was
+    killed, and its time.
+    """
     program = PROGRAM.format(tests=str(Path(__file__).parent))
     with subprocess.Popen(
         [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -201,7 +237,11 @@ def run():
             said, lasted = json.loads(process.stdout.readline())
             assert "Traceback" not in said, said
             assert killed_after is not None or said.splitlines()[-1] == "ended"
-            return [line.split()[1] for line in said.splitlines() if line.startswith("id ") and len(line) > 18], lasted
+            return [
+                line.split()[1]
+                for line in said.splitlines()
+                if line.startswith("id ") and len(line) > 18
+            ], lasted
 
         yield run
         process.stdin.close()
@@ -211,7 +251,9 @@ def _contents(folder):
     return {
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in folder.rglob("*")
-        if path.is_file() and path.name not in ("run.log", "lock") and not path.name.startswith(".half-")
+        if path.is_file()
+        and path.name not in ("run.log", "lock")
+        and not path.name.startswith(".half-")
     }
 
 
@@ -225,7 +267,9 @@ def whole(tmp_path):
     term.write()
     terms.write_sources(tmp_path / "solutions")
     terms.write_sources(tmp_path / "mended", {"hw0": (terms.WEIGHTS[1:], 3)})
-    lines = [f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)]
+    lines = [
+        f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)
+    ]
     head = "Student,ID,SIS User ID,SIS Login ID,Section,hw0 (7)\n"
     (tmp_path / "book.csv").write_text(head + "\n".join(lines) + "\n")
     return tmp_path
@@ -234,7 +278,9 @@ def whole(tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run, seed, kills=6):
-    """Five commands, each killed so many times at moments drawn by lot, and then let come to its end."""
+    """Five commands, each killed so many times at moments drawn by lot, and then let come to its
+    end.
+    """
     dice = random.Random(f"killed {seed}")
     other = Path(shutil.copytree(whole, tmp_path_factory.mktemp("other") / "course"))
     for what in ("grade", "regrade", "review", "bring in", "export"):
@@ -249,7 +295,9 @@ def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run
         assert len(kept) == len(set(kept)) and set(said) <= set(kept)
         whole_ledger = Ledger(whole / "out")
         assert [one.id for one in whole_ledger.events] == expected
-        assert len(whole_ledger.decisions) == sum(len(record.marks) for record in Store(whole / "out").all())
+        assert len(whole_ledger.decisions) == sum(
+            len(record.marks) for record in Store(whole / "out").all()
+        )
         shutil.copy(whole / "out" / "ledger.jsonl", other / "out" / "ledger.jsonl")
         (other / "out" / "ledger.cut").unlink(missing_ok=True)
     assert (other / "book-filled.csv").read_bytes() == (whole / "book-filled.csv").read_bytes()

@@ -1,4 +1,6 @@
-"""What a student was asked is kept beside the answer: a mended question takes nobody's marks by chance."""
+"""What a student was asked is kept beside the answer: a mended question takes nobody's marks by
+chance.
+"""
 
 import dataclasses
 import io
@@ -17,7 +19,12 @@ from coursework.authoring.author import AuthorError
 from coursework.checking import evaluate
 from coursework.checking.plain import read_plain, to_plain
 from coursework.checking.question import Question, Variant
-from coursework.checking.variants import names_of_variants, numbers_of_variants, siblings_of, variant_of
+from coursework.checking.variants import (
+    names_of_variants,
+    numbers_of_variants,
+    siblings_of,
+    variant_of,
+)
 from coursework.grading import review
 from coursework.grading.execution import isolation
 from coursework.grading.execution.sandbox import Limits
@@ -36,7 +43,13 @@ from coursework.grading.submissions import pictures
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
 NAME = "beams/load"
 STUDENTS = [f"student-{number:02}" for number in range(14)]
@@ -48,10 +61,12 @@ def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
         [
             "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
             ("markdown", "## The load"),
-            f"### BEGIN VARIANTS\nbeam = draw('{NAME}', count={len(weights)}, weight={weights})\n### END VARIANTS",
+            f"### BEGIN VARIANTS\nbeam = draw('{NAME}', count={len(weights)}, weight={weights})\n"
+            "### END VARIANTS",
             ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
             "### BEGIN SOLUTION\nload = 2*beam.weight\n### END SOLUTION",
-            f"check('{NAME}', load)\n### BEGIN HIDDEN TESTS\nquestion('{NAME}', kind='expression', worth=2, tolerance="
+            f"check('{NAME}', load)\n### BEGIN HIDDEN TESTS\n"
+            f"question('{NAME}', kind='expression', worth=2, tolerance="
             "0.01)\n### END HIDDEN TESTS",
             ("markdown", "Write a function that gives twice its argument."),
             "### BEGIN SOLUTION\ndef twice(x):\n    return 2*x\n### END SOLUTION",
@@ -82,7 +97,9 @@ def answered(load, says="", function="def twice(x):\n    return x + x"):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """A class whose students all gave the right answer to their own numbers, and one who did not."""
+    """A class whose students all gave the right answer to their own numbers, and one who did
+    not.
+    """
     place = tmp_path_factory.mktemp("cases")
     solutions = write_beams(place / "solutions", WEIGHTS)
     questions = questions_of(solutions / "beams.ipynb", b"any")
@@ -105,7 +122,9 @@ def marks_of(store, name):
 
 
 def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp_path):
-    """By its number, nearly everybody had another one then: of 145 right answers 122 became wrong."""
+    """By its number, nearly everybody had another one then: of 145 right answers 122 became
+    wrong.
+    """
     before = marks_of(out, NAME)
     assert all(before[student].points == 2 for student in STUDENTS) and before["wrong"].points == 0
     taken_out = begun.own[STUDENTS[0]]
@@ -131,7 +150,9 @@ def test_records_from_before_there_were_cases_are_brought_over(begun, out, tmp_p
         case = record.cases[NAME]
         assert record.format == 3 and "older record" in case.known
         asked = Contracts(out.folder).of(case.own.contract)
-        assert record.student == "wrong" or asked.question.given["weight"] == begun.own[record.student]
+        assert (
+            record.student == "wrong" or asked.question.given["weight"] == begun.own[record.student]
+        )
         assert set(case.siblings) == set(siblings_of(NAME, 8))
     # Nothing but the contracts is needed from then on.
     shutil.rmtree(out.folder / "questions")
@@ -144,7 +165,10 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     regrade(out.folder, solutions=fewer)
     found = marks_of(out, "beams/twice").values()
     # All that is called now was called then; but other secret calls follow from other calls.
-    assert {(mark.outcome, mark.note) for mark in found} <= {("correct", ""), ("undecided", "not called")}
+    assert {(mark.outcome, mark.note) for mark in found} <= {
+        ("correct", ""),
+        ("undecided", "not called"),
+    }
     others = write_beams(tmp_path / "others", WEIGHTS, "[[7.5], [1.5]]")
     regrade(out.folder, solutions=others)
     assert {(mark.outcome, mark.note) for mark in marks_of(out, "beams/twice").values()} == {
@@ -152,7 +176,9 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     }
     grade(begun.place / "in", out.folder, solutions=others, limits=LIMITS, show=io.StringIO())
     assert {mark.points for mark in marks_of(out, "beams/twice").values()} == {3}
-    assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {2}
+    assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {
+        2
+    }
 
 
 def test_a_function_is_judged_by_the_calls_that_it_was_given():
@@ -188,7 +214,9 @@ def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out
 
 
 def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
-    """One line of plain SymPy took the judge two minutes for a node, and 1.7 GB for each 10^9 in the exponent."""
+    """One line of plain SymPy took the judge two minutes for a node, and 1.7 GB for each 10^9 in
+    the exponent.
+    """
     tiny = sm.Pow(
         sm.Add(sm.Pow(sm.Float("1e-99999"), 9_999, evaluate=False), sm.I, evaluate=False),
         sm.Float("1e-300"),
@@ -198,13 +226,24 @@ def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
     found = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
     assert isinstance(found, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
     for text in ("1e-99999999999999999999", "3.5e+99999999999999999999", "1e-2000"):
-        plain = read_plain({"value": ["expression", 0], "nodes": [["float", text]]})  # and not "no answer was found"
+        plain = read_plain(
+            {"value": ["expression", 0], "nodes": [["float", text]]}
+        )  # and not "no answer was found"
         assert isinstance(
-            evaluate.values(plain["nodes"], {})[0], (evaluate.NotSupported, evaluate.TooLarge, evaluate.MP.mpf)
+            evaluate.values(plain["nodes"], {})[0],
+            (evaluate.NotSupported, evaluate.TooLarge, evaluate.MP.mpf),
         )
-    assert evaluate.values([["float", "2.5e-2000"]], {})[0] * evaluate.MP.mpf(10) ** 2000 == evaluate.MP.mpf("2.5")
+    assert evaluate.values([["float", "2.5e-2000"]], {})[0] * evaluate.MP.mpf(
+        10
+    ) ** 2000 == evaluate.MP.mpf("2.5")
     # A part that no digit depends on is left out; the other one stays.
-    nodes = [["float", "1e-9000"], ["constant", "ImaginaryUnit"], ["Mul", 0, 1], ["integer", "2"], ["Add", 3, 2]]
+    nodes = [
+        ["float", "1e-9000"],
+        ["constant", "ImaginaryUnit"],
+        ["Mul", 0, 1],
+        ["integer", "2"],
+        ["Add", 3, 2],
+    ]
     assert evaluate.values(nodes, {})[-1] == 2
 
 
@@ -243,7 +282,9 @@ def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tm
     monkeypatch.setattr(marking, "mark_with_siblings", _Hostile(what))
     record = Record("ann", "turns")
     said = []
-    with judging.Judge({"turns": dict.fromkeys(names, question)}, Contracts(tmp_path), said.append) as judge:
+    with judging.Judge(
+        {"turns": dict.fromkeys(names, question)}, Contracts(tmp_path), said.append
+    ) as judge:
         for _ in range(2):
             found = judge.marks(record)
             assert [found[name].outcome for name in names] == ["correct", "undecided", "correct"]
@@ -257,19 +298,31 @@ def test_an_answer_that_stops_the_judge_costs_nobody_else_a_mark(monkeypatch, tm
 def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun, tmp_path):
     """With the roster forgotten a class fell from 16 to 9 of 21 points, and nothing was said."""
     for student in STUDENTS[:6]:
-        put(tmp_path / "in", f"folder of {student}", answered(2 * begun.own[student], says=student), "beams.ipynb")
+        put(
+            tmp_path / "in",
+            f"folder of {student}",
+            answered(2 * begun.own[student], says=student),
+            "beams.ipynb",
+        )
     options = {"solutions": begun.place / "solutions", "limits": LIMITS}
     said = io.StringIO()
     with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 say .*--roster"):
         grade(tmp_path / "in", tmp_path / "out", show=said, **options)
-    assert "says that it is of 'student-00', and is graded as that of 'folder of student-00'" in said.getvalue()
+    assert (
+        "says that it is of 'student-00', and is graded as that of 'folder of student-00'"
+        in said.getvalue()
+    )
     assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
     said = io.StringIO()
     grade(tmp_path / "in", tmp_path / "out", show=said, as_listed=True, **options)
-    lost = sum(mark.note == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values())
+    lost = sum(
+        mark.note == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values()
+    )
     assert lost < 3 or f"{lost} of 6 answers are right for other numbers" in said.getvalue()
     roster = tmp_path / "roster.csv"
-    roster.write_text("student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6]))
+    roster.write_text(
+        "student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6])
+    )
     grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), roster=roster, **options)
     assert {mark.points for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
 
@@ -286,9 +339,13 @@ def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
     with pytest.raises(Collision) as found:
         second.append([second.decision(RECORD, "turns/sum", 1, who="Ben")], collisions=True)
     assert found.value.decisions == [one] and list(second.current().values()) == [one]
-    second.append([second.decision(RECORD, "turns/sum", 1, who="Ben", after=one.id)], collisions=True)
+    second.append(
+        [second.decision(RECORD, "turns/sum", 1, who="Ben", after=one.id)], collisions=True
+    )
     with pytest.raises(Collision):  # it looked at what Ann had decided, and that counts no more
-        first.append([first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True)
+        first.append(
+            [first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True
+        )
     (counts,) = Ledger(tmp_path).current().values()
     assert (counts.who, counts.credit) == ("Ben", 1)
 
@@ -309,9 +366,12 @@ def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(t
     ledger.add(RECORD, "turns/sum", None, who="Ben")
     lines = (tmp_path / "ledger.jsonl").read_text().splitlines()
     without = [
-        {key: value for key, value in json.loads(line).items() if key not in ("undoes", "after")} for line in lines
+        {key: value for key, value in json.loads(line).items() if key not in ("undoes", "after")}
+        for line in lines
     ]
-    (tmp_path / "ledger.jsonl").write_text("".join(json.dumps(line) + "\n" for line in without[-2:]))
+    (tmp_path / "ledger.jsonl").write_text(
+        "".join(json.dumps(line) + "\n" for line in without[-2:])
+    )
     assert Ledger(tmp_path).current() == {}
 
 
@@ -325,9 +385,14 @@ def test_a_ledger_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
     second = whole.split(b"\n")[1]
     path.write_bytes(whole[: len(whole) - 1 - len(second)] + second[:left])
     again = Ledger(tmp_path)
-    assert [one.who for one in again.decisions] == ["Ann"] and "ends within a line" in again.said_of_cut()
+    assert [one.who for one in again.decisions] == [
+        "Ann"
+    ] and "ends within a line" in again.said_of_cut()
     again.add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Ledger(tmp_path).decisions] == ["Ann", "Cem"] and not again.said_of_cut()
+    assert [one.who for one in Ledger(tmp_path).decisions] == [
+        "Ann",
+        "Cem",
+    ] and not again.said_of_cut()
     assert (tmp_path / CUT).read_bytes() == second[:left] + b"\n"
     # A line that only an editor left without its end is whole.
     path.write_bytes(whole[:-1])
@@ -343,17 +408,25 @@ def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, ou
             cells = "\n".join(graded.store.work(record.notebooks[0].sha256))
             assert record.student in cells
             shown = graded.without_names(cells)
-            assert record.student not in shown and f"me('{graded.aliases[record.student]}')" in shown
+            assert (
+                record.student not in shown and f"me('{graded.aliases[record.student]}')" in shown
+            )
     assert graded.without_names("student('Nobody Known')") == "student('somebody')"
     assert not re.search(
-        "student-0", graded.without_names("asked Student-03, student-030 and STUDENT-04").replace("student-030", "")
+        "student-0",
+        graded.without_names("asked Student-03, student-030 and STUDENT-04").replace(
+            "student-030", ""
+        ),
     )
     assert graded.without_names(None) is None
     identity = Identity({"name": "Mark O'Neill", "email": "m.oneill@uni.example"})
     graded.records[0] = dataclasses.replace(graded.records[0], identity=identity)
     graded._know_names()
     alias = graded.aliases[graded.records[0].student]
-    assert graded.without_names("Mark, m.oneill and Neill mark") == f"{alias}, {alias} and {alias} mark"
+    assert (
+        graded.without_names("Mark, m.oneill and Neill mark")
+        == f"{alias}, {alias} and {alias} mark"
+    )
 
 
 def test_what_holds_right_answers_is_read_by_nobody_else(out):
@@ -366,7 +439,9 @@ def test_what_holds_right_answers_is_read_by_nobody_else(out):
 
 
 def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(begun):
-    """One of eight has the same numbers; with two siblings it was three, and with four variants three of four."""
+    """One of eight has the same numbers; with two siblings it was three, and with four variants
+    three of four.
+    """
     questions = questions_of(begun.place / "solutions" / "beams.ipynb", b"any")
     earned, asked = 0, {NAME: questions[NAME]}
     friends = Answer("recorded", to_plain(2 * WEIGHTS[3]))
@@ -406,7 +481,15 @@ def test_a_picture_is_one_from_its_first_byte_to_its_last(kind, made):
     data = made()
     assert pictures.is_picture(kind, data)
     other = pictures.JPEG if kind == pictures.PNG else pictures.PNG
-    for wrong in (data[:8] + b"<script>", data + b"PK", data[:-1], data[: len(data) // 2], b"", data[:3], b"\xff" * 50):
+    for wrong in (
+        data[:8] + b"<script>",
+        data + b"PK",
+        data[:-1],
+        data[: len(data) // 2],
+        b"",
+        data[:3],
+        b"\xff" * 50,
+    ):
         assert not pictures.is_picture(kind, wrong)
     assert not pictures.is_picture(other, data) and not pictures.is_picture("image/svg+xml", data)
 
@@ -416,13 +499,22 @@ def test_a_picture_that_would_fill_the_memory_is_none():
     import zlib
 
     def part(name, body):
-        return struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        return (
+            struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+        )
 
     def png(wide):
         header = struct.pack(">IIBBBBB", wide, 60_000, 8, 2, 0, 0, 0)
-        return pictures.PNG_BEGINS + part(b"IHDR", header) + part(b"IDAT", zlib.compress(b"")) + part(b"IEND", b"")
+        return (
+            pictures.PNG_BEGINS
+            + part(b"IHDR", header)
+            + part(b"IDAT", zlib.compress(b""))
+            + part(b"IEND", b"")
+        )
 
-    assert pictures.is_picture(pictures.PNG, png(600)) and not pictures.is_picture(pictures.PNG, png(60_000))
+    assert pictures.is_picture(pictures.PNG, png(600)) and not pictures.is_picture(
+        pictures.PNG, png(60_000)
+    )
 
 
 @pytest.mark.parametrize(
@@ -440,7 +532,16 @@ def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, sai
     put(tmp_path / "class", "ann", answered(1), "beams.ipynb")
     solutions = write_beams(tmp_path / "solutions", WEIGHTS)
     with pytest.raises(SystemExit, match=said):
-        main(["grade", str(tmp_path / submissions), "--out", str(tmp_path / out), "--solutions", str(solutions)])
+        main(
+            [
+                "grade",
+                str(tmp_path / submissions),
+                "--out",
+                str(tmp_path / out),
+                "--solutions",
+                str(solutions),
+            ]
+        )
 
 
 def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begun, tmp_path):
@@ -449,7 +550,11 @@ def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begu
     (tmp_path / "in" / "cem").mkdir()
     (tmp_path / "in" / "cem" / "work.zip").write_bytes(b"PK damaged")
     (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
-    options = {"solutions": begun.place / "solutions", "roster": tmp_path / "roster.csv", "dry_run": True}
+    options = {
+        "solutions": begun.place / "solutions",
+        "roster": tmp_path / "roster.csv",
+        "dry_run": True,
+    }
     said = io.StringIO()
     grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert "1 handed in nothing: dora." in said.getvalue()
@@ -481,11 +586,15 @@ def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
             for one in students:
                 after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
                 assert after == [name for name in before[one] if name != names[gone]]
-    # Another edition, another question, another student: another order. Capitals and spaces make none.
+    # Another edition, another question, another student: another order. Capitals and spaces make
+    # none.
     assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
     others = dataclasses.replace(whole, edition="")
     assert (
-        sum(numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8) for one in students)
+        sum(
+            numbers_of_variants(one, NAME, whole, 8) != numbers_of_variants(one, NAME, others, 8)
+            for one in students
+        )
         > 250
     )
     assert numbers_of_variants("", NAME, whole, 8) == list(range(8))
@@ -495,7 +604,9 @@ def test_without_names_the_rule_is_that_of_before():
     """Whoever holds sealed files of today keeps the own numbers."""
     for one in STUDENTS:
         first = variant_of(one, NAME, 8, "autumn")
-        assert numbers_of_variants(one, NAME, Variant(edition="autumn"), 8) == [(first + k) % 8 for k in range(8)]
+        assert numbers_of_variants(one, NAME, Variant(edition="autumn"), 8) == [
+            (first + k) % 8 for k in range(8)
+        ]
 
 
 def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
@@ -533,7 +644,9 @@ def mended(folder, exchanged, weights=WEIGHTS, **more):
 
 
 def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_path, capsys):
-    solutions = mended(tmp_path / "mended", ("2*beam.weight", "2*beam.weight if beam.weight > 50 else 1"))
+    solutions = mended(
+        tmp_path / "mended", ("2*beam.weight", "2*beam.weight if beam.weight > 50 else 1")
+    )
     losing = {student for student in STUDENTS if begun.own[student] < 50}
     before = list(out.all())
     found = regrade(out.folder, solutions=solutions, dry_run=True)
@@ -549,7 +662,9 @@ def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_
     assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
     main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
     assert f"{len(losing) + len(gaining)} moved." in capsys.readouterr().out
-    assert {one.student for one in out.all() if one.marks[NAME].points == 0} == losing | {"wrong"} - gaining
+    assert {one.student for one in out.all() if one.marks[NAME].points == 0} == losing | {
+        "wrong"
+    } - gaining
     assert regrade(out.folder, solutions=solutions, dry_run=True).changes == []
 
 
@@ -588,7 +703,9 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
 
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
-    """A mended solution is judged from what is stored; a mended call is run, for those who are asked it."""
+    """A mended solution is judged from what is stored; a mended call is run, for those who are
+    asked it.
+    """
     said = io.StringIO()
     options = {"limits": LIMITS, "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
@@ -596,7 +713,10 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     assert {mark.points for mark in marks_of(out, NAME).values()} == {0}
     calls = mended(tmp_path / "calls", ("2*x", "x + x"), calls="[[7.5], [1.5]]")
     found = regrade(out.folder, solutions=calls, dry_run=True)
-    assert {one.student for one in found.again} == {*STUDENTS, "wrong"} and "runs just these" in found.lines()[-1]
+    assert {one.student for one in found.again} == {
+        *STUDENTS,
+        "wrong",
+    } and "runs just these" in found.lines()[-1]
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3
@@ -605,7 +725,10 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
 def test_the_figure_of_a_question_is_seen_in_the_review(tmp_path):
     """It stands in the students' notebook as a picture, beside variants, too."""
     made = beams(WEIGHTS)
-    figure = "from types import SimpleNamespace as S\nS(alt='A beam', picture=lambda: '<svg width=\"9\"></svg>')"
+    figure = (
+        "from types import SimpleNamespace as S\nS(alt='A beam', picture=lambda: '<svg "
+        'width="9"></svg>\')'
+    )
     made.cells.insert(2, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     made.cells.insert(7, nbformat.v4.new_code_cell(figure, metadata={"tags": ["figure"]}))
     nbformat.write(made, tmp_path / "beams.ipynb")

@@ -43,7 +43,10 @@ def archive(path, *entries):
         for name, data in (("neighbour/turns.ipynb", GOOD), *entries):
             if isinstance(name, str):
                 info = zipfile.ZipInfo()
-                info.filename, info.compress_type = name, zipfile.ZIP_DEFLATED  # as it is, also if it leads astray
+                info.filename, info.compress_type = (
+                    name,
+                    zipfile.ZIP_DEFLATED,
+                )  # as it is, also if it leads astray
                 name = info
             box.writestr(name, data)
     return path
@@ -123,7 +126,9 @@ def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
 
 
 def named(*names, **options):
-    """The students that an archive's names give notebooks to, and the files that nobody's are, with why."""
+    """The students that an archive's names give notebooks to, and the files that nobody's are, with
+    why.
+    """
     path = options.pop("path")
     with zipfile.ZipFile(path, "w") as box:
         for name in names:
@@ -148,9 +153,16 @@ FORGED = "Bob_202_assignsubmission_file_turns.ipynb"
 @pytest.mark.parametrize(
     "names",
     [
-        # Moodle's flat download, and its folders; a file that looks like a classmate's follows the system's own part.
-        (f"Jane Doe_101_assignsubmission_file_{FORGED}", "Bob_202_assignsubmission_file_turns.ipynb"),
-        (f"Jane Doe_101_assignsubmission_file_/{FORGED}", "Bob_202_assignsubmission_file_/turns.ipynb"),
+        # Moodle's flat download, and its folders; a file that looks like a classmate's follows the
+        # system's own part.
+        (
+            f"Jane Doe_101_assignsubmission_file_{FORGED}",
+            "Bob_202_assignsubmission_file_turns.ipynb",
+        ),
+        (
+            f"Jane Doe_101_assignsubmission_file_/{FORGED}",
+            "Bob_202_assignsubmission_file_/turns.ipynb",
+        ),
         ("Jane Doe_101_assignsubmission_file_/Bob_202_assignsubmission_file_/a.ipynb", FORGED),
         # Canvas, Brightspace, Blackboard.
         ("doejane_101_501_bob_202_502_turns.ipynb", "bob_202_502_turns.ipynb"),
@@ -171,13 +183,20 @@ FORGED = "Bob_202_assignsubmission_file_turns.ipynb"
 def test_what_follows_the_systems_own_part_of_a_name_claims_nothing(box, names):
     found, refused = named(*names, path=box)
     forger, honest = (found[name] for name in names)
-    assert forger.lower().startswith(("jane", "doejane")) and honest.lower().startswith("bob") and refused == {}
+    assert (
+        forger.lower().startswith(("jane", "doejane"))
+        and honest.lower().startswith("bob")
+        and refused == {}
+    )
 
 
 @pytest.mark.parametrize(
     "names",
     [
-        ("Bob_202_assignsubmission_file_/turns.ipynb", "Bobby_202_assignsubmission_file_/turns.ipynb"),
+        (
+            "Bob_202_assignsubmission_file_/turns.ipynb",
+            "Bobby_202_assignsubmission_file_/turns.ipynb",
+        ),
         ("bob_202_502_turns.ipynb", "bobby_202_503_turns.ipynb"),
         ("jose\u0301/turns.ipynb", "jos\xe9/turns.ipynb"),
         ("bob /turns.ipynb", "bob/turns.ipynb"),
@@ -185,42 +204,53 @@ def test_what_follows_the_systems_own_part_of_a_name_claims_nothing(box, names):
         # Only looks the same: a zero-width space, wide letters.
         ("bo\u200bb/turns.ipynb", "bob/turns.ipynb"),
         ("\uff42ob/turns.ipynb", "bob/turns.ipynb"),
-        ("Bo\u200bb_202_assignsubmission_file_/turns.ipynb", "Bob_202_assignsubmission_file_/turns.ipynb"),
+        (
+            "Bo\u200bb_202_assignsubmission_file_/turns.ipynb",
+            "Bob_202_assignsubmission_file_/turns.ipynb",
+        ),
     ],
 )
 def test_two_that_claim_one_identity_are_a_question(box, names):
     ann = {"_50": "ann_1_2_turns.ipynb", "_file_": "Ann_1_assignsubmission_file_/turns.ipynb"}
     found, refused = named(
-        *names, next((name for sign, name in ann.items() if sign in names[0]), "ann/turns.ipynb"), path=box
+        *names,
+        next((name for sign, name in ann.items() if sign in names[0]), "ann/turns.ipynb"),
+        path=box,
     )
     # The same number with another name is one, too: no system writes both.
     assert all("claim to be this student's" in refused[name] for name in names) and len(found) == 1
 
 
-#: Names as the systems themselves write them, each from the source of the system or from what was downloaded of it.
+#: Names as the systems themselves write them, each from the source of the system or from what was
+#: downloaded of it.
 DOWNLOADED = {
-    # Canvas: `get_filename` and `add_upload_submission` in lib/content_zipper.rb of instructure/canvas-lms. The name
-    # to sort by in small letters without signs, LATE, the number of the student, that of the file.
-    "doejohn_340934_208490284_BobsWork.ipynb": ("doejohn_340934", "", False),  # README of mikewesthad/canvas-unzipper
+    # Canvas: `get_filename` and `add_upload_submission` in lib/content_zipper.rb of
+    # instructure/canvas-lms. The name to sort by in small letters without signs, LATE, the number
+    # of the student, that of the file.
+    # README of mikewesthad/canvas-unzipper
+    "doejohn_340934_208490284_BobsWork.ipynb": ("doejohn_340934", "", False),
     "doejane_LATE_334244_394803489_MyAssignment-1.ipynb": ("doejane_334244", "", True),
     "m\xfcllerj\xf6rg_101_5_01_turns.ipynb": ("m\xfcllerj\xf6rg_101", "", False),
     "doejane_marie_102_6_turns.ipynb": ("doejane_marie_102", "", False),
     "anon_aB3dE_501_turns.ipynb": ("anonymous_aB3dE", "", False),
     "LATE_anon_xY4zF_502_turns.ipynb": ("anonymous_xY4zF", "", True),
-    # Moodle: `download_submissions` in mod/assign/locallib.php of moodle/moodle, in folders and flat, with groups, and
-    # with names hidden in several languages.
-    "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": ("THIRD STUDENT NAME 10019166", "", False),
+    # Moodle: `download_submissions` in mod/assign/locallib.php of moodle/moodle, in folders and
+    # flat, with groups, and with names hidden in several languages.
+    "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": ("THIRD STUDENT NAME "
+        "10019166", "", False),
     "Vorname Nachname_1327627_assignsubmission_file_/turns.ipynb": ("Vorname Nachname 1327627", "", False),
     "Double-Name Student_657693_assignsubmission_file_turns.ipynb": ("Double-Name Student 657693", "", False),
     "Default group-Jane Doe_77_assignsubmission_file_/turns.ipynb": ("Default group-Jane Doe 77", "", False),
     "Participant_1234_assignsubmission_file_/turns.ipynb": ("Participant 1234", "", False),
     "Teilnehmerin_1235_assignsubmission_file_/turns.ipynb": ("Teilnehmerin 1235", "", False),
-    # Brightspace: downloads that several graders' own tools describe, with the folder around them or without it.
+    # Brightspace: downloads that several graders' own tools describe, with the folder around them
+    # or without it.
     "152711-351765 - Some Student - May 18, 2025 1224 PM/turns.ipynb": (
         "Some Student 152711", "2025-05-18T12:24:00", False),
     "39786-640693 - Another Student - Oct 10, 2025 1022 AM/turns.ipynb": (
         "Another Student 39786", "2025-10-10T10:22:00", False),
-    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an assignment may hold blanks and signs.
+    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an assignment may hold
+    # blanks and signs.
     "Project 3  Reverse Engineering_abc0124_attempt_2015-04-23-17-56-20_abc0124-P3.ipynb": (
         "abc0124", "2015-04-23T17:56:20", False),
     "Project 3  Reverse Engineering_abc0123_attempt_2015-02-12-21-30-34_Assignment_1.ipynb": (
@@ -255,7 +285,9 @@ def test_names_as_the_systems_write_them(tmp_path, around):
     systems = ("_attempt_", "assignsubmission", " - ", "export/")
     groups = {}
     for name, known in DOWNLOADED.items():
-        groups.setdefault(next((sign for sign in systems if sign in name), "canvas"), {})[name] = known
+        groups.setdefault(next((sign for sign in systems if sign in name), "canvas"), {})[name] = (
+            known
+        )
     assert len(groups) == 5
     for sign, names in groups.items():
         box = tmp_path / f"{len(sign)}.zip"
@@ -265,23 +297,37 @@ def test_names_as_the_systems_write_them(tmp_path, around):
             if sign == "export/":
                 opened.writestr("assignment_9100_export/submission_metadata.yml", GRADESCOPE)
                 opened.writestr("assignment_9100_export/submission_43/turns.ipynb", GOOD)
-                opened.writestr("assignment_9100_export/submission_41/submission_metadata.yml", GRADESCOPE[::-1])
+                opened.writestr(
+                    "assignment_9100_export/submission_41/submission_metadata.yml", GRADESCOPE[::-1]
+                )
         notebooks, refused = intake.take_in(box, ["turns"])
-        found = {one.file.removeprefix(around): (one.student, one.claim.handed_in, one.late) for one in notebooks}
+        found = {
+            one.file.removeprefix(around): (one.student, one.claim.handed_in, one.late)
+            for one in notebooks
+        }
         assert found == names
         # What a group handed in is a question, and so is what only looks like the system's table.
         unknown = {one.file for one in refused}
-        assert unknown == ({"assignment_9100_export/submission_43/turns.ipynb"} if sign == "export/" else set())
+        assert unknown == (
+            {"assignment_9100_export/submission_43/turns.ipynb"} if sign == "export/" else set()
+        )
 
 
 def test_a_name_that_ends_in_a_number_takes_no_classmates(box, tmp_path):
-    """Canvas lets some people choose a name, and joins it to their number by the sign that a name may hold."""
+    """Canvas lets some people choose a name, and joins it to their number by the sign that a name
+    may hold.
+    """
     (tmp_path / "book.csv").write_text(
-        'Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n"Smith, Bob",202,,bob,1,\n'
+        'Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n'
+        '"Smith, Bob",202,,bob,1,\n'
         '"Doe, Eve",303,,eve,1,\n'
     )
     roster = Roster(tmp_path / "book.csv")
-    mine, other, plain = "bob_202_101_5_turns.ipynb", "eve_doe_202_303_6_turns.ipynb", "smithbob_202_7_01_turns.ipynb"
+    mine, other, plain = (
+        "bob_202_101_5_turns.ipynb",
+        "eve_doe_202_303_6_turns.ipynb",
+        "smithbob_202_7_01_turns.ipynb",
+    )
     found, refused = named(mine, other, plain, path=box, roster=roster)
     assert found == {mine: "jane", plain: "bob"} and list(refused) == [other]
 
@@ -296,18 +342,30 @@ def test_a_folder_around_everything_is_no_student(box):
 
 
 def test_what_a_system_adds_is_no_refusal(box):
-    """Blackboard writes a text about each attempt; nbgrader keeps what is not handed in beside what is."""
+    """Blackboard writes a text about each attempt; nbgrader keeps what is not handed in beside what
+    is.
+    """
     blackboard = [
-        f"HW_{who}_attempt_2026-11-20-10-11-12{end}" for who in ("ann", "bob") for end in ("_a.ipynb", ".txt")
+        f"HW_{who}_attempt_2026-11-20-10-11-12{end}"
+        for who in ("ann", "bob")
+        for end in ("_a.ipynb", ".txt")
     ]
     text_only = "HW_eve_attempt_2026-11-20-10-11-13.txt"
-    found, refused = named(*blackboard, text_only, "HW_bob_attempt_2026-11-20-10-11-12_notes.txt", path=box)
+    found, refused = named(
+        *blackboard, text_only, "HW_bob_attempt_2026-11-20-10-11-12_notes.txt", path=box
+    )
     assert sorted(found.values()) == ["ann", "bob"]
     # Who handed in a text alone is named, and so is a text of one's own.
     assert sorted(refused) == ["HW_bob_attempt_2026-11-20-10-11-12_notes.txt", text_only]
     folders = [f"{place}/turns/turns.ipynb" for place in ("source", "release")]
-    folders += [f"{place}/ann/turns/turns.{end}" for place in ("autograded", "feedback") for end in ("ipynb", "html")]
-    found, refused = named("submitted/ann/turns/turns.ipynb", "submitted/ann/turns/answer.pdf", *folders, path=box)
+    folders += [
+        f"{place}/ann/turns/turns.{end}"
+        for place in ("autograded", "feedback")
+        for end in ("ipynb", "html")
+    ]
+    found, refused = named(
+        "submitted/ann/turns/turns.ipynb", "submitted/ann/turns/answer.pdf", *folders, path=box
+    )
     assert list(found.values()) == ["ann"] and list(refused) == ["submitted/ann/turns/answer.pdf"]
     assert "The notebook beside it can read it" in refused["submitted/ann/turns/answer.pdf"]
     around = [f"course/{name}" for name in ("submitted/ann/turns/turns.ipynb", *folders)]
@@ -315,16 +373,30 @@ def test_what_a_system_adds_is_no_refusal(box):
 
 
 def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, tmp_path):
-    """Canvas numbers what is handed in again; what one student handed in for Gradescope lies in no folder."""
-    files = ("doejane_101_5_turns-2.ipynb", "doejane_101_6_half-2.py", "doejane_101_7_data-1.npy", "leebob_2_8_a.ipynb")
-    files += ("leebob_2_9_part-1.py", "leebob_2_10_part.py", "leebob_2_11_x-3.csv", "leebob_2_12_x-10.csv")
+    """Canvas numbers what is handed in again; what one student handed in for Gradescope lies in no
+    folder.
+    """
+    files = (
+        "doejane_101_5_turns-2.ipynb",
+        "doejane_101_6_half-2.py",
+        "doejane_101_7_data-1.npy",
+        "leebob_2_8_a.ipynb",
+    )
+    files += (
+        "leebob_2_9_part-1.py",
+        "leebob_2_10_part.py",
+        "leebob_2_11_x-3.csv",
+        "leebob_2_12_x-10.csv",
+    )
     with zipfile.ZipFile(box, "w") as opened:
         for name in files:
             opened.writestr(name, GOOD if name.endswith("ipynb") else name.encode())
     notebooks, refused = intake.take_in(box, ["turns"])
     jane, bob = (one.files for one in sorted(notebooks, key=lambda one: one.student))
     assert jane["half.py"] == jane["half-2.py"] == b"doejane_101_6_half-2.py" and "data.npy" in jane
-    assert bob["part.py"].endswith(b"part.py") and bob["x.csv"].endswith(b"x-10.csv") and refused == []
+    assert (
+        bob["part.py"].endswith(b"part.py") and bob["x.csv"].endswith(b"x-10.csv") and refused == []
+    )
     for name in ("turns.ipynb", "helper.py", "data/numbers.csv"):
         (tmp_path / "flat" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "flat" / name).write_bytes(GOOD if name.endswith("ipynb") else b"1")
@@ -336,7 +408,9 @@ def test_everything_from_one_student_is_a_question(tmp_path, course):
     for name in ("a", "b", "c"):
         put(tmp_path / "all", "homework", handed_in(), f"{name}.ipynb")
     with pytest.raises(NothingToGrade, match="would all be of one student, 'homework'"):
-        grade(tmp_path / "all", tmp_path / "out", solutions=tmp_path / "solutions", show=io.StringIO())
+        grade(
+            tmp_path / "all", tmp_path / "out", solutions=tmp_path / "solutions", show=io.StringIO()
+        )
 
 
 def test_github_classroom(tmp_path):
@@ -344,14 +418,18 @@ def test_github_classroom(tmp_path):
         put(tmp_path, f"homework-1-{user}", handed_in())
         (tmp_path / f"homework-1-{user}" / ".git" / "objects").mkdir(parents=True)
         for number in range(30):
-            (tmp_path / f"homework-1-{user}" / ".git" / "objects" / f"{number:038x}").write_bytes(b"x")
+            (tmp_path / f"homework-1-{user}" / ".git" / "objects" / f"{number:038x}").write_bytes(
+                b"x"
+            )
         (tmp_path / f"homework-1-{user}" / "README.md").write_text("read me")
     notebooks, refused = intake.take_in(tmp_path, ["turns"])
     assert sorted(one.student for one in notebooks) == ["bob", "jane-doe"] and refused == []
 
 
 def test_anonymous_exports_and_archives_within(box):
-    found, refused = named("anon_aB3dE_501_turns.ipynb", "LATE_anon_LATE1_502_turns.ipynb", path=box)
+    found, refused = named(
+        "anon_aB3dE_501_turns.ipynb", "LATE_anon_LATE1_502_turns.ipynb", path=box
+    )
     assert sorted(found.values()) == ["anonymous_LATE1", "anonymous_aB3dE"]
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as inner:
@@ -427,7 +505,10 @@ def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
 
 
 def test_a_roster_that_cannot_be_used_is_said(tmp_path):
-    for text, why in (("student\na\na\n", "line 3: 'a' is there a second time"), ("x,y\n1,2\n", "names no student")):
+    for text, why in (
+        ("student\na\na\n", "line 3: 'a' is there a second time"),
+        ("x,y\n1,2\n", "names no student"),
+    ):
         (tmp_path / "roster.csv").write_text(text)
         with pytest.raises(BadRoster, match=why):
             Roster(tmp_path / "roster.csv")
@@ -468,7 +549,9 @@ def half(data):
 
 
 def with_cells(cells, **others):
-    return json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5, "metadata": {}, **others}).encode()
+    return json.dumps(
+        {"cells": cells, "nbformat": 4, "nbformat_minor": 5, "metadata": {}, **others}
+    ).encode()
 
 
 CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execution_count": None}
@@ -499,7 +582,10 @@ CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execu
         (with_cells([CODE] * (intake.MOST_CELLS + 1)), "1001 cells"),
         (with_cells([CODE | {"source": "#" * (intake.MOST_CODE + 1)}]), "code is longer"),
         (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
-        (with_cells([]).replace(b"[]", b"[" + b"0," * intake.MOST_VALUES + b"0]"), "made of more than"),
+        (
+            with_cells([]).replace(b"[]", b"[" + b"0," * intake.MOST_VALUES + b"0]"),
+            "made of more than",
+        ),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
@@ -511,7 +597,14 @@ def test_what_is_no_notebook_is_refused_by_name(folder, data, why):
 
 
 def test_other_files_are_refused_by_name_and_litter_is_not_mentioned(folder):
-    for name in ("answers.pdf", "answers.zip", "turns.ipynb.exe", "figure.png", ".DS_Store", "._turns.ipynb"):
+    for name in (
+        "answers.pdf",
+        "answers.zip",
+        "turns.ipynb.exe",
+        "figure.png",
+        ".DS_Store",
+        "._turns.ipynb",
+    ):
         (folder / "neighbour" / name).write_bytes(b"x")
     checkpoints = folder / "neighbour" / ".ipynb_checkpoints"
     checkpoints.mkdir()
@@ -535,7 +628,9 @@ def test_links_and_channels_are_refused_and_not_followed(folder, tmp_path):
     os.mkfifo(mine / "channel.ipynb")
     assert {name: why.split(".")[0] for name, why in the_refused(folder).items()} == {
         "stranger/channel.ipynb": "This is no file but a device or a channel",
-        **dict.fromkeys(("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place"),
+        **dict.fromkeys(
+            ("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place"
+        ),
     }
 
 
@@ -559,7 +654,9 @@ def test_folders_nested_without_end_are_left_alone(folder):
     deep = folder / "stranger" / "/".join("d" * (intake.DEEPEST + 3))
     deep.mkdir(parents=True)
     (deep / "turns.ipynb").write_bytes(GOOD)
-    assert list(the_refused(folder).values()) == ["Its folders are nested too deeply to be looked at."]
+    assert list(the_refused(folder).values()) == [
+        "Its folders are nested too deeply to be looked at."
+    ]
 
 
 def test_names_that_are_no_text_are_shown(folder):
@@ -593,7 +690,12 @@ def test_paths_that_lead_out_of_an_archive_are_refused(tmp_path, name):
 def test_a_link_in_an_archive_is_refused(tmp_path):
     link = zipfile.ZipInfo("stranger/turns.ipynb")
     link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    assert "link" in the_refused(archive(tmp_path / "class.zip", (link, "/etc/passwd")))["stranger/turns.ipynb"]
+    assert (
+        "link"
+        in the_refused(archive(tmp_path / "class.zip", (link, "/etc/passwd")))[
+            "stranger/turns.ipynb"
+        ]
+    )
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
@@ -671,11 +773,16 @@ def test_a_mark_of_byte_order_and_older_notebooks_are_read():
             }
         ],
     }
-    assert intake.read_notebook(json.dumps(older).encode()) == ([{"source": "a = 1\nb = 2", "execution_count": 7}], [])
+    assert intake.read_notebook(json.dumps(older).encode()) == (
+        [{"source": "a = 1\nb = 2", "execution_count": 7}],
+        [],
+    )
 
 
 def test_of_a_large_archive_little_is_held(box):
-    """What grows with the class is the names and where each file lies: of 100,000 it is to fit any machine."""
+    """What grows with the class is the names and where each file lies: of 100,000 it is to fit any
+    machine.
+    """
     number, data = 3_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
     with zipfile.ZipFile(box, "w") as opened:
         for order in range(number):
@@ -740,7 +847,9 @@ def test_the_newest_of_several_counts(folder, course):
     older.write_bytes(GOOD)
     os.utime(older, (1, 1))
     work, _ = sorted_work(folder, course)
-    assert work == {("neighbour", "turns"): (["neighbour/turns.ipynb"], ["neighbour/a turns.ipynb"])}
+    assert work == {
+        ("neighbour", "turns"): (["neighbour/turns.ipynb"], ["neighbour/a turns.ipynb"])
+    }
 
 
 def test_a_number_that_canvas_put_there_says_which_is_newer(tmp_path, course):
@@ -755,10 +864,17 @@ def test_a_number_that_canvas_put_there_says_which_is_newer(tmp_path, course):
 def test_the_date_that_brightspace_wrote_says_which_is_newer(tmp_path, course):
     path = tmp_path / "class.zip"
     with zipfile.ZipFile(path, "w") as box:
-        for when in ("Nov 21, 2026 1201 AM", "Nov 21, 2026 801 PM", "Nov 21, 2026 1101 AM", "Oct 30, 2026 1159 PM"):
+        for when in (
+            "Nov 21, 2026 1201 AM",
+            "Nov 21, 2026 801 PM",
+            "Nov 21, 2026 1101 AM",
+            "Oct 30, 2026 1159 PM",
+        ):
             box.writestr(f"7-8 - Student Seven - {when}/turns.ipynb", GOOD)
     work, _ = sorted_work(path, course)
-    assert work["Student Seven 7", "turns"][0] == ["7-8 - Student Seven - Nov 21, 2026 801 PM/turns.ipynb"]
+    assert work["Student Seven 7", "turns"][0] == [
+        "7-8 - Student Seven - Nov 21, 2026 801 PM/turns.ipynb"
+    ]
 
 
 def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
@@ -774,7 +890,11 @@ def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
     "name, cells, found",
     [
         ("any.ipynb", ["check('turns/sum', 1)"], "turns"),
-        ("any.ipynb", ['check( "axes/angle" ,\n 1)', "check('turns/sum', 1)", "check('axes/length', 1)"], "axes"),
+        (
+            "any.ipynb",
+            ['check( "axes/angle" ,\n 1)', "check('turns/sum', 1)", "check('axes/length', 1)"],
+            "axes",
+        ),
         ("turns final.ipynb", ["A_C_N = 1"], "turns"),
         ("any.ipynb", ["A_C_N = 1"], None),
         ("any.ipynb", ["check('turns/nothing', 1)"], None),
@@ -784,7 +904,9 @@ def test_which_assignment_a_notebook_is(folder, course, name, cells, found):
     (folder / "stranger").mkdir()
     (folder / "stranger" / name).write_text(nbformat.writes(notebook(cells)))
     work, refused = sorted_work(folder, course)
-    assert [assignment for student, assignment in work if student == "stranger"] == ([found] if found else [])
+    assert [assignment for student, assignment in work if student == "stranger"] == (
+        [found] if found else []
+    )
     assert [one.file for one in refused] == ([] if found else [f"stranger/{name}"])
 
 
@@ -799,7 +921,9 @@ def test_nbgraders_names_tell_the_assignment_where_the_checks_are_gone(folder, c
 def test_the_names_of_questions_are_found_without_running_a_solution(tmp_path):
     from grading_class import write_sources
 
-    solutions = write_sources(tmp_path / "solutions", [("import sympy as sm", "import sympy as sm\nraise SystemExit")])
+    solutions = write_sources(
+        tmp_path / "solutions", [("import sympy as sm", "import sympy as sm\nraise SystemExit")]
+    )
     assert Course(solutions).names == {
         "turns": ["turns/about-x", "turns/sum", "turns/doubled"],
         "axes": ["axes/angle", "axes/length"],

@@ -1,4 +1,6 @@
-"""Verdicts from plain data: the same as the student's check, nothing earned by default, nothing lost by chance."""
+"""Verdicts from plain data: the same as the student's check, nothing earned by default, nothing
+lost by chance.
+"""
 
 import contextlib
 import json
@@ -46,16 +48,22 @@ def given(answer, calls=None):
 
 
 def given_function(question, function):
-    """What the sandbox says of a function: what it returned to the check, and to the secret calls."""
+    """What the sandbox says of a function: what it returned to the check, and to the secret
+    calls.
+    """
     said = given(function, question.contract.question.calls)
     place = question.contract.secret
     with contextlib.suppress(NotPlain):
-        return replace(said, secret={"plain": to_plain(function, place.calls), "calls": place.digest})
+        return replace(
+            said, secret={"plain": to_plain(function, place.calls), "calls": place.digest}
+        )
     return said
 
 
 theta, alpha, beta, q = sm.symbols("theta alpha beta q")
-A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]])
+A_C_N = sm.Matrix(
+    [[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), sm.cos(theta)]]
+)
 
 
 @pytest.mark.parametrize(
@@ -102,22 +110,40 @@ def marks_of(questions, name, answer):
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
-    """The points of the check follow from the question: who reads them can put a polynomial through them."""
+    """The points of the check follow from the question: who reads them can put a polynomial through
+    them.
+    """
     public = questions["turns/sum"].contract.question
     places = points(public)
-    rows = sm.Matrix([[sm.Float(point["alpha"], 40) ** power for power in range(len(places))] for point in places])
+    rows = sm.Matrix(
+        [
+            [sm.Float(point["alpha"], 40) ** power for power in range(len(places))]
+            for point in places
+        ]
+    )
     right = sm.Matrix([sm.sin(sm.Float(point["alpha"] + point["beta"], 40)) for point in places])
     polynomial = sum(part * alpha**power for power, part in enumerate(rows.LUsolve(right)))
     plain = to_plain(sm.expand(polynomial))
-    assert compare("turns/sum", public, plain, questions["turns/sum"].contract.locker).outcome == "correct"
+    assert (
+        compare("turns/sum", public, plain, questions["turns/sum"].contract.locker).outcome
+        == "correct"
+    )
     forged = "wrong", "right only where it is checked", 0
     assert marks_of(questions, "turns/sum", given(sm.expand(polynomial))) == forged
     # A share of the points for a known mistake is earned in no other way.
     assert marks_of(questions, "turns/about-x", given(A_C_N.T)) == ("wrong", "transposed", 1)
     place = points(questions["turns/about-x"].contract.question)
     x = sm.Symbol("theta")
-    through = [sm.interpolate([(sm.Float(p["theta"], 40), sm.cos(sm.Float(p["theta"], 40))) for p in place], x)]
-    through.append(sm.interpolate([(sm.Float(p["theta"], 40), sm.sin(sm.Float(p["theta"], 40))) for p in place], x))
+    through = [
+        sm.interpolate(
+            [(sm.Float(p["theta"], 40), sm.cos(sm.Float(p["theta"], 40))) for p in place], x
+        )
+    ]
+    through.append(
+        sm.interpolate(
+            [(sm.Float(p["theta"], 40), sm.sin(sm.Float(p["theta"], 40))) for p in place], x
+        )
+    )
     turned = sm.Matrix([[1, 0, 0], [0, through[0], -through[1]], [0, through[1], through[0]]])
     assert marks_of(questions, "turns/about-x", given(turned)) == forged
 
@@ -127,10 +153,17 @@ def test_a_table_of_what_a_function_returned_is_no_function(questions):
     table = {call[0]: 2 * call[0] for call in question.contract.question.calls}
     for otherwise in (0.0, 1e300, "?", None):
         forged = given_function(question, lambda x, otherwise=otherwise: table.get(x, otherwise))
-        assert marks_of(questions, "turns/doubled", forged) == ("wrong", "right only where it is checked", 0)
-    refusing = replace(given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."})
+        assert marks_of(questions, "turns/doubled", forged) == (
+            "wrong",
+            "right only where it is checked",
+            0,
+        )
+    refusing = replace(
+        given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."}
+    )
     assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
-    # What was not called, by whosever fault, goes to a person; and so does what was called with other secrets.
+    # What was not called, by whosever fault, goes to a person; and so does what was called with
+    # other secrets.
     for said in (
         {},
         {"unreadable": CUT_SHORT[0]},
@@ -148,7 +181,9 @@ def test_the_secret_is_made_once_and_decides_the_points(tmp_path, solutions):
     assert secret.secret_beside(tmp_path / "other") != first
     with pytest.raises(ValueError, match="belongs beside the solutions"):
         secret.secret_beside(tmp_path / "nowhere")
-    one, same, other = (questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other"))
+    one, same, other = (
+        questions_of(solutions / "turns.ipynb", known) for known in (b"one", b"one", b"other")
+    )
     assert one == same
     for (first,), (second,) in zip(one.values(), other.values(), strict=True):
         assert first.secret != second.secret and first.version != second.version
@@ -168,8 +203,12 @@ def test_secret_calls_are_like_the_authors(questions):
         assert abs(sm.Matrix(secret._another(unit, dice)).norm() - 1) < 1e-9
         turned = sm.Matrix(secret._another(triad, dice))
         assert (turned * turned.T - sm.eye(3)).norm() < 1e-9 and abs(turned.det() - 1) < 1e-9
-        turns = secret._another([[], [[[0, 0, 2], 0.5]], [[[1, -2, 2], 2.5], [[-3, 0, 4], 1.5]]], dice)
-        assert 1 <= len(turns) <= 2 and all(len(axis) == 3 and 0.5 <= angle <= 2.5 for axis, angle in turns)
+        turns = secret._another(
+            [[], [[[0, 0, 2], 0.5]], [[[1, -2, 2], 2.5], [[-3, 0, 4], 1.5]]], dice
+        )
+        assert 1 <= len(turns) <= 2 and all(
+            len(axis) == 3 and 0.5 <= angle <= 2.5 for axis, angle in turns
+        )
         times = secret._another([[0.0, 0.1, 0.3], [0.0, 0.5, 0.6]], dice)
         assert times == sorted(times) and times[0] == 0
 
@@ -191,7 +230,9 @@ def of_pairs(pairs):
     ],
 )
 def test_secret_calls_are_others_than_those_of_the_check(function, calls, others):
-    """Where only words of the author's may be asked for, a table of them is all that a function can be."""
+    """Where only words of the author's may be asked for, a table of them is all that a function can
+    be.
+    """
     question = author.question("trial/one", "function", function, calls=calls, result="expression")
     for number in range(10):
         made = secret.secret_of(question, b"secret %d" % number).calls
@@ -213,7 +254,9 @@ CELLS = (
 
 def test_the_cells_that_a_question_needs_are_found():
     cells = [SimpleNamespace(cell_type="code", source=source) for source in CELLS]
-    notebook = SimpleNamespace(cells=[*cells, SimpleNamespace(cell_type="markdown", source="levers/one")])
+    notebook = SimpleNamespace(
+        cells=[*cells, SimpleNamespace(cell_type="markdown", source="levers/one")]
+    )
     assert cells_needed(notebook, ["levers/one"]) == {0, 1, 2, 4, 5, 6}
     assert cells_needed(notebook, ["levers/two"]) == {0, 3, 7, 8}
     assert cells_needed(notebook, []) == set()
@@ -223,8 +266,12 @@ def test_equal_answers_are_judged_once_and_are_no_less_apart(questions, monkeypa
     monkeypatch.setattr(marking, "_marked", {})
     judged = []
     whole = marking.judge
-    monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
-    first, again = (mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2))
+    monkeypatch.setattr(
+        marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest)
+    )
+    first, again = (
+        mark("turns/about-x", questions["turns/about-x"], given(A_C_N)) for _ in range(2)
+    )
     assert first == again and judged == ["turns/about-x"]
     changed = Asked(replace(questions["turns/about-x"].contract, version="another", worth=7))
     assert mark("turns/about-x", changed, given(A_C_N)).points == 7
@@ -270,9 +317,24 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
             "undecided",
             "stopped while it was read",
         ),
-        ({"outcome": "unreadable", "why": CUT_SHORT[0]}, True, "undecided", "stopped while it was read"),
-        ({"outcome": "unreadable", "why": "An answer of type `module` cannot be read."}, True, "invalid", "unreadable"),
-        ({"outcome": "recorded", "plain": {"value": ["expression", 5], "nodes": []}}, True, "invalid", "unreadable"),
+        (
+            {"outcome": "unreadable", "why": CUT_SHORT[0]},
+            True,
+            "undecided",
+            "stopped while it was read",
+        ),
+        (
+            {"outcome": "unreadable", "why": "An answer of type `module` cannot be read."},
+            True,
+            "invalid",
+            "unreadable",
+        ),
+        (
+            {"outcome": "recorded", "plain": {"value": ["expression", 5], "nodes": []}},
+            True,
+            "invalid",
+            "unreadable",
+        ),
         (
             {"outcome": "recorded", "plain": {"value": ["blank"], "nodes": [], "points": 3}},
             True,
@@ -290,7 +352,9 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
 )
 def test_nothing_is_earned_without_an_answer(questions, answer, finished, outcome, note):
     limited = answer.pop("limited", False)
-    found = mark("turns/about-x", questions["turns/about-x"], Answer.from_json(answer), finished, limited)
+    found = mark(
+        "turns/about-x", questions["turns/about-x"], Answer.from_json(answer), finished, limited
+    )
     assert (found.outcome, found.note, found.points) == (outcome, note, 0)
 
 
@@ -336,9 +400,14 @@ def test_the_work_on_a_hostile_answer_is_bounded():
 def test_a_costly_answer_is_not_tried_on_every_variant(questions, monkeypatch):
     question = replace(questions["turns/sum"], siblings=(questions["turns/sum"].contract,) * 15)
     judged, whole = [], marking.judge
-    monkeypatch.setattr(marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest))
+    monkeypatch.setattr(
+        marking, "judge", lambda name, *rest: judged.append(name) or whole(name, *rest)
+    )
     monkeypatch.setattr(marking, "_marked", {})
-    long = {"value": ["expression", 1_500], "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))]}
+    long = {
+        "value": ["expression", 1_500],
+        "nodes": [["symbol", "alpha"], *(["sin", order] for order in range(1_500))],
+    }
     for plain, times in ((to_plain(sm.sin(alpha - beta)), 16), (long, 1)):
         found = mark("turns/sum", question, Answer("recorded", plain, source="check", cell=1))
         assert found.outcome == "wrong" and len(judged) == times
@@ -350,7 +419,9 @@ def test_an_honest_long_answer_is_worked_out(questions):
     expression = sm.expand((sm.sin(alpha) + sm.cos(beta) + sm.sin(beta) + 2) ** 16)
     plain = to_plain(expression)
     assert 1_000 < len(plain["nodes"]) < MOST_NODES < MOST_WORK
-    assert not isinstance(values(plain["nodes"], {"alpha": 0.5, "beta": 0.25})[plain["value"][1]], Exception)
+    assert not isinstance(
+        values(plain["nodes"], {"alpha": 0.5, "beta": 0.25})[plain["value"][1]], Exception
+    )
 
 
 @pytest.mark.parametrize(
@@ -376,7 +447,14 @@ def test_damaged_data_is_no_answer(data):
 
 def test_every_mistake_has_words_for_the_report():
     assert set(MESSAGES) - {"authored"} <= set(reports.DEEDS)
-    details = {"turn": 0, "first": 0, "second": 1, "sequence": "xyz", "axis": "x", "symbol": "m"} | {
+    details = {
+        "turn": 0,
+        "first": 0,
+        "second": 1,
+        "sequence": "xyz",
+        "axis": "x",
+        "symbol": "m",
+    } | {
         "factor": "2",
         "number": 8,
     }

@@ -1,4 +1,6 @@
-"""A whole course: what lateness costs, what is dropped, what a student sees, and what a year leaves behind."""
+"""A whole course: what lateness costs, what is dropped, what a student sees, and what a year leaves
+behind.
+"""
 
 import datetime
 import io
@@ -61,12 +63,18 @@ def rules(tmp_path):
 def record(points, worth=6, when="", late=False, assignment="turns", identity=None):
     notebook = RunNotebook(late=late, handed_in=when)
     marks = {f"{assignment}/sum": Mark("correct", points=points, worth=worth)}
-    return Record("ann", assignment, identity=Identity(identity or {}), notebooks=(notebook,), marks=marks)
+    return Record(
+        "ann", assignment, identity=Identity(identity or {}), notebooks=(notebook,), marks=marks
+    )
 
 
-def result(rules, *records, student="ann", now=datetime.datetime(2026, 12, 1, tzinfo=UTC), worth=None):
+def result(
+    rules, *records, student="ann", now=datetime.datetime(2026, 12, 1, tzinfo=UTC), worth=None
+):
     worth = worth or {"turns": 6, "axes": 2}
-    results, total = term.results_of(student, {one.assignment: one for one in records}, rules, worth, now)
+    results, total = term.results_of(
+        student, {one.assignment: one for one in records}, rules, worth, now
+    )
     return {one.assignment: one for one in results}, total
 
 
@@ -92,7 +100,8 @@ def test_lateness_costs_what_the_rules_say(rules, when, penalty):
 
 
 def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
-    # In the night of 25 October half past two comes twice in Amsterdam, at 0:30 and at 1:30 of universal time.
+    # In the night of 25 October half past two comes twice in Amsterdam, at 0:30 and at 1:30 of
+    # universal time.
     for when, penalty in (("2026-10-25T01:30:00+00:00", 0), ("2026-10-25T01:45:01+00:00", 0.1)):
         found, _ = result(rules(), record(2, 2, when, assignment="axes"))
         assert found["axes"].penalty == pytest.approx(penalty)
@@ -100,7 +109,9 @@ def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
 
 @pytest.mark.parametrize("when", ["2026-10-25T02:45:00", "2026-10-25T02:45:00+02:00"])
 def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, when):
-    """A time without a zone is the earlier one then, as what is due is the later one: both in favour of the student."""
+    """A time without a zone is the earlier one then, as what is due is the later one: both in
+    favour of the student.
+    """
     found, _ = result(rules(RULES.replace("02:30", "02:10")), record(2, 2, when, assignment="axes"))
     assert (found["axes"].penalty, found["axes"].late) == (0, False)
 
@@ -123,12 +134,17 @@ def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, whe
     ],
 )
 def test_a_day_is_as_long_as_any_other_when_clocks_are_changed(rules, due, when, penalty):
-    found, _ = result(rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes"))
+    found, _ = result(
+        rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes")
+    )
     assert found["axes"].penalty == pytest.approx(penalty)
 
 
 def test_extensions_hold_for_whom_they_are(rules):
-    text = RULES + '[extensions.ann]\nturns = 2026-10-08T12:00:00\n[extensions.bob]\nturns = "excused"\n'
+    text = (
+        RULES
+        + '[extensions.ann]\nturns = 2026-10-08T12:00:00\n[extensions.bob]\nturns = "excused"\n'
+    )
     late = record(6, when="2026-10-08T12:00:00")
     assert result(rules(text), late)[0]["turns"].penalty == 0
     assert result(rules(text), late, student="carl")[0]["turns"].penalty == pytest.approx(0.3)
@@ -159,8 +175,12 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         parts = [part for part in (names[:first], names[first:]) if part]
         drops = [(dice.randint(0, len(part) - 1), part) for part in parts]
         weights = {name: dice.choice([1, 1, 2, 5, 0.5]) for name in names}
-        text = 'time-zone = "UTC"\n' + "".join(f"[[drop]]\nlowest = {n}\nof = {json.dumps(of)}\n" for n, of in drops)
-        text += "".join(f"[assignments.{name}]\nweight = {weight}\n" for name, weight in weights.items())
+        text = 'time-zone = "UTC"\n' + "".join(
+            f"[[drop]]\nlowest = {n}\nof = {json.dumps(of)}\n" for n, of in drops
+        )
+        text += "".join(
+            f"[assignments.{name}]\nweight = {weight}\n" for name, weight in weights.items()
+        )
         shares = {name: dice.choice([0, 0.25, 0.5, 0.5, 0.9, 1]) for name in names}
         records = [record(share * 8, 8, assignment=name) for name, share in shares.items()]
         found, total = result(rules(text), *records, worth=dict.fromkeys(names, 8))
@@ -186,9 +206,17 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         ("[late]", "[extensions.ann]\ntruns = 'excused'\n[late]", "no assignment 'truns'"),
         ("[late]", "[[drop]]\nof = ['turns']\n[late]", "a whole number below 1"),
         ("[late]", "[[drop]]\n[[drop]]\n[late]", "in two rules"),
-        ("[late]", "[[drop]]\nof = 'turns'\n[late]", "drop.of is a list of assignments, and this is 'turns'"),
+        (
+            "[late]",
+            "[[drop]]\nof = 'turns'\n[late]",
+            "drop.of is a list of assignments, and this is 'turns'",
+        ),
         ("[late]", "[drop]\nof = ['turns']\n[late]", "drop is a list of tables"),
-        ("weight = 3", "times = 3", "assignments.turns.times is the name of a table, and this is 3"),
+        (
+            "weight = 3",
+            "times = 3",
+            "assignments.turns.times is the name of a table, and this is 3",
+        ),
         ('"Europe/Amsterdam"', "Europe", "line 3"),
     ],
 )
@@ -209,7 +237,9 @@ def test_times_of_a_systems_table(rules, tmp_path):
         found, _ = result(rules(text), record(6, identity=identity))
         assert found["turns"].handed_in == datetime.datetime(2026, 10, 6, 20, 1, tzinfo=AMSTERDAM)
         assert found["turns"].penalty == pytest.approx(0.1)
-    assert result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
+    assert (
+        result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
+    )
     (tmp_path / "worksheet.csv").write_text("username,timestamp\nann,yesterday\n")
     with pytest.raises(term.BadRules, match="'ann': 'yesterday' is no time.* in English"):
         rules(text)
@@ -239,16 +269,23 @@ def test_times_are_those_of_the_system_and_no_students(tmp_path):
         ("submitted/carl/turns/turns.ipynb", GOOD),
         ("submitted/carl/turns/timestamp.txt", b"\xff\xfe long ago"),
     ) == {"ann": "2026-10-05T20:01:00.250000+00:00", "bob": "", "carl": ""}
-    assert times(("ann/turns.ipynb", GOOD), ("ann/timestamp.txt", stamp), ("bob/turns.ipynb", GOOD)) == {
+    assert times(
+        ("ann/turns.ipynb", GOOD), ("ann/timestamp.txt", stamp), ("bob/turns.ipynb", GOOD)
+    ) == {
         "ann": "",
         "bob": "",
     }
     name = "101-9 - {} - Nov 21, 2026 801 PM/turns.ipynb"
-    assert times((name.format("Ann"), GOOD), (name.format("X - Nov 1, 2026 801 AM").replace("101", "102"), GOOD)) == {
+    assert times(
+        (name.format("Ann"), GOOD),
+        (name.format("X - Nov 1, 2026 801 AM").replace("101", "102"), GOOD),
+    ) == {
         "Ann 101": "2026-11-21T20:01:00",
         "X - Nov 1, 2026 801 AM 102": "2026-11-21T20:01:00",
     }
-    assert times(("HW_ann_attempt_2026-11-21-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": "2026-11-21T20:01:00"}
+    assert times(("HW_ann_attempt_2026-11-21-20-01-00_turns.ipynb", GOOD)) == {
+        "HW_ann": "2026-11-21T20:01:00"
+    }
     assert times(("HW_ann_attempt_2026-13-41-20-01-00_turns.ipynb", GOOD)) == {"HW_ann": ""}
 
 
@@ -281,14 +318,29 @@ def out(tmp_path_factory):
     """A graded class of a few, whose notebooks nbgrader collected."""
     folder = tmp_path_factory.mktemp("course")
     submitted = folder / "course" / "submitted"
-    answers = {"ann": {}, "bob": {"sum": "sine = sm.sin(alpha)"}, "carl": {"sum": "sine = sm.sin(alpha)"}}
+    answers = {
+        "ann": {},
+        "bob": {"sum": "sine = sm.sin(alpha)"},
+        "carl": {"sum": "sine = sm.sin(alpha)"},
+    }
     for student, given in answers.items():
         put(submitted / student, "turns", handed_in(**given))
-        (submitted / student / "turns" / "timestamp.txt").write_text("2026-10-06 20:01:00.000000 UTC")
-    put(submitted / "ann", "axes", handed_in("axes", also=["assert '<script>alert(1)</script>'"]), "axes.ipynb")
+        (submitted / student / "turns" / "timestamp.txt").write_text(
+            "2026-10-06 20:01:00.000000 UTC"
+        )
+    put(
+        submitted / "ann",
+        "axes",
+        handed_in("axes", also=["assert '<script>alert(1)</script>'"]),
+        "axes.ipynb",
+    )
     (folder / "roster.csv").write_text("student\nann\nbob\ncarl\ndora\n")
     limits = Limits(cell_wall_seconds=60, answer_wall_seconds=60)
-    options = {"solutions": write_sources(folder / "solutions"), "limits": limits, "show": io.StringIO()}
+    options = {
+        "solutions": write_sources(folder / "solutions"),
+        "limits": limits,
+        "show": io.StringIO(),
+    }
     grade(folder / "course", folder / "out", roster=folder / "roster.csv", **options)
     return folder / "out"
 
@@ -297,7 +349,8 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     now = datetime.datetime(2026, 12, 1, tzinfo=UTC)
     said = write_course(Store(out), rules(), now=now)
     assert said == [
-        "axes: of 1 nobody knows when they were handed in, and lateness cost nothing. A table of your system says it: "
+        "axes: of 1 nobody knows when they were handed in, and lateness cost nothing. A table of "
+        "your system says it: "
         'times = "worksheet.csv" in [assignments.axes].'
     ]
     rows = (out / "course" / "course.csv").read_text().splitlines()
@@ -329,7 +382,9 @@ def test_every_number_leads_to_the_answers_behind_it(out, rules):
         assert not anchor or f'id="{anchor}"' in content, link
         for inner in re.findall(r'href="([^"#]+)"', content):
             assert (page.parent / inner).exists()
-    assert "<math" in "".join(path.read_text() for path in (out / "course" / "answers").glob("*turns-sum*.html"))
+    assert "<math" in "".join(
+        path.read_text() for path in (out / "course" / "answers").glob("*turns-sum*.html")
+    )
 
 
 def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, tmp_path):
@@ -342,7 +397,9 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
         for question in questions.values()
         for count in (question["students"], *question["mix-ups"].values())
     )
-    assert {name.partition("/")[0] for name in questions} == {"turns"}  # the axes are of one student alone
+    assert {name.partition("/")[0] for name in questions} == {
+        "turns"
+    }  # the axes are of one student alone
     earlier = tmp_path / "2025.json"
     earlier.write_text(kept.replace("Autumn 2026", "Autumn <2025>"))
     write_course(Store(out), rules(), earlier=[earlier])
@@ -368,13 +425,19 @@ def test_names_and_answers_stay_text(rules, tmp_path):
     write_course(store, rules())
     for path in (tmp_path / "out" / "course").rglob("*.html"):
         content = path.read_text()
-        assert "<img" not in content and "<script" not in content and "default-src 'none'" in content
-    assert any("&lt;img" in path.read_text() for path in (tmp_path / "out" / "course").rglob("*.html"))
+        assert (
+            "<img" not in content and "<script" not in content and "default-src 'none'" in content
+        )
+    assert any(
+        "&lt;img" in path.read_text() for path in (tmp_path / "out" / "course").rglob("*.html")
+    )
 
 
 # --- what reaches the system --------------------------------------------------------------------
 
-BOOK = "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,ann,,\nB,2,,bob,,\nC,3,,carl,,\n"
+BOOK = (
+    "Student,ID,SIS User ID,SIS Login ID,Section,Turns (77)\nA,1,,ann,,\nB,2,,bob,,\nC,3,,carl,,\n"
+)
 
 
 @pytest.fixture
@@ -406,7 +469,9 @@ def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
     late.folder.joinpath(gradebooks.WRITTEN).unlink()
     before = sorted(late.folder.rglob("*"))
     assert main(["term", str(late.folder), "--rules", rules, "--dry-run"]) in (None, 0)
-    assert "Nothing was kept" in capsys.readouterr().out and sorted(late.folder.rglob("*")) == before
+    assert (
+        "Nothing was kept" in capsys.readouterr().out and sorted(late.folder.rglob("*")) == before
+    )
     assert main(["term", str(late.folder), "--rules", rules]) in (None, 0)
     with pytest.raises(SystemExit, match="The term has rules"):
         filled(late)
@@ -432,7 +497,9 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
     rules = tmp_path / "term.toml"
     with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
         filled(late, "--rules", str(rules))
-    assert any("1 are marked as late" in line for line in write_course(late, term.read_rules(rules)))
+    assert any(
+        "1 are marked as late" in line for line in write_course(late, term.read_rules(rules))
+    )
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
     assert filled(late, "--rules", str(rules)) == ["4.8", "", "4.5"]
 

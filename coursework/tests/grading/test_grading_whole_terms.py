@@ -1,4 +1,6 @@
-"""Whole terms with all that happens in them: in the end every mark is that of somebody who knows the whole story."""
+"""Whole terms with all that happens in them: in the end every mark is that of somebody who knows
+the whole story.
+"""
 
 import datetime
 import functools
@@ -45,20 +47,25 @@ def source(name, weights, times):
     return notebook(
         [
             "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
-            f"### BEGIN VARIANTS\nbeam = draw('{name}/load', count={len(weights)}, weight={weights})\n### END VARIANTS",
+            f"### BEGIN VARIANTS\nbeam = draw('{name}/load', count={len(weights)}, "
+            f"weight={weights})\n### END VARIANTS",
             ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
             f"### BEGIN SOLUTION\nload = {times}*beam.weight\n### END SOLUTION",
-            f"check('{name}/load', load)\n### BEGIN HIDDEN TESTS\nquestion('{name}/load', kind='expression', "
+            f"check('{name}/load', load)\n### BEGIN HIDDEN TESTS\n"
+            f"question('{name}/load', kind='expression', "
             f"worth={LOAD}, tolerance=0.01)\n### END HIDDEN TESTS",
             "### BEGIN SOLUTION\ndef twice(x):\n    return 2*x\n### END SOLUTION",
-            f"check('{name}/twice', twice)\n### BEGIN HIDDEN TESTS\nquestion('{name}/twice', kind='function', "
+            f"check('{name}/twice', twice)\n### BEGIN HIDDEN TESTS\n"
+            f"question('{name}/twice', kind='function', "
             f"calls=[[1.5], [-2.0]], result='expression', worth={TWICE})\n### END HIDDEN TESTS",
         ]
     )
 
 
 def write_sources(folder, changed=()):
-    """The sources of all assignments; ``changed`` says of some which weights there are and how often they count."""
+    """The sources of all assignments; ``changed`` says of some which weights there are and how
+    often they count.
+    """
     folder.mkdir(exist_ok=True)
     (folder / secret.FILE).write_text("5eed" * 16)
     for name in ASSIGNMENTS:
@@ -80,7 +87,9 @@ def drawn(name):
 
 
 def run_without_a_sandbox(jobs, finish, *others):
-    """What the sandbox would give for these notebooks, whose answers are numbers and names of functions."""
+    """What the sandbox would give for these notebooks, whose answers are numbers and names of
+    functions.
+    """
 
     def answer(job, name, about):
         code = "\n".join(cell["source"] for cell in job["cells"])
@@ -88,7 +97,12 @@ def run_without_a_sandbox(jobs, finish, *others):
         if found is None:
             return {"outcome": "missing"}
         if not about["calls"]:
-            return {"outcome": "recorded", "plain": to_plain(int(found[1])), "from": "check", "cell": 0}
+            return {
+                "outcome": "recorded",
+                "plain": to_plain(int(found[1])),
+                "from": "check",
+                "cell": 0,
+            }
         factor = {"twice": 2, "thrice": 3}[found[1]]
         said = {"outcome": "recorded", "from": "check", "cell": 0}
         for key, calls in (("plain", about["calls"]), ("secret", about["secret calls"])):
@@ -102,7 +116,9 @@ def run_without_a_sandbox(jobs, finish, *others):
                 "id": job["id"],
                 "finished": True,
                 "cells": [{"outcome": "done"}] * len(job["cells"]),
-                "answers": {name: answer(job, name, about) for name, about in job["questions"].items()},
+                "answers": {
+                    name: answer(job, name, about) for name, about in job["questions"].items()
+                },
                 "unknown questions": [],
                 "notes": [],
                 "runs": 1,
@@ -121,7 +137,10 @@ class Term:
         self.place, self.dice = place, dice
         self.students = [f"student-{number:03}" for number in range(students)]
         self.work = {}  # by student and assignment: the load, the function, when it was handed in
-        self.weights, self.times = dict.fromkeys(ASSIGNMENTS, WEIGHTS), dict.fromkeys(ASSIGNMENTS, 2)
+        self.weights, self.times = (
+            dict.fromkeys(ASSIGNMENTS, WEIGHTS),
+            dict.fromkeys(ASSIGNMENTS, 2),
+        )
         self.full_credit, self.never_lower, self.void = set(), set(), set()
         self.decided, self.extended = {}, {}
         self.points_before = {}
@@ -134,11 +153,18 @@ class Term:
         for student in self.students:
             for name in ASSIGNMENTS:
                 if self.happens(0.9):
-                    late = self.dice.choice([-30, -1, 0, 5, 30, 100, 400]) if self.happens(0.4) else -5
+                    late = (
+                        self.dice.choice([-30, -1, 0, 5, 30, 100, 400]) if self.happens(0.4) else -5
+                    )
                     self.work[student, name] = SimpleNamespace(
                         load=self.dice.choice(
                             [2 * own_weight(student, name)] * 5
-                            + [3 * own_weight(student, name), 1, None, 2 * self.dice.choice(WEIGHTS)]
+                            + [
+                                3 * own_weight(student, name),
+                                1,
+                                None,
+                                2 * self.dice.choice(WEIGHTS),
+                            ]
                         ),
                         function=self.dice.choice(["twice", "twice", "thrice", None]),
                         when=DUE[name] + datetime.timedelta(hours=late),
@@ -151,7 +177,9 @@ class Term:
     def write(self):
         submitted = self.place / "class" / "submitted"
         shutil.rmtree(submitted, ignore_errors=True)
-        odd = {student: f"{student} (2)" for student in self.students if self.happens(0.2)}  # who goes by two names
+        odd = {
+            student: f"{student} (2)" for student in self.students if self.happens(0.2)
+        }  # who goes by two names
         for (student, name), work in self.work.items():
             folder = submitted / odd.get(student, student) / name
             folder.mkdir(parents=True)
@@ -160,20 +188,34 @@ class Term:
                 for question, answer in (("load", work.load), ("twice", work.function))
                 if answer is not None
             ]
-            made = notebook(["from coursework import check, me\nme('')", *cells, f"'{name}/load'; check"])
+            made = notebook(
+                ["from coursework import check, me\nme('')", *cells, f"'{name}/load'; check"]
+            )
             nbformat.write(made, folder / f"{name}.ipynb")
             (folder / "timestamp.txt").write_text(f"{work.when.isoformat(' ')}.000000 UTC")
         table = [f"{student},{odd.get(student, '')}" for student in self.students]
         (self.place / "roster.csv").write_text("student,handed in as\n" + "\n".join(table) + "\n")
-        rules = ['time-zone = "UTC"', "[late]", "a-day = 0.1", "most = 0.5", "nothing-after-days = 10"]
+        rules = [
+            'time-zone = "UTC"',
+            "[late]",
+            "a-day = 0.1",
+            "most = 0.5",
+            "nothing-after-days = 10",
+        ]
         for name in ASSIGNMENTS:
             rules += [f"[assignments.{name}]", f"due = {DUE[name].isoformat()}"]
         for student in sorted({student for student, _ in self.extended}):
             rules.append(f"[extensions.{student}]")
             for (one, name), until in self.extended.items():
                 if one == student:
-                    more = until if until == "excused" else DUE[name] + datetime.timedelta(hours=until)
-                    rules.append(f'{name} = "excused"' if until == "excused" else f"{name} = {more.isoformat()}")
+                    more = (
+                        until if until == "excused" else DUE[name] + datetime.timedelta(hours=until)
+                    )
+                    rules.append(
+                        f'{name} = "excused"'
+                        if until == "excused"
+                        else f"{name} = {more.isoformat()}"
+                    )
         (self.place / "term.toml").write_text("\n".join(rules) + "\n")
 
     # -- what must come of it
@@ -223,13 +265,17 @@ class Term:
                 continue
             there = (student, name) in self.work
             shares.append(
-                self.points(student, name) * (1 - self.share_lost(student, name)) / self.worth(name) if there else 0
+                self.points(student, name) * (1 - self.share_lost(student, name)) / self.worth(name)
+                if there
+                else 0
             )
         return round(100 * sum(shares) / len(shares), 2) if shares else None
 
 
 def with_crashes(dice, monkeypatch, do):
-    """Do something during which the machine goes down now and then, as often as it takes to come to its end."""
+    """Do something during which the machine goes down now and then, as often as it takes to come to
+    its end.
+    """
     whole = Store.save
     for attempt in range(4):
         left = dice.randrange(1, 60) if attempt < 3 else None
@@ -267,7 +313,17 @@ def appeal_by_hand(ann, ben, record, name, decided, story):
         ben.appeal(record, name, "I did.", state=REJECTED, of=found, after=found.last, who="Ben")
     else:
         ben.append(
-            [ben.decision(record, name, 1, who="Ben", after=decided.id, appeal=found.id, comment="So it is.")],
+            [
+                ben.decision(
+                    record,
+                    name,
+                    1,
+                    who="Ben",
+                    after=decided.id,
+                    appeal=found.id,
+                    comment="So it is.",
+                )
+            ],
             collisions=True,
         )
     with pytest.raises(Collision):
@@ -277,7 +333,9 @@ def appeal_by_hand(ann, ben, record, name, decided, story):
 
 
 def judge_by_hand(term, store, dice):
-    """Two people decide: on appeals, one upon the other's decision, and some take their own back."""
+    """Two people decide: on appeals, one upon the other's decision, and some take their own
+    back.
+    """
     ann, ben = Ledger(store.folder), Ledger(store.folder)
     records = list(store.all())
     for record in dice.sample(records, min(len(records), 2 + len(records) // 10)):
@@ -299,7 +357,9 @@ def judge_by_hand(term, store, dice):
                 ben.append([ben.decision(record, name, second, who="Ben")], collisions=True)
         if story in ("again", "both, and the second taken back"):
             ben.read()
-            ben.append([ben.decision(record, name, second, who="Ben", after=one.id)], collisions=True)
+            ben.append(
+                [ben.decision(record, name, second, who="Ben", after=one.id)], collisions=True
+            )
             term.decided[key] = second
         if story == "both, and the second taken back":
             ben.take_back([record], name, "Ben")
@@ -324,7 +384,11 @@ def go_through(term, monkeypatch, cache):
     # Some questions are mended: another right answer, or a variant less; with a policy or without.
     changed = {}
     for name in dice.sample(ASSIGNMENTS, 3):
-        weights = [weight for weight in WEIGHTS if weight != dice.choice(WEIGHTS)] if term.happens(0.6) else WEIGHTS
+        weights = (
+            [weight for weight in WEIGHTS if weight != dice.choice(WEIGHTS)]
+            if term.happens(0.6)
+            else WEIGHTS
+        )
         times = dice.choice([2, 3])
         changed[name] = term.weights[name], term.times[name] = weights, times
         chosen = dice.choice(["", "never_lower", "full_credit", "void"])
@@ -339,11 +403,17 @@ def go_through(term, monkeypatch, cache):
     before = [record.points for record in Store(out).all()]
     regrade(out, solutions=solutions, policies=policies, dry_run=True)
     assert [record.points for record in Store(out).all()] == before
-    with_crashes(dice, monkeypatch, lambda: regrade(out, solutions=solutions, policies=policies, show=options["show"]))
+    with_crashes(
+        dice,
+        monkeypatch,
+        lambda: regrade(out, solutions=solutions, policies=policies, show=options["show"]),
+    )
     # Some hand in again, and all is graded once more.
     for (student, name), work in dice.sample(sorted(term.work.items(), key=lambda one: one[0]), 3):
         if work.function != "twice":
-            term.decided.pop((student, name, "twice"), None)  # it belonged to the answer that was looked at
+            term.decided.pop(
+                (student, name, "twice"), None
+            )  # it belonged to the answer that was looked at
         work.function = "twice"
     rewrite(term)
     with_crashes(dice, monkeypatch, lambda: grade(place / "class", out, **options))
@@ -360,17 +430,25 @@ def rewrite(term):
         made, work = nbformat.read(path, as_version=4), term.work[student, name]
         if work.function == "twice":
             made.cells = [cell for cell in made.cells if f"{name}/twice" not in cell.source]
-            made.cells.append(nbformat.v4.new_code_cell(f"check('{name}/twice', twice)", id="again"))
+            made.cells.append(
+                nbformat.v4.new_code_cell(f"check('{name}/twice', twice)", id="again")
+            )
             nbformat.write(made, path)
 
 
 def final_marks(term, store):
-    """What the system holds in the end, having been filled twice: by then, and after the last decisions."""
+    """What the system holds in the end, having been filled twice: by then, and after the last
+    decisions.
+    """
     rules, found = read_rules(term.place / "term.toml"), {}
     for name in ASSIGNMENTS:
         book = term.place / f"{name}.csv"
-        lines = [f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)]
-        book.write_text(f"Student,ID,SIS User ID,SIS Login ID,Section,{name} (7)\n" + "\n".join(lines) + "\n")
+        lines = [
+            f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)
+        ]
+        book.write_text(
+            f"Student,ID,SIS User ID,SIS Login ID,Section,{name} (7)\n" + "\n".join(lines) + "\n"
+        )
         filled = term.place / f"{name}-filled.csv"
         for _ in range(2):
             gradebooks.fill(book, gradebooks.Marks(store, name, rules), filled=filled)
@@ -411,10 +489,16 @@ def test_in_the_end_every_mark_is_right(number, tmp_path, monkeypatch, cache):
     decide_what_waits(store)
     found = final_marks(term, store)
     wrong = {
-        key: (mark, term.mark(*key)) for key, mark in found.items() if mark != pytest.approx(term.mark(*key), abs=0.006)
+        key: (mark, term.mark(*key))
+        for key, mark in found.items()
+        if mark != pytest.approx(term.mark(*key), abs=0.006)
     }
     assert not wrong
-    write_course(store, read_rules(tmp_path / "term.toml"), now=datetime.datetime(2027, 1, 1, tzinfo=datetime.UTC))
+    write_course(
+        store,
+        read_rules(tmp_path / "term.toml"),
+        now=datetime.datetime(2027, 1, 1, tzinfo=datetime.UTC),
+    )
     rows = (store.folder / "course" / "course.csv").read_text().splitlines()[1:]
     totals = {row.split(",")[0].strip('"'): row.split(",")[1].strip('"') for row in rows}
     for student in term.students:
@@ -426,7 +510,9 @@ def test_the_oracle_is_no_copy(tmp_path):
     """It would notice: with one point less in the story, or one day more, other marks are due."""
     term = Term(tmp_path, random.Random("one"), 3)
     student, name = "student-000", "hw0"
-    term.work[student, name] = SimpleNamespace(load=2 * own_weight(student, name), function="twice", when=DUE[name])
+    term.work[student, name] = SimpleNamespace(
+        load=2 * own_weight(student, name), function="twice", when=DUE[name]
+    )
     assert term.mark(student, name) == 5
     term.work[student, name].when += datetime.timedelta(hours=25)
     assert term.mark(student, name) == 4

@@ -1,4 +1,6 @@
-"""The layers of isolation: tried, named, refused when they are not enough, and whole for every user."""
+"""The layers of isolation: tried, named, refused when they are not enough, and whole for every
+user.
+"""
 
 import contextlib
 import ctypes
@@ -19,9 +21,15 @@ from coursework.grading.execution.isolation import LANDLOCK, LAYERS, LIMITS, NAM
 from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation, run_notebooks
 from coursework.grading.execution.warm_parent import WarmParent
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+)
 
-HONEST = {"id": "honest", "cells": [{"source": "answer = 6 * 7"}], "questions": {"q": {"variable": "answer"}}}
+HONEST = {
+    "id": "honest",
+    "cells": [{"source": "answer = 6 * 7"}],
+    "questions": {"q": {"variable": "answer"}},
+}
 
 
 def test_every_attempt_is_stopped_and_the_result_says_by_what():
@@ -51,7 +59,9 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
 
 @pytest.mark.long
 def test_each_layer_alone_stops_what_it_is_for():
-    """Every layer is tried by itself; here with all the others off, so that nothing else can have helped."""
+    """Every layer is tried by itself; here with all the others off, so that nothing else can have
+    helped.
+    """
     with Sandbox() as sandbox:
         available = sandbox.isolation_in_force().layers
     for layer in available:
@@ -72,7 +82,9 @@ def test_a_process_that_cannot_be_confined_runs_nothing():
             sandbox.run(HONEST)
 
 
-@pytest.mark.skipif(os.geteuid() != 0, reason="an ordinary user's warm parents are started one by one")
+@pytest.mark.skipif(
+    os.geteuid() != 0, reason="an ordinary user's warm parents are started one by one"
+)
 def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
     cell = {
         "source": "import os\nmine = [os.getuid(), os.getpid()]\nopen('kept', 'x').close()",
@@ -85,20 +97,31 @@ def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
         assert result["finished"] and result["isolation"] == alone.isolation_in_force().as_json()
         return result["answers"]["mine"]["plain"]["nodes"]
 
-    with Sandbox() as alone, Sandbox() as first, Sandbox(like=first) as one, Sandbox(like=first) as other:
+    with (
+        Sandbox() as alone,
+        Sandbox() as first,
+        Sandbox(like=first) as one,
+        Sandbox(like=first) as other,
+    ):
         assert one.process is None and one.warm_parent != other.warm_parent  # they are copies
         assert one.report == other.report == first.report and not one.report["not stopped"]
-        assert len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3  # each is a user of its own
+        assert (
+            len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3
+        )  # each is a user of its own
         os.kill(one.warm_parent, signal.SIGKILL)
         before = one.warm_parent
-        assert who(one) and one.process is None and one.warm_parent != before  # another copy took its place
+        assert (
+            who(one) and one.process is None and one.warm_parent != before
+        )  # another copy took its place
         first.close()
         assert who(other) and other.process is not None  # without the first, one of its own
     assert not any(psutil.pid_exists(sandbox) for sandbox in (before,))
 
 
 def test_a_crash_is_handled_by_nobody():
-    """Neither a file nor a program gets the memory of a crashed notebook, whatever the system has set up for that."""
+    """Neither a file nor a program gets the memory of a crashed notebook, whatever the system has
+    set up for that.
+    """
     cell = """
 import ctypes, resource
 library = ctypes.CDLL(None)
@@ -106,7 +129,12 @@ core = [*resource.getrlimit(resource.RLIMIT_CORE), library.prctl(3, 0, 0, 0, 0)]
 library.prctl(4, 1, 0, 0, 0)  # to be dumped again
 core.append(library.prctl(3, 0, 0, 0, 0))
 """
-    job = {"id": "one", "cells": [{"source": cell}], "questions": {"core": {"variable": "core"}}, "seed": 0}
+    job = {
+        "id": "one",
+        "cells": [{"source": cell}],
+        "questions": {"core": {"variable": "core"}},
+        "seed": 0,
+    }
     with Sandbox() as sandbox:
         result = sandbox.run(job)
     numbers = [int(node[1]) for node in result["answers"]["core"]["plain"]["nodes"]]
@@ -149,7 +177,9 @@ MAKERS = [["bubblewrap"], ["unshare"], []]
 
 def tried(makers, nobody):
     start = [sys.executable, "-c", *([AS_NOBODY, TRY] if nobody else [TRY])]
-    run = subprocess.run([*start, json.dumps(makers), json.dumps(HONEST)], capture_output=True, text=True, cwd="/")
+    run = subprocess.run(
+        [*start, json.dumps(makers), json.dumps(HONEST)], capture_output=True, text=True, cwd="/"
+    )
     assert run.returncode == 0, run.stderr
     return json.loads(run.stdout)
 
@@ -190,12 +220,19 @@ def test_root_is_as_safe(makers):
 
 # ---- the filter of system calls, followed instruction by instruction
 
-ALLOW, REFUSE, UNKNOWN, KILL = 0x7FFF0000, 0x00050000 | errno.EPERM, 0x00050000 | errno.ENOSYS, 0x80000000
+ALLOW, REFUSE, UNKNOWN, KILL = (
+    0x7FFF0000,
+    0x00050000 | errno.EPERM,
+    0x00050000 | errno.ENOSYS,
+    0x80000000,
+)
 OWN = 4711
 
 
 def decision(machine, number, *arguments, architecture=None):
-    """What the filter says to one system call: an interpreter of the few instructions that it has."""
+    """What the filter says to one system call: an interpreter of the few instructions that it
+    has.
+    """
     code = system_calls.program(OWN, machine)
     data = struct.pack(
         "=iI Q 6Q",
@@ -214,7 +251,11 @@ def decision(machine, number, *arguments, architecture=None):
         if operation == 0x20:
             accumulator = struct.unpack_from("=I", data, value)[0]
             continue
-        holds = {0x15: accumulator == value, 0x35: accumulator >= value, 0x45: bool(accumulator & value)}[operation]
+        holds = {
+            0x15: accumulator == value,
+            0x35: accumulator >= value,
+            0x45: bool(accumulator & value),
+        }[operation]
         position += if_true if holds else if_false
 
 
@@ -295,16 +336,35 @@ def test_the_filter_lets_computing_through_and_nothing_else(machine, numbers):
     # Threads, not processes, and never with new namespaces.
     thread = 0x003D0F00
     assert says("clone", thread) == ALLOW
-    assert says("clone", 17) == says("clone", 0x4111) == says("clone", thread | 0x10000000) == REFUSE
+    assert (
+        says("clone", 17) == says("clone", 0x4111) == says("clone", thread | 0x10000000) == REFUSE
+    )
     # Signals to itself only.
     assert says("kill", OWN, 9) == ALLOW
-    assert says("kill", OWN + 1, 9) == says("kill", -1, 9) == says("kill", 0, 9) == says("kill", -OWN, 9) == REFUSE
+    assert (
+        says("kill", OWN + 1, 9)
+        == says("kill", -1, 9)
+        == says("kill", 0, 9)
+        == says("kill", -OWN, 9)
+        == REFUSE
+    )
     # Limits may be asked for, not set.
     assert says("prlimit", 0, 7, 0, 1) == ALLOW
-    assert says("prlimit", 0, 7, 1 << 40, 0) == says("prlimit", 0, 7, 64, 0) == says("prlimit", 99, 7, 0, 1) == REFUSE
+    assert (
+        says("prlimit", 0, 7, 1 << 40, 0)
+        == says("prlimit", 0, 7, 64, 0)
+        == says("prlimit", 99, 7, 0, 1)
+        == REFUSE
+    )
     # No locks on shared files, no signals by way of a file, no pushing of input into a terminal.
     assert says("fcntl", 3, 1) == says("ioctl", 1, 0x5401) == says("prctl", 15) == ALLOW
-    assert says("fcntl", 3, 8) == says("fcntl", 3, 6) == says("ioctl", 0, 0x5412) == says("prctl", 1) == REFUSE
+    assert (
+        says("fcntl", 3, 8)
+        == says("fcntl", 3, 6)
+        == says("ioctl", 0, 0x5412)
+        == says("prctl", 1)
+        == REFUSE
+    )
     # New calls look as on a kernel that lacks them, so that C libraries do without.
     assert {decision(machine, number) for number in (425, 435, 437, 447, 470)} == {UNKNOWN}
     # Calls of another kind of program on the same machine.
@@ -325,8 +385,12 @@ def test_what_is_missing_is_said_with_its_remedy():
     layers[SECCOMP] = {"in force": False, "why not": "the container forbids it"}
     assert isolation.lacking({"layers": layers, "not stopped": []}) == []
     [line] = isolation.lacking({"layers": layers, "not stopped": ["start a program"]})
-    assert line.startswith("student code could start a program. Missing: seccomp (the container forbids it): use Linux")
-    [line] = isolation.lacking({"layers": layers, "not stopped": ["the layers do not work together: why"]})
+    assert line.startswith(
+        "student code could start a program. Missing: seccomp (the container forbids it): use Linux"
+    )
+    [line] = isolation.lacking(
+        {"layers": layers, "not stopped": ["the layers do not work together: why"]}
+    )
     assert line == "the layers do not work together: why"
 
 

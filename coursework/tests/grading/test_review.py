@@ -1,4 +1,6 @@
-"""The page to judge in: safe against other pages and against what it shows, and worked by keys alone."""
+"""The page to judge in: safe against other pages and against what it shows, and worked by keys
+alone.
+"""
 
 import base64
 import functools
@@ -29,7 +31,13 @@ from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 UNUSUAL = "sine = sm.sin(alpha)*sm.cos(beta)**7 + sm.Rational(3, 17)*sm.cos(alpha - 2*beta)"
 
@@ -40,10 +48,18 @@ def graded(tmp_path_factory):
     place = tmp_path_factory.mktemp("review")
     solutions, submissions = write_sources(place / "solutions"), place / "submissions"
     for number in range(6):
-        put(submissions, f"rounded-{number}", handed_in(sum=f"sine = sm.sin(alpha + beta)*1.000{number + 1}"))
+        put(
+            submissions,
+            f"rounded-{number}",
+            handed_in(sum=f"sine = sm.sin(alpha + beta)*1.000{number + 1}"),
+        )
     for student in ("copies", "was-copied"):
         put(submissions, student, handed_in(sum=UNUSUAL))
-    put(submissions, "pokes", handed_in(sum="try:\n    open('/etc/passwd')\nexcept OSError:\n    pass\nsine = 0"))
+    put(
+        submissions,
+        "pokes",
+        handed_in(sum="try:\n    open('/etc/passwd')\nexcept OSError:\n    pass\nsine = 0"),
+    )
     put(submissions, "hostile", handed_in(sum=f"# {SCRIPT}\nsine = sm.Symbol({SCRIPT!r})"))
     put(submissions, "right", handed_in())
     put(submissions, "blank", notebook([SETUP["turns"], RIGHT["turns/sum"]]))
@@ -123,7 +139,9 @@ class Served:
         return self.ask(f"/{self.secret}/answer/{cluster}", "POST", body, **headers)[0]
 
     def seen(self, cluster):
-        return re.search(r'name="seen" value="([^"]*)"', self.ask(f"/{self.secret}/answer/{cluster}")[1])[1]
+        return re.search(
+            r'name="seen" value="([^"]*)"', self.ask(f"/{self.secret}/answer/{cluster}")[1]
+        )[1]
 
 
 def first_of(served, show="waiting"):
@@ -173,7 +191,11 @@ def test_what_a_student_wrote_is_shown_and_never_obeyed(out):
         _, page = served.ask(f"/{served.secret}/answer/{cluster}")
         assert "&lt;script&gt;alert(1)" in page
         for shown in (text, page):
-            assert "<script>alert" not in shown and "<img" not in shown and "onerror=alert(2)>" not in shown
+            assert (
+                "<script>alert" not in shown
+                and "<img" not in shown
+                and "onerror=alert(2)>" not in shown
+            )
             assert len(re.findall("<script", shown)) == 1
         _, text = served.ask(f"/{served.secret}/?search=%22%3E%3Cscript%3Ealert(1)")
         assert "<script>alert" not in text
@@ -183,9 +205,16 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     with Served(out, grader="Ann") as served:
         served_class = Class(out)
         (cluster,) = [
-            one for one in served_class.clusters.values() if len(one.members) == 2 and one.mark.outcome == "wrong"
+            one
+            for one in served_class.clusters.values()
+            if len(one.members) == 2 and one.mark.outcome == "wrong"
         ]
-        assert served.decide(cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal").status == 303
+        assert (
+            served.decide(
+                cluster.id, "credit=0.5&comment=Half+of+it.&rubric=Copied%3F&why=appeal"
+            ).status
+            == 303
+        )
         place = [one.student for one in cluster.members].index("copies")
         assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
         for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400),
@@ -199,7 +228,11 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
     assert mark.messages == ("Copied?", "Half of it.") and mark.before.outcome == "wrong"
     assert regrade(out, solutions=graded / "solutions") == []
     page = (out / "feedback" / "was-copied" / "turns.html").read_text()
-    assert "Decided by a person" in page and "Half of it." in page and "appeal" not in page.partition("<main>")[2]
+    assert (
+        "Decided by a person" in page
+        and "Half of it." in page
+        and "appeal" not in page.partition("<main>")[2]
+    )
     # It is judged, and can be found as such, and taken back.
     with Served(out) as served:
         assert first_of(served, "decided") == cluster.id
@@ -214,7 +247,10 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         name = first_of(first)
         seen = first.seen(name)
         assert second.decide(name, "credit=0.5&comment=Half", seen).status == 303
-        headers = {"Origin": f"http://127.0.0.1:{first.port}", "Content_Type": "application/x-www-form-urlencoded"}
+        headers = {
+            "Origin": f"http://127.0.0.1:{first.port}",
+            "Content_Type": "application/x-www-form-urlencoded",
+        }
         body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
         response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
         assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
@@ -229,7 +265,10 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
 def test_hints_are_for_a_person_and_no_marks(out):
     served = Class(out)
     said = {
-        student: text for one in served.clusters.values() for student, text in one.hints if one.question == "turns/sum"
+        student: text
+        for one in served.clusters.values()
+        for student, text in one.hints
+        if one.question == "turns/sum"
     }
     hints = [(student, text) for one in served.clusters.values() for student, text in one.hints]
     assert ("copies", "the same unusual wrong answer as 1 other") in hints
@@ -247,13 +286,19 @@ def test_equal_code_is_a_hint_only_where_few_have_it(out):
     ]
 
     def in_cell_2(record):
-        return replace(record, answers={**record.answers, "turns/sum": replace(record.answer("turns/sum"), cell=2)})
+        return replace(
+            record,
+            answers={**record.answers, "turns/sum": replace(record.answer("turns/sum"), cell=2)},
+        )
 
     one, other = map(in_cell_2, records[:2])
     found = hints_of([one, other, *records[2:]], lambda digest: same)
     assert any("sign by sign" in said for said in found[one.student, "turns/sum"])
     everybody = list(map(in_cell_2, records))
-    assert not any("sign by sign" in said for said in sum(hints_of(everybody, lambda digest: same).values(), []))
+    assert not any(
+        "sign by sign" in said
+        for said in sum(hints_of(everybody, lambda digest: same).values(), [])
+    )
 
 
 def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
@@ -272,9 +317,15 @@ def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
         }
 
     shared = said_of(["aaaaaa", "bbbbbb", "cccccc"], ["bbbbbb", "aaaaaa"], ["dddddd"])
-    assert shared[one] == shared[other] == ["2 unusual wrong answers were tried on the way that one other tried, too"]
+    assert (
+        shared[one]
+        == shared[other]
+        == ["2 unusual wrong answers were tried on the way that one other tried, too"]
+    )
     assert shared[third] == []
-    assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())  # one may be chance
+    assert not any(
+        said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values()
+    )  # one may be chance
     usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
     assert not any(usual.values())
 
@@ -329,7 +380,8 @@ PLOT = [
     ("code", '### BEGIN SOLUTION\nseen = "It bends upwards, as a square does."\n### END SOLUTION'),
     (
         "code",
-        "check('plots/seen', seen)\n### BEGIN HIDDEN TESTS\nquestion('plots/seen', kind='free text', worth=4, "
+        "check('plots/seen', seen)\n### BEGIN HIDDEN TESTS\n"
+        "question('plots/seen', kind='free text', worth=4, "
         "rubric=['sees the bend', 'names the square'])\n### END HIDDEN TESTS",
     ),
 ]
@@ -354,16 +406,33 @@ def plotted(tmp_path_factory):
     nbformat.write(notebook(PLOT), place / "solutions" / "plots.ipynb")
     drawn = {
         "ada": [{"image/png": picture("C0"), "text/plain": "<Figure>"}],
-        "ben": [{"image/png": picture("C3")}, {"image/png": base64.b64encode(SCRIPT.encode()).decode()}],
-        "eve": [{"image/svg+xml": f"<svg>{SCRIPT}</svg>"}, {"image/png": f'"> {SCRIPT}'}, {"text/html": SCRIPT}],
+        "ben": [
+            {"image/png": picture("C3")},
+            {"image/png": base64.b64encode(SCRIPT.encode()).decode()},
+        ],
+        "eve": [
+            {"image/svg+xml": f"<svg>{SCRIPT}</svg>"},
+            {"image/png": f'"> {SCRIPT}'},
+            {"text/html": SCRIPT},
+        ],
     }
     for student, shown in drawn.items():
-        cells = [PLOT[0], "plt.plot([0, 1, 2], [0, 1, 4])", f"seen = 'It bends upwards, says {student}.'"]
+        cells = [
+            PLOT[0],
+            "plt.plot([0, 1, 2], [0, 1, 4])",
+            f"seen = 'It bends upwards, says {student}.'",
+        ]
         made = notebook([*cells, "check('plots/seen', seen)"])
         made.cells[2].source = f"plt.plot([0, 1, 2], [0, 1, 4])\n{made.cells[2].source}"
         made.cells[2].outputs = [nbformat.v4.new_output("display_data", data) for data in shown]
         put(place / "submissions", student, made, "plots.ipynb")
-    grade(place / "submissions", place / "out", solutions=place / "solutions", limits=LIMITS, show=io.StringIO())
+    grade(
+        place / "submissions",
+        place / "out",
+        solutions=place / "solutions",
+        limits=LIMITS,
+        show=io.StringIO(),
+    )
     return place / "out"
 
 
@@ -377,7 +446,10 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
     for page in pages:
         (student,) = re.findall(r"bends upwards, says (\w+)", page.partition("The cells of")[0])
         beside, _, code = page.partition("<form")
-        assert beside.count('<img src="data:image/png;base64,') == (student != "eve") and "<img" not in code
+        assert (
+            beside.count('<img src="data:image/png;base64,') == (student != "eve")
+            and "<img" not in code
+        )
         assert f'<p class="prose">It bends upwards, says {student}.</p>' in beside
         assert "sees the bend" in page and "<svg>" not in page and "onerror=alert(2)>" not in page
         assert len(re.findall("<script", page)) == 1
@@ -389,8 +461,11 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
 def on_a_telephone(out, plotted, browser, scheme="light"):
     """Open the pages for instructors and for students, one after another."""
     with Served(out) as served, Served(plotted) as of_plots:
-        # The page's own policy lets no script in; it is tested elsewhere, and set aside for this one.
-        context = browser.new_context(color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True)
+        # The page's own policy lets no script in; it is tested elsewhere, and set aside for this
+        # one.
+        context = browser.new_context(
+            color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True
+        )
         page = context.new_page()
         written = [out / "report.html", *(out / "feedback").glob("[hb]*/turns.html")]
         assert len(written) == 3
@@ -412,19 +487,28 @@ def test_pages_fit_a_telephone(out, plotted, browser):
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_pages_are_accessible(out, plotted, browser, scheme):
-    places = (folder / "node_modules" / "axe-core" / "axe.min.js" for folder in (PROJECT, PROJECT.parent))
+    places = (
+        folder / "node_modules" / "axe-core" / "axe.min.js" for folder in (PROJECT, PROJECT.parent)
+    )
     axe = next(filter(Path.is_file, places), None)
     if axe is None:
-        pytest.skip("axe-core is not here: `npm install --no-save axe-core` in the folder of this project fetches it")
+        pytest.skip(
+            "axe-core is not here: `npm install --no-save axe-core` in the folder of this project "
+            "fetches it"
+        )
     for page in on_a_telephone(out, plotted, browser, scheme):
         page.evaluate(axe.read_text("utf8"))
-        found = page.evaluate("async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)")
+        found = page.evaluate(
+            "async () => (await axe.run()).violations.map(v => v.id + ': ' + v.nodes[0].html)"
+        )
         assert found == []
 
 
 @pytest.mark.long
 def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
-    """A class of a hundred, each answer different: every one decided, without a mouse, and nothing lost."""
+    """A class of a hundred, each answer different: every one decided, without a mouse, and nothing
+    lost.
+    """
     out = shutil.copytree(graded / "out", tmp_path / "out")
     store = Store(out)
     found = store.read("rounded-0", "turns")
@@ -445,7 +529,9 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
         page.keyboard.press("n")
         for number in range(100):
             # The page's policy forbids to wait by a script; what is seen on it does as well.
-            page.locator(".steps", has_text=re.compile(rf"\b1 of {100 - number}\b")).wait_for(timeout=60_000)
+            page.locator(".steps", has_text=re.compile(rf"\b1 of {100 - number}\b")).wait_for(
+                timeout=60_000
+            )
             if number == 3:
                 page.keyboard.press("c")
                 page.keyboard.type("Rounded: 4 digits")  # a sign in a field is no command
@@ -462,7 +548,8 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
 
 
-#: Before the command runs: what Windows has not, and how it locks a file. What others made knows its system already.
+#: Before the command runs: what Windows has not, and how it locks a file. What others made knows
+#: its system already.
 ON_WINDOWS = """
 import os, subprocess, sys, types
 import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web
@@ -497,16 +584,23 @@ def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
     command = "main(sys.argv[1:])"
     done = on_windows(command, "export", out, "--feedback", tmp_path / "feedback.zip")
     assert done.returncode == 0 and (tmp_path / "feedback.zip").is_file(), done.stderr
-    (tmp_path / "rules.toml").write_text('time-zone = "Europe/Paris"\n[assignments.turns]\ndue = 2026-10-05T23:59:00\n')
+    (tmp_path / "rules.toml").write_text(
+        'time-zone = "Europe/Paris"\n[assignments.turns]\ndue = 2026-10-05T23:59:00\n'
+    )
     done = on_windows(command, "term", out, "--rules", tmp_path / "rules.toml")
     assert done.returncode == 0 and "course.csv" in done.stdout, done.stderr
     other = shutil.copytree(out, tmp_path / "other")
-    program = "from pathlib import Path\nfrom coursework.grading.review import Class\nClass(Path(sys.argv[1]), (1, 1))"
+    program = (
+        "from pathlib import Path\nfrom coursework.grading.review import Class\n"
+        "Class(Path(sys.argv[1]), (1, 1))"
+    )
     done = on_windows(program, other)
     assert done.returncode == 0, done.stderr
     for arguments in (("grade", out, "--out", tmp_path / "new"), ("regrade", out)):
         done = on_windows(command, *arguments)
-        assert done.returncode == 1 and "WSL" in done.stderr and "Traceback" not in done.stderr, done.stderr
+        assert done.returncode == 1 and "WSL" in done.stderr and "Traceback" not in done.stderr, (
+            done.stderr
+        )
         assert len(done.stderr.splitlines()) == 1
 
 

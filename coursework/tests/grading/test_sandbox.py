@@ -1,4 +1,6 @@
-"""Notebooks in, answers out as plain data: what is recorded, what is named, and what costs nobody else."""
+"""Notebooks in, answers out as plain data: what is recorded, what is named, and what costs nobody
+else.
+"""
 
 import base64
 import contextlib
@@ -17,9 +19,17 @@ import pytest
 from coursework.grading.execution import records
 from coursework.grading.execution.sandbox import Limits, Sandbox, WorkerDied, run_notebooks
 
-pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="student code runs on Linux only")
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="student code runs on Linux only"
+)
 
-LIMITS = Limits(cell_seconds=1, cell_wall_seconds=60, answer_seconds=0.5, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=1,
+    cell_wall_seconds=60,
+    answer_seconds=0.5,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 IMPORT = "from coursework import check"
 
 
@@ -31,14 +41,17 @@ def sandbox():
 
 def notebook(*cells, questions=None, **others):
     cells = [
-        {"source": cell} if isinstance(cell, str) else {"source": cell[1], "execution_count": cell[0]}
+        {"source": cell}
+        if isinstance(cell, str)
+        else {"source": cell[1], "execution_count": cell[0]}
         for cell in (IMPORT, *cells)
     ]
     return {
         "id": "n",
         "cells": cells,
         "questions": {
-            name: about if isinstance(about, dict) else {"variable": about} for name, about in (questions or {}).items()
+            name: about if isinstance(about, dict) else {"variable": about}
+            for name, about in (questions or {}).items()
         },
     } | others
 
@@ -56,29 +69,49 @@ def outcomes(result):
 
 def test_answers_are_recorded_where_they_are_checked(sandbox):
     result = sandbox.run(notebook("a = 3", "check('q', a); a = 4", questions={"q": "a"}))
-    assert result["answers"] == {"q": {"outcome": "recorded", "plain": integer(3), "from": "check", "cell": 2}}
+    assert result["answers"] == {
+        "q": {"outcome": "recorded", "plain": integer(3), "from": "check", "cell": 2}
+    }
     assert result["finished"] is True and result["runs"] == 1 and result["notes"] == []
 
 
 def test_without_the_check_the_variable_counts(sandbox):
-    result = sandbox.run(notebook("a = 3\na = 4", "b = ...", questions={"q": "a", "blank": "b", "none": "c"}))
-    assert result["answers"]["q"] == {"outcome": "recorded", "plain": integer(4), "from": "variable", "cell": None}
+    result = sandbox.run(
+        notebook("a = 3\na = 4", "b = ...", questions={"q": "a", "blank": "b", "none": "c"})
+    )
+    assert result["answers"]["q"] == {
+        "outcome": "recorded",
+        "plain": integer(4),
+        "from": "variable",
+        "cell": None,
+    }
     assert result["answers"]["blank"]["plain"]["value"] == ["blank"]
     assert result["answers"]["none"] == {"outcome": "missing"}
 
 
 def test_the_last_check_that_can_be_read_counts(sandbox):
     result = sandbox.run(
-        notebook("check('q', 1); check('q', 2); check('q', object())", "check('other', 1)", questions={"q": None})
+        notebook(
+            "check('q', 1); check('q', 2); check('q', object())",
+            "check('other', 1)",
+            questions={"q": None},
+        )
     )
     assert result["answers"]["q"]["plain"] == integer(2)
     assert result["unknown questions"] == ["other"]
 
 
 def test_what_is_not_plain_data_is_named(sandbox):
-    result = sandbox.run(notebook("check('q', object())", "class A: pass\nx = A()", questions={"q": None, "r": "x"}))
-    assert result["answers"]["q"]["outcome"] == "unreadable" and "`object`" in result["answers"]["q"]["why"]
-    assert result["answers"]["r"]["outcome"] == "unreadable" and "`A`" in result["answers"]["r"]["why"]
+    result = sandbox.run(
+        notebook("check('q', object())", "class A: pass\nx = A()", questions={"q": None, "r": "x"})
+    )
+    assert (
+        result["answers"]["q"]["outcome"] == "unreadable"
+        and "`object`" in result["answers"]["q"]["why"]
+    )
+    assert (
+        result["answers"]["r"]["outcome"] == "unreadable" and "`A`" in result["answers"]["r"]["why"]
+    )
 
 
 def test_a_check_tells_nothing_and_breaks_nothing(sandbox):
@@ -86,7 +119,8 @@ def test_a_check_tells_nothing_and_breaks_nothing(sandbox):
         notebook(
             "r = check('q', 1)\nassert 'correct' not in repr(r).lower()",
             "import coursework\ncoursework.check('s', 2)",
-            "from coursework import check, hint, progress\nhint('q'); progress()\nassert check('q', 1).outcome is None",
+            "from coursework import check, hint, progress\nhint('q'); progress()\n"
+            "assert check('q', 1).outcome is None",
             "from coursework.grading import sandbox",
             questions={"q": None, "s": None},
         )
@@ -104,7 +138,11 @@ def calls(*arguments, kind="lists"):
 
 def test_a_function_is_called_with_the_given_arguments(sandbox):
     result = sandbox.run(
-        notebook("def f(x): return x[0] + x[1]", "check('q', f)", questions={"q": calls([[1, 2]], [[3, 4]], [[]])})
+        notebook(
+            "def f(x): return x[0] + x[1]",
+            "check('q', f)",
+            questions={"q": calls([[1, 2]], [[3, 4]], [[]])},
+        )
     )
     plain = result["answers"]["q"]["plain"]
     assert plain["value"] == [
@@ -118,34 +156,49 @@ def test_a_function_is_called_with_the_given_arguments(sandbox):
 def test_a_function_is_given_arrays_where_the_job_says_so(sandbox):
     result = sandbox.run(
         notebook(
-            "def f(x, n): return (x * n).sum() + x.ndim", questions={"q": calls([[[1, 2], [3, 4]], 10], kind="arrays")}
+            "def f(x, n): return (x * n).sum() + x.ndim",
+            questions={"q": calls([[[1, 2], [3, 4]], 10], kind="arrays")},
         )
     )
     assert result["answers"]["q"]["plain"]["nodes"] == [["integer", "102"]]
 
 
 def test_a_function_that_changes_its_arguments_meets_them_fresh(sandbox):
-    job = notebook("def f(x): x.append(1); return len(x)", "check('q', f); check('q', f)", questions={"q": calls([[]])})
+    job = notebook(
+        "def f(x): x.append(1); return len(x)",
+        "check('q', f); check('q', f)",
+        questions={"q": calls([[]])},
+    )
     assert sandbox.run(job)["answers"]["q"]["plain"]["nodes"] == [["integer", "1"]]
 
 
 def test_a_function_that_never_ends_costs_only_its_own_question(sandbox):
     result = sandbox.run(
         notebook(
-            "def f(x):\n    while True: pass", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}
+            "def f(x):\n    while True: pass",
+            "check('q', f); check('r', 5)",
+            questions={"q": calls([1]), "r": None},
         )
     )
-    assert result["answers"]["q"]["outcome"] == "unreadable" and "longer" in result["answers"]["q"]["why"]
+    assert (
+        result["answers"]["q"]["outcome"] == "unreadable"
+        and "longer" in result["answers"]["q"]["why"]
+    )
     assert result["answers"]["r"]["plain"] == integer(5)
 
 
 def test_a_function_that_ends_the_process_costs_only_its_own_question(sandbox):
     result = sandbox.run(
         notebook(
-            "import os\ndef f(x): os._exit(3)", "check('q', f); check('r', 5)", questions={"q": calls([1]), "r": None}
+            "import os\ndef f(x): os._exit(3)",
+            "check('q', f); check('r', 5)",
+            questions={"q": calls([1]), "r": None},
         )
     )
-    assert result["answers"]["q"] == {"outcome": "exited", "error": "The process was left with code 3."}
+    assert result["answers"]["q"] == {
+        "outcome": "exited",
+        "error": "The process was left with code 3.",
+    }
     assert result["answers"]["r"]["plain"] == integer(5)
     assert outcomes(result) == ["done", "done"] and result["runs"] == 2
 
@@ -225,7 +278,9 @@ def test_a_thread_is_blamed_on_the_cell_that_left_it(sandbox):
 
 def test_an_answer_stands_though_a_later_cell_never_ends(sandbox):
     result = sandbox.run(
-        notebook("check('q', 1)", "while True: pass", "check('r', 2)", questions={"q": None, "r": None})
+        notebook(
+            "check('q', 1)", "while True: pass", "check('r', 2)", questions={"q": None, "r": None}
+        )
     )
     assert outcomes(result) == ["done", "timeout", "done"]
     assert [result["answers"][name]["plain"] for name in "qr"] == [integer(1), integer(2)]
@@ -234,7 +289,8 @@ def test_an_answer_stands_though_a_later_cell_never_ends(sandbox):
 def test_an_earlier_cells_damage_is_undone(sandbox):
     result = sandbox.run(
         notebook(
-            "import signal, sys\nsys.setrecursionlimit(50)\nsignal.signal(signal.SIGPROF, signal.SIG_IGN)",
+            "import signal, sys\nsys.setrecursionlimit(50)\n"
+            "signal.signal(signal.SIGPROF, signal.SIG_IGN)",
             "import sympy\ncheck('q', sympy.trigsimp(sympy.sin(sympy.Symbol('x'))**2 + "
             "sympy.cos(sympy.Symbol('x'))**2))",
             "while True: pass",
@@ -250,7 +306,10 @@ def test_an_earlier_cells_damage_is_undone(sandbox):
 
 def test_a_notebook_that_works_only_out_of_order_is_told_so(sandbox):
     job = notebook(
-        (3, "check('q', later + 1)"), (2, "later = 1"), (None, "check('r', later)"), questions={"q": None, "r": None}
+        (3, "check('q', later + 1)"),
+        (2, "later = 1"),
+        (None, "check('r', later)"),
+        questions={"q": None, "r": None},
     )
     result = sandbox.run(job)
     assert result["answers"]["q"]["plain"] == integer(2)
@@ -260,7 +319,9 @@ def test_a_notebook_that_works_only_out_of_order_is_told_so(sandbox):
 
 
 def test_top_to_bottom_is_what_counts_where_it_works(sandbox):
-    result = sandbox.run(notebook((5, "a = 1"), (4, "a = 2"), (3, "check('q', a)"), questions={"q": None}))
+    result = sandbox.run(
+        notebook((5, "a = 1"), (4, "a = 2"), (3, "check('q', a)"), questions={"q": None})
+    )
     assert result["answers"]["q"]["plain"] == integer(2) and result["notes"] == []
 
 
@@ -280,30 +341,39 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
         "%%time\nx = 1",
         "%time x = 1",
         "%%capture output\nx = 1",
-        "import matplotlib.pyplot as plt\nplt.plot([1, 2]); plt.title('$x^2$'); plt.savefig('f.png'); plt.show()",
+        "import matplotlib.pyplot as plt\nplt.plot([1, 2]); plt.title('$x^2$'); "
+        "plt.savefig('f.png'); plt.show()",
         "import warnings\nwarnings.warn('careful'); import numpy as np; np.array([1.0]) / 0",
         "import sympy as sm\nsm.init_printing(use_latex='mathjax')\nsm.Symbol('x')\n"
         "import sympy.physics.mechanics as me\nme.init_vprinting()\n"
         "a, b = me.dynamicsymbols('a, b')\nN, A = me.ReferenceFrame('N'), me.ReferenceFrame('A')\n"
-        "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * A.dcm(N))",
-        "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); np.load('a.npy')",
+        "A.orient_body_fixed(N, (a, b, 0), 'zxz'); A.ang_vel_in(N); sm.simplify(A.dcm(N).T * "
+        "A.dcm(N))",
+        "import numpy as np\nnp.linalg.eig(np.random.rand(50, 50)); np.save('a', np.eye(3)); "
+        "np.load('a.npy')",
         "import sympy as sm, numpy as np\nx = sm.Symbol('x')\nassert sm.lambdify(x, sm.sin(x), "
         "'numpy')(np.zeros(2)).size == 2",
-        "from concurrent.futures import ThreadPoolExecutor\nassert list(ThreadPoolExecutor(4).map(abs, [-1])) == [1]",
+        "from concurrent.futures import ThreadPoolExecutor\n"
+        "assert list(ThreadPoolExecutor(4).map(abs, [-1])) == [1]",
         "import tempfile\nwith tempfile.TemporaryDirectory() as d: open(d + '/x', 'w').write('x')",
         "import pathlib, shutil\npathlib.Path('a').write_text('x'); shutil.copyfile('a', 'b'); "
         "pathlib.Path('b').unlink()",
         "from IPython.display import display, HTML, Latex, Math\ndisplay(Math('x'), HTML('<b>'))",
-        "from ipywidgets import interact, FloatSlider\n@interact(x=FloatSlider())\ndef f(x=1.0): return x",
+        "from ipywidgets import interact, FloatSlider\n@interact(x=FloatSlider())\n"
+        "def f(x=1.0): return x",
         "import dataclasses, enum, pickle, copy\n@dataclasses.dataclass\nclass P: x: int = 1\n"
         "assert pickle.loads(pickle.dumps(P())) == copy.deepcopy(P())",
-        "from scipy.spatial.transform import Rotation\nRotation.from_euler('ZXY', [1, 2, 3]).as_matrix()",
-        "import urllib.request, asyncio, multiprocessing, sqlite3, decimal, fractions, zoneinfo, ctypes, unittest",
+        "from scipy.spatial.transform import Rotation\n"
+        "Rotation.from_euler('ZXY', [1, 2, 3]).as_matrix()",
+        "import urllib.request, asyncio, multiprocessing, sqlite3, decimal, fractions, zoneinfo, "
+        "ctypes, unittest",
         "print('x' * 10_000_000)",
     ],
 )
 def test_honest_cells_run(sandbox, source, monkeypatch):
-    monkeypatch.setattr(sandbox, "limits", Limits())  # they are to come to their end, also on a slow machine
+    monkeypatch.setattr(
+        sandbox, "limits", Limits()
+    )  # they are to come to their end, also on a slow machine
     if "scipy" in source:
         pytest.importorskip("scipy")
     result = sandbox.run(notebook("x = 1", source, "check('q', x)", questions={"q": None}))
@@ -321,13 +391,18 @@ def test_honest_cells_run(sandbox, source, monkeypatch):
         [(7, "12"), (8, "check('q', eval(In[7]) + 1)")],
         ["import asyncio\nasync def f():\n    await asyncio.sleep(0)\n    return 13", "x = await f()", "check('q', x)"],
         ["import asyncio", "check('q', (await asyncio.gather(asyncio.sleep(0, 13)))[0])"],
-        ["%%writefile own.py\nvalue = 12", "%%writefile -a own.py\nvalue += 1", "import own\ncheck('q', own.value)"],
+        ["%%writefile own.py\nvalue = 12", "%%writefile -a own.py\nvalue += 1", "import own\ncheck('q', "
+            "own.value)"],
         ["from helpers import own\ncheck('q', own.value)"],
         ["check('q', int(open('data/table.csv').read().split(',')[1]))"],
     ],
 )  # fmt: skip
 def test_cells_run_as_in_jupyter(sandbox, cells):
-    beside = {"helpers/own.py": b"value = 13", "helpers/__init__.py": b"", "data/table.csv": b"12,13"}
+    beside = {
+        "helpers/own.py": b"value = 13",
+        "helpers/__init__.py": b"",
+        "data/table.csv": b"12,13",
+    }
     files = {name: base64.b64encode(data).decode() for name, data in beside.items()}
     result = sandbox.run(notebook(*cells, questions={"q": None}) | {"files": files})
     assert result["answers"]["q"].get("plain") == integer(13), result["cells"]
@@ -337,7 +412,10 @@ def test_cells_run_as_in_jupyter(sandbox, cells):
     "source, hint",
     [
         ("import socket\nsocket.create_connection(('192.0.2.1', 80), 1)", "tried to use a network"),
-        ("import urllib.request\nurllib.request.urlopen('https://uni.example/')", "tried to use a network"),
+        (
+            "import urllib.request\nurllib.request.urlopen('https://uni.example/')",
+            "tried to use a network",
+        ),
         ("import asyncio\nasyncio.new_event_loop()", None),  # a pair of sockets that leads nowhere
         ("import coursework\ncoursework.check = check = print", "replaced the check"),
         ("import os\nos.system('ls')", "started a program"),
@@ -352,13 +430,22 @@ def test_what_an_exercise_does_not_need_is_a_hint(sandbox, source, hint):
 
 def test_files_beside_lead_nowhere(sandbox):
     """Names come from an archive and were looked at before; here they may be anything."""
-    files = {"../outside": "", "/tmp/outside": "", "a/../../outside": "", "fine": base64.b64encode(b"x").decode()}
-    result = sandbox.run(notebook("check('q', len(open('fine').read()))", questions={"q": None}) | {"files": files})
+    files = {
+        "../outside": "",
+        "/tmp/outside": "",
+        "a/../../outside": "",
+        "fine": base64.b64encode(b"x").decode(),
+    }
+    result = sandbox.run(
+        notebook("check('q', len(open('fine').read()))", questions={"q": None}) | {"files": files}
+    )
     assert result["answers"]["q"]["plain"] == integer(1)
 
 
 def test_a_cell_of_text_only_for_the_shell_does_nothing(sandbox):
-    result = sandbox.run(notebook("%%bash\nrm -rf *", "%%html\n<b>x</b>", "?print", "", "# nothing"))
+    result = sandbox.run(
+        notebook("%%bash\nrm -rf *", "%%html\n<b>x</b>", "?print", "", "# nothing")
+    )
     assert outcomes(result) == ["done"] * 5
 
 
@@ -376,7 +463,8 @@ def class_of_notebooks():
         "import os\ncheck('r', os.getcwd() != ''); open(os.path.abspath('none'))",
     ]
     return [
-        notebook(source, "check('s', 1)", questions={"q": None, "r": None, "s": None}) | {"id": f"{number}"}
+        notebook(source, "check('s', 1)", questions={"q": None, "r": None, "s": None})
+        | {"id": f"{number}"}
         for number, source in enumerate(sources * 3)
     ]
 
@@ -397,15 +485,21 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
                 warm_parents()[0].kill()
             yield job
 
-    assert bytes_of(run_notebooks(killing(class_of_notebooks()), workers=2, limits=LIMITS)) == bytes_of(once)
+    assert bytes_of(
+        run_notebooks(killing(class_of_notebooks()), workers=2, limits=LIMITS)
+    ) == bytes_of(once)
 
 
 @pytest.mark.sampled(2, of="sandboxes under strain")
 def test_a_busy_machine_costs_nobody_an_answer():
-    """What a notebook waits for while others compute is not its own time: three share one processor here."""
+    """What a notebook waits for while others compute is not its own time: three share one processor
+    here.
+    """
     start = "import time\nbegun = time.process_time()"
     source = "while time.process_time() - begun < 1.2:\n    pass\ncheck('q', 1)"
-    jobs = [notebook(start, source, questions={"q": None}) | {"id": str(number)} for number in range(3)]
+    jobs = [
+        notebook(start, source, questions={"q": None}) | {"id": str(number)} for number in range(3)
+    ]
     limits = Limits(cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5)
     before = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {min(before)})
@@ -422,7 +516,10 @@ def test_a_busy_machine_costs_nobody_an_answer():
         ([(0.5, 0.0, 1)] * 3, 1.5),  # asleep: woken at each tick, and at once
         ([(0.5, 0.5, 0)] * 3, 1.5),  # alone at work
         ([(0.5, 0.1, 30)] * 3, 0.3),  # at work and reading files, a fifth of a busy machine
-        ([(0.5, 0.001, 0)] * 3, 0.003),  # at work, and nearly nothing of a machine that is very busy
+        (
+            [(0.5, 0.001, 0)] * 3,
+            0.003,
+        ),  # at work, and nearly nothing of a machine that is very busy
         ([(40.0, 0.001, 0)], 0.001),
         ([(40.0, 0.0, 1)], 0.5),  # nobody knows for how long it slept
     ],
@@ -441,7 +538,9 @@ def test_what_a_busy_machine_withholds_is_charged_to_nobody(monkeypatch, ticks, 
 
 @pytest.mark.long
 def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
-    limits = Limits(cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5, notebook_wall_seconds=20)
+    limits = Limits(
+        cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5, notebook_wall_seconds=20
+    )
     begun = "import time\nbegun = time.process_time()"
     source = "while time.process_time() - begun < 0.1:\n    pass\ncheck('q', 1)"
     processor = min(os.sched_getaffinity(0))
@@ -451,7 +550,9 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
         for process in (first, *first.children(recursive=True)):
             process.nice(19)
             process.cpu_affinity([processor])
-            with contextlib.suppress(OSError):  # where processor time is shared out by sessions first
+            with contextlib.suppress(
+                OSError
+            ):  # where processor time is shared out by sessions first
                 Path(f"/proc/{process.pid}/autogroup").write_text("19")
         other = subprocess.Popen([sys.executable, "-c", "while True: pass"])
         try:
@@ -520,7 +621,9 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 
 @pytest.fixture(params=["with bubblewrap", "without bubblewrap"])
 def environment(request, tmp_path):
-    """The environment of a grader that finds bubblewrap, or does not, with its own folder for what is temporary."""
+    """The environment of a grader that finds bubblewrap, or does not, with its own folder for what
+    is temporary.
+    """
     bubblewrap = shutil.which("bwrap")
     if request.param == "with bubblewrap" and bubblewrap is None:
         pytest.skip("bubblewrap is not installed")
@@ -533,7 +636,9 @@ def environment(request, tmp_path):
 
 
 def folders_in(place):
-    """What is ours: Python itself tries such a place with an empty file, which a kill may leave there."""
+    """What is ours: Python itself tries such a place with an empty file, which a kill may leave
+    there.
+    """
     return [entry.name for entry in os.scandir(place) if entry.is_dir()]
 
 
@@ -571,8 +676,12 @@ def end_at_once(grader):
 
 @pytest.mark.sampled(2, of="graders that are killed")
 def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
-    """Killed as soon as there is a folder: the libraries are still being loaded then, and nothing has been tried."""
-    grader = subprocess.Popen([sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment)
+    """Killed as soon as there is a folder: the libraries are still being loaded then, and nothing
+    has been tried.
+    """
+    grader = subprocess.Popen(
+        [sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment
+    )
     while not (folders_in(environment["TMPDIR"]) and len(children_of(grader)) >= 2):
         assert grader.poll() is None
     end_at_once(grader)
@@ -585,7 +694,11 @@ def test_a_job_that_is_no_job_is_refused(sandbox):
 
 
 def test_a_large_notebook_and_a_large_answer_come_through(sandbox):
-    source = "import sympy\n# " + "x" * 3_000_000 + "\nm = sympy.symbols('m:2000')\ncheck('q', sympy.Add(*m))"
+    source = (
+        "import sympy\n# "
+        + "x" * 3_000_000
+        + "\nm = sympy.symbols('m:2000')\ncheck('q', sympy.Add(*m))"
+    )
     result = sandbox.run(notebook(source, questions={"q": None}))
     assert len(result["answers"]["q"]["plain"]["nodes"]) == 2001
 
@@ -604,7 +717,11 @@ def test_records_may_come_in_any_pieces():
     data = (json.dumps(RECORD) + "\n\n" + json.dumps({"done": True}) + "\n").encode()
     for size in (1, 2, 7, 1000):
         reader = records.Records(1)
-        found = [record for start in range(0, len(data), size) for record in reader.feed(data[start : start + size])]
+        found = [
+            record
+            for start in range(0, len(data), size)
+            for record in reader.feed(data[start : start + size])
+        ]
         assert found == [RECORD, {"done": True}] and reader.damaged == 0
 
 
@@ -667,5 +784,14 @@ def test_nothing_here_unpickles_or_evaluates():
     folder = Path(records.__file__).parent
     for name in ("sandbox.py", "records.py", "scratch.py"):
         text = (folder / name).read_text()
-        for word in ("pickle.", "eval(", "exec(", "sympify", "srepr", "lambdify", "import pickle", "import sympy"):
+        for word in (
+            "pickle.",
+            "eval(",
+            "exec(",
+            "sympify",
+            "srepr",
+            "lambdify",
+            "import pickle",
+            "import sympy",
+        ):
             assert word not in text, (name, word)

@@ -1,4 +1,6 @@
-"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a download; it is said, in a sentence."""
+"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a download; it is
+said, in a sentence.
+"""
 
 import errno
 import io
@@ -18,7 +20,13 @@ from coursework.grading.submissions.roster import Roster
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(cell_seconds=2, cell_wall_seconds=60, answer_seconds=1, answer_wall_seconds=60, grace_seconds=0.5)
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
 
 
 @pytest.fixture
@@ -31,14 +39,23 @@ def course(tmp_path):
 
 
 def graded(course, submissions, out, **more):
-    options = {"solutions": course / "course" / "solutions", "limits": LIMITS, "show": io.StringIO(), **more}
+    options = {
+        "solutions": course / "course" / "solutions",
+        "limits": LIMITS,
+        "show": io.StringIO(),
+        **more,
+    }
     return grade(submissions, out, **options)
 
 
 def test_results_are_nobody_s_work(course):
     """They lay among what was handed in, and the second run refused each of their files."""
     assert graded(course, course / "in", course / "in" / "marks")["refused"] == 0
-    assert graded(course, course / "in", course / "in" / "marks") == {"graded": 0, "kept": 2, "refused": 0}
+    assert graded(course, course / "in", course / "in" / "marks") == {
+        "graded": 0,
+        "kept": 2,
+        "refused": 0,
+    }
     with pytest.raises(NothingToGrade, match="cannot hold the results, too"):
         graded(course, course / "in", course / "in")
     with pytest.raises(NothingToGrade, match="holds results of grading"):
@@ -78,7 +95,9 @@ def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypa
 
 
 def test_a_name_begins_no_line_of_a_table(tmp_path):
-    """Some signs end a line for Python and for no spreadsheet: a student's own name could hold one."""
+    """Some signs end a line for Python and for no spreadsheet: a student's own name could hold
+    one.
+    """
     roster = "student,name,email\neve,Eve\u2028ada,Eve,eve@uni.example\nben,Ben\x85,b@uni.example\n"
     (tmp_path / "roster.csv").write_text(roster, "utf8")
     assert set(Roster(tmp_path / "roster.csv").people) == {"eve", "ben"}

@@ -37,7 +37,9 @@ def depart_entry(translator, node):
 
 
 def name_of_caption(node):
-    """The identifier of what names a figure with a caption: browsers no longer take its name from the caption."""
+    """The identifier of what names a figure with a caption: browsers no longer take its name from
+    the caption.
+    """
     has_caption = any(isinstance(part, nodes.caption) for part in node)
     return f"{node['ids'][0]}-name" if has_caption and node["ids"] else None
 
@@ -45,7 +47,9 @@ def name_of_caption(node):
 def visit_figure(translator, node):
     HTML5Translator.visit_figure(translator, node)
     if name := name_of_caption(node):
-        translator.body[-1] = translator.body[-1].replace("<figure", f'<figure aria-labelledby="{name}"', 1)
+        translator.body[-1] = translator.body[-1].replace(
+            "<figure", f'<figure aria-labelledby="{name}"', 1
+        )
 
 
 def visit_caption(translator, node):
@@ -54,7 +58,9 @@ def visit_caption(translator, node):
     HTML5Translator.visit_caption(translator, node)
     if isinstance(node.parent, nodes.figure) and (name := name_of_caption(node.parent)):
         written = "".join(translator.body[start:])
-        translator.body[start:] = [written.replace('<span class="caption-', f'<span id="{name}" class="caption-', 1)]
+        translator.body[start:] = [
+            written.replace('<span class="caption-', f'<span id="{name}" class="caption-', 1)
+        ]
 
 
 def setup(app):

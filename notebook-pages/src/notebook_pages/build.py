@@ -17,7 +17,11 @@ EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
 def missing_pages():
     """Pages that did not come out as real HTML with a title of their own."""
     files = {page: HTML / f"{page}.html" for page in pages()}
-    return [page for page, file in files.items() if not file.is_file() or "<h1>" not in file.read_text("utf8")]
+    return [
+        page
+        for page, file in files.items()
+        if not file.is_file() or "<h1>" not in file.read_text("utf8")
+    ]
 
 
 def forget_site():
@@ -27,7 +31,9 @@ def forget_site():
 
 
 def contents_of_this_edition():
-    """What Jupyter Book is told of the contents; of an edition that was built before, nothing is left over."""
+    """What Jupyter Book is told of the contents; of an edition that was built before, nothing is
+    left over.
+    """
     if EXAM_CONTENTS.exists() != exam_edition():
         forget_site()
     EXAM_CONTENTS.unlink(missing_ok=True)
@@ -46,8 +52,19 @@ def main():
     print("Building the book ...", flush=True)
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     # What was fetched for browsers is byte-compiled while the pages are read one by one.
-    ahead = subprocess.Popen([sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"])
-    command = [jupyter_book, "build", ".", "-q", "-W", "-n", "--keep-going", *contents_of_this_edition()]
+    ahead = subprocess.Popen(
+        [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
+    )
+    command = [
+        jupyter_book,
+        "build",
+        ".",
+        "-q",
+        "-W",
+        "-n",
+        "--keep-going",
+        *contents_of_this_edition(),
+    ]
     code = subprocess.run(command).returncode
     ahead.wait()
     if code == 0 and (missing := missing_pages()):

@@ -1,9 +1,10 @@
-"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that show the edition published last go on.
+"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that show the edition published
+last go on.
 
-A page that is open asks, when its code first runs, for files named by their content. ``PREVIOUS``, the address or the
-folder at which the last edition is published, lists them (``lasting.json``): those that ``SITE``, about to be published
-there, has not are put beside its own. Of the edition before that nothing is kept: such a page says that it is to be
-loaded anew.
+A page that is open asks, when its code first runs, for files named by their content. ``PREVIOUS``,
+the address or the folder at which the last edition is published, lists them (``lasting.json``):
+those that ``SITE``, about to be published there, has not are put beside its own. Of the edition
+before that nothing is kept: such a page says that it is to be loaded anew.
 """
 
 import json
@@ -21,9 +22,13 @@ PATIENCE = 60  # seconds
 
 
 def reader(previous: str) -> Callable[[str], bytes | None]:
-    """What gives a file of the last edition by its path: its bytes, or ``None`` where there is none."""
+    """What gives a file of the last edition by its path: its bytes, or ``None`` where there is
+    none.
+    """
     if "://" not in previous:
-        return lambda path: (Path(previous) / path).read_bytes() if (Path(previous) / path).is_file() else None
+        return lambda path: (
+            (Path(previous) / path).read_bytes() if (Path(previous) / path).is_file() else None
+        )
 
     def read(path: str) -> bytes | None:
         address = urllib.parse.urljoin(previous.rstrip("/") + "/", urllib.parse.quote(path))
@@ -40,9 +45,11 @@ def reader(previous: str) -> Callable[[str], bytes | None]:
 
 
 def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
-    """Put into ``site`` what the edition at ``previous`` names by its content; return the paths, or ``None``.
+    """Put into ``site`` what the edition at ``previous`` names by its content; return the paths, or
+    ``None``.
 
-    ``None`` means that nothing is published there, or no list: it is the first edition that has one.
+    ``None`` means that nothing is published there, or no list: it is the first edition that has
+    one.
     """
     read = reader(previous)
     listed = read(LASTING)
@@ -51,8 +58,14 @@ def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
     carried = []
     names = json.loads(listed)
     for path in names if isinstance(names, list) else [names]:
-        if not isinstance(path, str) or not BY_CONTENT.fullmatch(path) or ".." in PurePosixPath(path).parts:
-            raise ValueError(f"{LASTING} of {previous} names {path!r}, which is not named by its content")
+        if (
+            not isinstance(path, str)
+            or not BY_CONTENT.fullmatch(path)
+            or ".." in PurePosixPath(path).parts
+        ):
+            raise ValueError(
+                f"{LASTING} of {previous} names {path!r}, which is not named by its content"
+            )
         place = site / path
         if not place.exists() and (content := read(path)) is not None:
             place.parent.mkdir(parents=True, exist_ok=True)
@@ -64,7 +77,8 @@ def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
 def main() -> None:
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(
-            "python -m notebook_pages.carry_over PREVIOUS [SITE]: where the last edition is, and the new one's folder"
+            "python -m notebook_pages.carry_over PREVIOUS [SITE]: where the last edition is, and "
+            "the new one's folder"
         )
     previous, site = sys.argv[1], Path(*sys.argv[2:]) if sys.argv[2:] else HTML
     carried = carry_over(previous, site)
@@ -72,7 +86,10 @@ def main() -> None:
         print(f"Nothing is carried over: at {previous} no edition lists what lasts ({LASTING}).")
     else:
         size = sum((site / path).stat().st_size for path in carried)
-        print(f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for the tabs that are open.")
+        print(
+            f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for the tabs "
+            "that are open."
+        )
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
-"""The site of a course: its exercises as pages whose cells run and whose answers are checked in the page.
+"""The site of a course: its exercises as pages whose cells run and whose answers are checked in the
+page.
 
-What makes courses offers what it has as files (notebooks, wheels, the archive for students), by the entry point
-``coursework.pages``, and knows nothing of pages; here nothing is known of questions. A book is written for these files
-in a workshop, and built.
+What makes courses offers what it has as files (notebooks, wheels, the archive for students), by the
+entry point ``coursework.pages``, and knows nothing of pages; here nothing is known of questions. A
+book is written for these files in a workshop, and built.
 """
 
 import json
@@ -43,13 +44,17 @@ def publish(parts, workshop, site):
         The pages were not made; what was printed says why.
     """
     if parts["format"] != FORMAT:
-        raise ValueError(f"the parts of the course are of format {parts['format']}; these pages are made of {FORMAT}")
+        raise ValueError(
+            f"the parts of the course are of format {parts['format']}; these pages are made of "
+            f"{FORMAT}"
+        )
     named = os.environ.get("NOTEBOOK_PAGES_FETCHED")
     places = [Path(named).resolve()] if named else [Path.cwd(), WORKING_COPY]
     fetched = next((place for place in places if (place / "node_modules" / "katex").is_dir()), None)
     if fetched is None:
         raise RuntimeError(
-            f"What pages are made with is not in {places[0]}: KaTeX, the typefaces, Python for browsers. "
+            f"What pages are made with is not in {places[0]}: KaTeX, the typefaces, Python for "
+            "browsers. "
             "`python -m notebook_pages.set_up` in that folder fetches them."
         )
     workshop, site = Path(workshop).resolve(), Path(site).resolve()
@@ -57,7 +62,9 @@ def publish(parts, workshop, site):
     environment = os.environ | {
         "NOTEBOOK_PAGES_FETCHED": str(fetched), "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))
     }  # fmt: skip
-    done = subprocess.run([sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment)
+    done = subprocess.run(
+        [sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment
+    )
     if done.returncode:
         raise RuntimeError("The pages of the course were not made: see above.")
     if site.exists():
@@ -85,30 +92,48 @@ def write_book(parts, workshop):
     tables = [_wheel_table(Path(wheel), workshop) for wheel in parts["wheels"]]
     quoted = json.dumps(parts["title"])
     (workshop / "pyproject.toml").write_text(
-        f"[tool.notebook-pages]\nname = {json.dumps(_name(parts['title']))}\nplugin = {json.dumps(parts['plugin'])}\n"
+        f"[tool.notebook-pages]\nname = {json.dumps(_name(parts['title']))}\n"
+        f"plugin = {json.dumps(parts['plugin'])}\n"
         'exercises = "exercises.zip"\n' + "".join(tables),
         "utf8",
     )
-    (workshop / "_config.yml").write_text(SETTINGS.read_text("utf8").format(title=quoted, author='""'), "utf8")
-    chapters = "".join(f"      - file: exercises/{notebook.stem}\n" for notebook in parts["notebooks"])
-    (workshop / "_toc.yml").write_text(
-        f"format: jb-book\nroot: index\nparts:\n  - caption: Exercises\n    chapters:\n{chapters}", "utf8"
+    (workshop / "_config.yml").write_text(
+        SETTINGS.read_text("utf8").format(title=quoted, author='""'), "utf8"
     )
-    (workshop / "index.md").write_text(INDEX.format(title=parts["title"], links="\n".join(links)), "utf8")
+    chapters = "".join(
+        f"      - file: exercises/{notebook.stem}\n" for notebook in parts["notebooks"]
+    )
+    (workshop / "_toc.yml").write_text(
+        f"format: jb-book\nroot: index\nparts:\n  - caption: Exercises\n    chapters:\n{chapters}",
+        "utf8",
+    )
+    (workshop / "index.md").write_text(
+        INDEX.format(title=parts["title"], links="\n".join(links)), "utf8"
+    )
 
 
 def _wheel_table(wheel, workshop):
-    """What the book says of a wheel; its packages lie unpacked in the workshop, where cells are tried before."""
+    """What the book says of a wheel; its packages lie unpacked in the workshop, where cells are
+    tried before.
+    """
     shutil.copy(wheel, workshop / "wheels")
     with zipfile.ZipFile(wheel) as box:
         box.extractall(workshop / "packages")
         tops = {name.partition("/")[0] for name in box.namelist()}
-    packages = [f"packages/{top}" for top in sorted(tops) if not top.endswith((".dist-info", ".data"))]
-    return f'\n[[tool.notebook-pages.wheels]]\nfile = "wheels/{wheel.name}"\npackages = {json.dumps(packages)}\n'
+    packages = [
+        f"packages/{top}" for top in sorted(tops) if not top.endswith((".dist-info", ".data"))
+    ]
+    return (
+        f'\n[[tool.notebook-pages.wheels]]\nfile = "wheels/{wheel.name}"\n'
+        f"packages = {json.dumps(packages)}\n"
+    )
 
 
 def _name(title):
-    return "-".join("".join(letter if letter.isalnum() else " " for letter in title.lower()).split()) or "course"
+    return (
+        "-".join("".join(letter if letter.isalnum() else " " for letter in title.lower()).split())
+        or "course"
+    )
 
 
 def title_of(notebook):

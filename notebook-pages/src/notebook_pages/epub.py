@@ -1,6 +1,7 @@
 """The whole book as an EPUB 3: pages that flow, formulas in MathML, drawings with their words.
 
-It is made from the built pages, as the PDF is, by the same steps; a reading program sets the formulas itself.
+It is made from the built pages, as the PDF is, by the same steps; a reading program sets the
+formulas itself.
 """
 
 import io
@@ -29,7 +30,10 @@ CAPITALS = {
 BOLD = {ord(sign): 0x1D400 + k for k, sign in enumerate(ascii_uppercase + ascii_lowercase)}
 BOLD |= {ord(sign): 0x1D7CE + k for k, sign in enumerate(digits)}
 #: What needs a script or a form.
-ALIVE = "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, .progress-bar"
+ALIVE = (
+    "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, "
+    ".progress-bar"
+)
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en" xml:lang="en">
 <head><title>{title}</title><link rel="stylesheet" type="text/css" href="book.css"/></head>
@@ -113,7 +117,13 @@ def in_xml(text):
         for name, value in element.attrs.items():
             words = " ".join(value) if isinstance(value, list) else value
             # What scripts and the styles of the site ask for.
-            if name.startswith(("data-", "on")) or name in ("tabindex", "translate", "valign", "align", "focusable"):
+            if name.startswith(("data-", "on")) or name in (
+                "tabindex",
+                "translate",
+                "valign",
+                "align",
+                "focusable",
+            ):
                 continue
             if name in ("width", "height") and element.name in ("col", "table", "td", "th"):
                 continue
@@ -126,8 +136,14 @@ def files(site, title, author):
     """What is in the book, by name: text or bytes."""
     pages = ["index", *(page for _, names in parts() for page in names)]
     texts = {page: article(site, page, as_mathml) for page in pages}
-    styles = {style.string for text in texts.values() for style in text.find_all("style") if style.string}
-    home = {element["id"]: page for page, text in texts.items() for element in [text, *text.find_all(id=True)]}
+    styles = {
+        style.string for text in texts.values() for style in text.find_all("style") if style.string
+    }
+    home = {
+        element["id"]: page
+        for page, text in texts.items()
+        for element in [text, *text.find_all(id=True)]
+    }
     written, items, spine = {}, [], []
     for page, text in texts.items():
         in_xml(text)
@@ -141,15 +157,23 @@ def files(site, title, author):
             elif name not in here:
                 link.unwrap()  # what it led to was for a screen
         body = str(text)
-        properties = [kind for kind, mark in (("mathml", "<math "), ("svg", "<svg ")) if mark in body]
+        properties = [
+            kind for kind, mark in (("mathml", "<math "), ("svg", "<svg ")) if mark in body
+        ]
         properties = f' properties="{" ".join(properties)}"' if properties else ""
         name = place(page)
         written[f"{name}.xhtml"] = PAGE.format(title=escape(heading(text.h1)), body=body)
-        items.append(f'<item id="{name}" href="{name}.xhtml" media-type="application/xhtml+xml"{properties}/>')
+        items.append(
+            f'<item id="{name}" href="{name}.xhtml" '
+            f'media-type="application/xhtml+xml"{properties}/>'
+        )
         spine.append(f'<itemref idref="{name}"/>')
     entries = "".join(
         f"<li><span>{escape(caption)}</span><ol>"
-        + "".join(f'<li><a href="{place(page)}.xhtml">{escape(heading(texts[page].h1))}</a></li>' for page in names)
+        + "".join(
+            f'<li><a href="{place(page)}.xhtml">{escape(heading(texts[page].h1))}</a></li>'
+            for page in names
+        )
         + "</ol></li>"
         for caption, names in parts()
     )
@@ -166,7 +190,9 @@ def files(site, title, author):
     which = edition()
     identity = f"urn:uuid:{uuid5(NAMESPACE_URL, f'{title} {which.words}')}"
     more = [f"<dc:date>{which.date}</dc:date>"] if which.date else []
-    more += [f"<dc:identifier>https://doi.org/{escape(which.doi)}</dc:identifier>"] if which.doi else []
+    more += (
+        [f"<dc:identifier>https://doi.org/{escape(which.doi)}</dc:identifier>"] if which.doi else []
+    )
     written["package.opf"] = PACKAGE.format(
         identifier=identity, title=escape(title), author=escape(author), licences=LICENCES_SAID,
         edition=escape(which.words), more="\n".join(more), moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",

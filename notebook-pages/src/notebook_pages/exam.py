@@ -1,8 +1,8 @@
 """The exam edition: the book without worked solutions, and without a sentence that leads to one.
 
-``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The pages of solutions are left out of
-the contents (see :mod:`notebook_pages.paths`), so that nothing is made of them; here the sentences that refer to them
-go.
+``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The pages of
+solutions are left out of the contents (see :mod:`notebook_pages.paths`), so that nothing is made of
+them; here the sentences that refer to them go.
 """
 
 import re
@@ -44,7 +44,9 @@ def sentences(paragraph: nodes.paragraph) -> list[list[nodes.Node]]:
 
 
 def without_solutions(paragraph: nodes.paragraph) -> None:
-    """Take the sentences that lead to a solution out of ``paragraph``; the whole of it, if no other is left."""
+    """Take the sentences that lead to a solution out of ``paragraph``; the whole of it, if no other
+    is left.
+    """
     kept = [
         sentence
         for sentence in sentences(paragraph)

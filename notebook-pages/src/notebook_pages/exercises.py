@@ -1,4 +1,6 @@
-"""Exercises: how hard each is and how long it takes, and the way to the checked questions of a chapter and back."""
+"""Exercises: how hard each is and how long it takes, and the way to the checked questions of a
+chapter and back.
+"""
 
 from docutils import nodes
 from docutils.parsers.rst import directives
@@ -20,7 +22,10 @@ def difficulty(text):
 class MarkedExercise(ExerciseDirective):
     """An exercise with `:difficulty:` (1 to 3) and `:minutes:`."""
 
-    option_spec = ExerciseDirective.option_spec | {"difficulty": difficulty, "minutes": directives.positive_int}
+    option_spec = ExerciseDirective.option_spec | {
+        "difficulty": difficulty,
+        "minutes": directives.positive_int,
+    }
 
     def run(self):
         level, minutes = self.options.pop("difficulty", None), self.options.pop("minutes", None)
@@ -28,7 +33,9 @@ class MarkedExercise(ExerciseDirective):
         if level and minutes:
             words = f"Difficulty {level} of {HARDEST}, about {minutes} minutes"
             (exercise,) = [node for node in found if isinstance(node, nodes.Admonition)]
-            exercise.insert(1, nodes.paragraph("", words, classes=["effort", f"difficulty-{level}"]))
+            exercise.insert(
+                1, nodes.paragraph("", words, classes=["effort", f"difficulty-{level}"])
+            )
         return found
 
 
@@ -44,7 +51,9 @@ def lead_on(app, doctree):
             whole += nodes.paragraph("", "Practise: ", link, nodes.Text("."), classes=["practise"])
     elif page.startswith("exercises/") and (chapter := chapter_of(app, page)):
         link = reference(page, chapter, "the chapter that they belong to")
-        words = nodes.paragraph("", "These questions practise ", link, nodes.Text("."), classes=["practise"])
+        words = nodes.paragraph(
+            "", "These questions practise ", link, nodes.Text("."), classes=["practise"]
+        )
         whole.insert(1, words)
 
 

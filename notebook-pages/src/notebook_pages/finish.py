@@ -1,7 +1,9 @@
 """The last pass over the built pages: what can be written into them only when everything is there.
 
-- The address of each script and style carries a version, made of its contents: no cache mixes old ones with new pages.
-- Each page names the policy by which it lives (Content-Security-Policy): what the browser may load, and from where.
+- The address of each script and style carries a version, made of its contents: no cache mixes old
+  ones with new pages.
+- Each page names the policy by which it lives (Content-Security-Policy): what the browser may load,
+  and from where.
 - Pages with code say what it weighs to start Python.
 """
 
@@ -19,9 +21,12 @@ VERSIONED = re.compile(
     r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
 )
 INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
-CHARSET = re.compile(r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?')
-#: Styles stand in the text because KaTeX and the drawings place their parts by them. Scripts do not, except for those
-#: that the build has written, each known by its fingerprint; `blob:` is what a cell shows that the reader has run.
+CHARSET = re.compile(
+    r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?'
+)
+#: Styles stand in the text because KaTeX and the drawings place their parts by them. Scripts do
+#: not, except for those that the build has written, each known by its fingerprint; `blob:` is what
+#: a cell shows that the reader has run.
 POLICY = {
     "default-src": "'self'",
     "script-src": "'self' 'wasm-unsafe-eval' blob:",
@@ -37,15 +42,31 @@ POLICY = {
 
 
 def pages_of(site):
-    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor figures for other people's pages."""
-    return [path for path in sorted(site.rglob("*.html")) if path.relative_to(site).parts[0] not in ("lite", "embed")]
+    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor figures for other
+    people's pages.
+    """
+    return [
+        path
+        for path in sorted(site.rglob("*.html"))
+        if path.relative_to(site).parts[0] not in ("lite", "embed")
+    ]
 
 
 def policy(text, elsewhere):
     """The policy of the page ``text``, whose Python may fetch from ``elsewhere``."""
-    scripts = [match[1] for match in INLINE.finditer(text) if "src=" not in match[0].partition(">")[0]]
-    data = [match[1] for match in INLINE.finditer(text) if 'type="application/' in match[0].partition(">")[0]]
-    digests = {base64.b64encode(sha256(script.encode()).digest()).decode() for script in scripts if script not in data}
+    scripts = [
+        match[1] for match in INLINE.finditer(text) if "src=" not in match[0].partition(">")[0]
+    ]
+    data = [
+        match[1]
+        for match in INLINE.finditer(text)
+        if 'type="application/' in match[0].partition(">")[0]
+    ]
+    digests = {
+        base64.b64encode(sha256(script.encode()).digest()).decode()
+        for script in scripts
+        if script not in data
+    }
     rules = {**POLICY, "connect-src": " ".join([POLICY["connect-src"], *elsewhere])}
     rules["script-src"] += "".join(f" 'sha256-{digest}'" for digest in sorted(digests))
     return "; ".join(f"{name} {value}" for name, value in rules.items())
@@ -60,7 +81,9 @@ def write(site):
     lock = json.loads(listed.read_text("utf8"))
     variants = " ".join(sorted(folder.name for folder in (site / FOLDER).glob("sealed-*")))
     addresses = [package["file_name"] for package in lock["packages"].values()]
-    elsewhere = sorted({"/".join(address.split("/")[:3]) for address in addresses if "://" in address})
+    elsewhere = sorted(
+        {"/".join(address.split("/")[:3]) for address in addresses if "://" in address}
+    )
     for page in [*pages_of(site), *sorted(site.glob("embed/*.html"))]:
         before = page.read_text("utf8")
 

@@ -1,8 +1,9 @@
 """What a page shows first, and what comes later.
 
-Most of the work of opening a long page is to lay out what nobody sees yet. The build marks the blocks below the first
-view with the class ``later``; layout.html has the browser leave them alone until they are near the screen, and book.js
-takes the marks off, a few blocks at a time, as soon as the first view stands: then the page is what it always was.
+Most of the work of opening a long page is to lay out what nobody sees yet. The build marks the
+blocks below the first view with the class ``later``; layout.html has the browser leave them alone
+until they are near the screen, and book.js takes the marks off, a few blocks at a time, as soon as
+the first view stands: then the page is what it always was.
 """
 
 import re
@@ -13,12 +14,21 @@ from sphinx import addnodes
 LATER = "later"
 #: How a block that is so marked begins; the word also stands in sentences.
 MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
-#: More text than the first view of a large screen holds, in characters; and how many a large block counts for.
+#: More text than the first view of a large screen holds, in characters; and how many a large block
+#: counts for.
 FIRST_VIEW, LARGEST = 3000, 800
 #: A line of a column, which even the shortest block takes.
 LINE = 80
 #: What has no box of its own, or one that cannot be left empty.
-WITHOUT_BOX = (nodes.title, nodes.raw, nodes.target, nodes.comment, nodes.table, addnodes.index, nodes.section)
+WITHOUT_BOX = (
+    nodes.title,
+    nodes.raw,
+    nodes.target,
+    nodes.comment,
+    nodes.table,
+    addnodes.index,
+    nodes.section,
+)
 
 
 def blocks_of(doctree):

@@ -1,9 +1,10 @@
 """The typefaces, cut down to what pages use, and the rules by which pages find them.
 
-Each face is a file of its own, with its fingerprint in its name. The rules stand in the page itself, so that the files
-are asked for at once, and no style sheet waits for them. What a face lacks comes from the whole of it, fetched only
-when a page has such a sign. Until the typefaces are there, which layout.html awaits for a moment, the text stands in
-the reader's own, made as wide as the book's.
+Each face is a file of its own, with its fingerprint in its name. The rules stand in the page
+itself, so that the files are asked for at once, and no style sheet waits for them. What a face
+lacks comes from the whole of it, fetched only when a page has such a sign. Until the typefaces are
+there, which layout.html awaits for a moment, the text stands in the reader's own, made as wide as
+the book's.
 """
 
 import io
@@ -21,7 +22,8 @@ from .paths import NODE_MODULES, fingerprint
 KATEX = NODE_MODULES / "katex" / "dist"
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-#: Signs of the text: those that the book has, and a few more; with one of the others a page fetches the whole face.
+#: Signs of the text: those that the book has, and a few more; with one of the others a page fetches
+#: the whole face.
 LATIN = (
     "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
     "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
@@ -48,7 +50,8 @@ FACES = (
     *((f"KaTeX_Size{n}", "400", "normal", KATEX / "fonts" / f"KaTeX_Size{n}-Regular.woff2", None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
-#: The reader's own typefaces until the book's are there: each as wide, on the average of English text.
+#: The reader's own typefaces until the book's are there: each as wide, on the average of English
+#: text.
 UNTIL_THEN = {
     "Georgia": 106.7, "Noto Serif": 98.9, "DejaVu Serif": 92.9, "Times New Roman": 117,
     "Roboto": 94, "Arial": 93.8, "DejaVu Sans": 82.5,
@@ -65,15 +68,21 @@ def codes(signs):
 
 
 def beyond(file, signs, seldom):
-    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of ``seldom``, or of all that is in it."""
-    left = sorted((set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs)))
+    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of ``seldom``, or of all that is
+    in it.
+    """
+    left = sorted(
+        (set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs))
+    )
     starts = [code for code in left if code - 1 not in left]
     ends = [code for code in left if code + 1 not in left]
     return ",".join(f"U+{a:X}" if a == b else f"U+{a:X}-{b:X}" for a, b in zip(starts, ends))
 
 
 def cut(file, signs, weights):
-    """The bytes of the face ``file`` with ``signs`` alone; of one that varies, with those ``weights``."""
+    """The bytes of the face ``file`` with ``signs`` alone; of one that varies, with those
+    ``weights``.
+    """
     from fontTools import subset
     from fontTools.varLib import instancer
 
@@ -87,7 +96,9 @@ def cut(file, signs, weights):
         whole = io.BytesIO()
         font.flavor = None
         font.save(whole)
-        font = instancer.instantiateVariableFont(TTFont(whole), {"wght": tuple(map(int, weights.split()))})
+        font = instancer.instantiateVariableFont(
+            TTFont(whole), {"wght": tuple(map(int, weights.split()))}
+        )
     font["head"].modified = font["head"].created  # the same bytes each time
     font.recalcTimestamp = False
     font.flavor = "woff2"
@@ -99,7 +110,11 @@ def cut(file, signs, weights):
 @cache
 def cut_faces():
     """The folder with all faces cut; made once for each version of them, for it takes seconds."""
-    folder = NODE_MODULES / ".cache" / f"fonts-{fingerprint(Path(__file__), *(face[3] for face in FACES))}"
+    folder = (
+        NODE_MODULES
+        / ".cache"
+        / f"fonts-{fingerprint(Path(__file__), *(face[3] for face in FACES))}"
+    )
     folder.mkdir(parents=True, exist_ok=True)
     for _, weight, _, file, signs, _ in FACES:
         if not (folder / file.name).exists():
@@ -111,7 +126,9 @@ def cut_faces():
 
 @cache
 def files():
-    """What is to stand in the folder of fonts: for each name there, the file that it is a copy of."""
+    """What is to stand in the folder of fonts: for each name there, the file that it is a copy
+    of.
+    """
     found = {}
     for _, _, _, file, _, whole in FACES:
         for source in (cut_faces() / file.name, *([file] if whole else [])):
@@ -125,7 +142,10 @@ def name_of(source):
 
 def face_rule(folder, family, weight, style, source, reach):
     begin = f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};font-display:swap;'
-    return f'{begin}src:url({folder}/{name_of(source)}) format("woff2"){f";unicode-range:{reach}" if reach else ""}}}'
+    return (
+        f"{begin}src:url({folder}/{name_of(source)}) "
+        f'format("woff2"){f";unicode-range:{reach}" if reach else ""}}}'
+    )
 
 
 @cache
@@ -136,21 +156,34 @@ def face_rules(folder):
         for family, weight, style, file, signs, whole in FACES
     ]
     for name, width in UNTIL_THEN.items():
-        rules.append(f'@font-face{{font-family:"{name} for now";src:local("{name}");size-adjust:{width}%}}')
+        rules.append(
+            f'@font-face{{font-family:"{name} for now";src:local("{name}");size-adjust:{width}%}}'
+        )
     return "\n".join(rules)
 
 
 def whole_face_rules(folder):
-    """The rules for a sheet from which the fonts stand in ``folder``: the whole faces, for what the cut ones lack."""
+    """The rules for a sheet from which the fonts stand in ``folder``: the whole faces, for what the
+    cut ones lack.
+    """
     return "\n".join(
-        face_rule(folder, family, weight, style, file, beyond(file, signs, SELDOM if signs == LATIN else None))
+        face_rule(
+            folder,
+            family,
+            weight,
+            style,
+            file,
+            beyond(file, signs, SELDOM if signs == LATIN else None),
+        )
         for family, weight, style, file, signs, whole in FACES
         if whole
     )
 
 
 def katex_rules(folder):
-    """KaTeX's rules, without those that the page itself has, for a sheet from which the fonts stand in ``folder``."""
+    """KaTeX's rules, without those that the page itself has, for a sheet from which the fonts stand
+    in ``folder``.
+    """
     known = {face[3].name for face in FACES}
 
     def rule(match):
@@ -163,7 +196,9 @@ def katex_rules(folder):
     rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
     if any(name.startswith("KaTeX") for name in known):
         raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
-    return re.sub(r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules)  # KaTeX has not set these for years
+    return re.sub(
+        r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules
+    )  # KaTeX has not set these for years
 
 
 def write(app):
@@ -174,13 +209,15 @@ def write(app):
             if outdated.name not in files():
                 outdated.unlink()
         known = {face[3].name for face in FACES}
-        seldom = {font.name: font for font in (KATEX / "fonts").glob("*.woff2") if font.name not in known}
+        seldom = {
+            font.name: font for font in (KATEX / "fonts").glob("*.woff2") if font.name not in known
+        }
         for name, source in (files() | seldom).items():
             shutil.copyfile(source, folder / name)
 
 
-#: How one sees in the HTML of a part of a page that it is set in a face; the faces that are not named here are
-#: on every page.
+#: How one sees in the HTML of a part of a page that it is set in a face; the faces that are not
+#: named here are on every page.
 SEEN_BY = {
     ("Source Serif 4", "400", "italic"): r"<(?:em|cite|dfn)\b",
     ("KaTeX_Main", "400", "normal"): r"class=katex\b",
@@ -204,10 +241,15 @@ def add_to_head(app, pagename, templatename, context, doctree):
     folder = context["pathto"](str(FOLDER), 1)
     body = context.get("body", "")
     context["font_faces"] = face_rules(folder)
-    context["first_fonts"] = [f"{folder}/{name_of(cut_faces() / face[3].name)}" for face in faces_in(first_part(body))]
+    context["first_fonts"] = [
+        f"{folder}/{name_of(cut_faces() / face[3].name)}" for face in faces_in(first_part(body))
+    ]
     # As a style sheet says it, so that a script can ask for it.
     for name, html in (("first_faces", first_part(body)), ("all_faces", body)):
-        context[name] = [f'{style} {weight.split()[0]} 1em "{family}"' for family, weight, style, *_ in faces_in(html)]
+        context[name] = [
+            f'{style} {weight.split()[0]} 1em "{family}"'
+            for family, weight, style, *_ in faces_in(html)
+        ]
 
 
 def setup(app):

@@ -1,9 +1,11 @@
-"""What lets readers keep the book in their browser, or install it as an app: by choice, and with its size told.
+"""What lets readers keep the book in their browser, or install it as an app: by choice, and with
+its size told.
 
-``manifest.webmanifest`` and two icons make the site installable; ``offline.json`` lists what there is to keep (the
-pages, and Python), each file with a fingerprint and its bytes. The rest is live/js/keep.js, editions.js and
-service-worker.js. ``lasting.json`` lists the files that are named by their content: where the next edition is published
-they stay, for the tabs that are open then (:mod:`notebook_pages.carry_over`).
+``manifest.webmanifest`` and two icons make the site installable; ``offline.json`` lists what there
+is to keep (the pages, and Python), each file with a fingerprint and its bytes. The rest is
+live/js/keep.js, editions.js and service-worker.js. ``lasting.json`` lists the files that are named
+by their content: where the next edition is published they stay, for the tabs that are open then
+(:mod:`notebook_pages.carry_over`).
 """
 
 import json
@@ -18,7 +20,8 @@ LIST = "offline.json"
 LASTING = "lasting.json"
 WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
-#: A path that names its content: in our folders, and as the makers of JupyterLite name the parts of its scripts.
+#: A path that names its content: in our folders, and as the makers of JupyterLite name the parts of
+#: its scripts.
 BY_CONTENT = re.compile(
     r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
 )
@@ -27,7 +30,9 @@ KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipyn
 
 
 def icon(size, drawing):
-    """The book's icon as a picture of ``size`` by ``size`` pixels: the lines of ``drawing``, the SVG of the favicon."""
+    """The book's icon as a picture of ``size`` by ``size`` pixels: the lines of ``drawing``, the
+    SVG of the favicon.
+    """
     from PIL import Image, ImageDraw
 
     scale = 4 * size / 32  # four times as large, for smooth edges
@@ -47,7 +52,9 @@ def icon(size, drawing):
         points = [(x * scale, y * scale), tuple(value * scale for value in end[command]())]
         pencil.line(points, fill=colour, width=round(width))
         for a, b in points:
-            pencil.ellipse((a - width / 2, b - width / 2, a + width / 2, b + width / 2), fill=colour)
+            pencil.ellipse(
+                (a - width / 2, b - width / 2, a + width / 2, b + width / 2), fill=colour
+            )
     return picture.resize((size, size), Image.Resampling.LANCZOS)
 
 
@@ -56,7 +63,9 @@ def write_manifest(site, title):
     icons = [{"src": "_static/favicon.svg", "sizes": "any", "type": "image/svg+xml"}]
     for size in SIZES:
         icon(size, drawing).save(site / "_static" / f"icon-{size}.png", optimize=True)
-        icons.append({"src": f"_static/icon-{size}.png", "sizes": f"{size}x{size}", "type": "image/png"})
+        icons.append(
+            {"src": f"_static/icon-{size}.png", "sizes": f"{size}x{size}", "type": "image/png"}
+        )
     manifest = {
         "name": title, "short_name": title.split()[0], "start_url": "./index.html", "scope": "./", "id": "./",
         "display": "minimal-ui", "background_color": "#fdfcfa", "theme_color": "#fdfcfa", "icons": icons,
@@ -67,9 +76,18 @@ def write_manifest(site, title):
 def write_list(site):
     """Write what a reader may keep of the finished site, in two parts: ``book`` and ``python``."""
     packages = json.loads((site / FOLDER / LOCK).read_text("utf8"))["packages"].values()
-    wheels = [site / FOLDER / package["file_name"] for package in packages if "://" not in package["file_name"]]
+    wheels = [
+        site / FOLDER / package["file_name"]
+        for package in packages
+        if "://" not in package["file_name"]
+    ]
     sealed = (site / FOLDER).glob("sealed-*/*/*.json")
-    python = [*(site / FOLDER).glob(f"lock-*/{LOCK}"), *(site / FOLDER).glob("pyodide-*/*"), *wheels, *sealed]
+    python = [
+        *(site / FOLDER).glob(f"lock-*/{LOCK}"),
+        *(site / FOLDER).glob("pyodide-*/*"),
+        *wheels,
+        *sealed,
+    ]
     pages = [
         path for path in site.rglob("*")
         if path.suffix in KEPT and path.relative_to(site).parts[0] not in ("lite", PICTURES) and path not in python
@@ -78,15 +96,20 @@ def write_list(site):
 
     def listed(paths):
         contents = {str(path.relative_to(site)): path.read_bytes() for path in sorted(paths)}
-        return {name: [sha256(content).hexdigest()[:16], len(content)] for name, content in contents.items()}
+        return {
+            name: [sha256(content).hexdigest()[:16], len(content)]
+            for name, content in contents.items()
+        }
 
     parts = {"book": listed(pages), "python": listed(python)}
     edition = "book-" + sha256(json.dumps(parts).encode()).hexdigest()[:12]
     (site / LIST).write_text(json.dumps({"edition": edition, **parts}), "utf8")
     paths = sorted(path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file())
-    (site / LASTING).write_text(json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8")
-    # The service worker of a book at the root of an address is asked for its neighbours' pages, too: it is told what
-    # belongs to the book. (The build writes the script anew each time.)
+    (site / LASTING).write_text(
+        json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8"
+    )
+    # The service worker of a book at the root of an address is asked for its neighbours' pages,
+    # too: it is told what belongs to the book. (The build writes the script anew each time.)
     ours = sorted({path.partition("/")[0] for path in paths} - {"lite", WORKER})
     script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
     (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
@@ -98,10 +121,16 @@ def add_to_head(app, pagename, templatename, context, doctree):
 
 
 def finish(app, exception):
-    if not exception and app.builder.format == "html" and (Path(app.outdir) / "_static" / "favicon.svg").exists():
+    if (
+        not exception
+        and app.builder.format == "html"
+        and (Path(app.outdir) / "_static" / "favicon.svg").exists()
+    ):
         write_manifest(Path(app.outdir), app.config.html_title)
 
 
 def setup(app):
     app.connect("html-page-context", add_to_head)
-    app.connect("build-finished", finish, priority=960)  # after page.py, which takes away what no page uses
+    app.connect(
+        "build-finished", finish, priority=960
+    )  # after page.py, which takes away what no page uses

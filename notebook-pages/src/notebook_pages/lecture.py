@@ -1,4 +1,5 @@
-"""The lecture of a page: the steps that its author marked, each with what it shows and notes for the speaker.
+"""The lecture of a page: the steps that its author marked, each with what it shows and notes for
+the speaker.
 
 A mark is a comment in the text, which neither the page nor Jupyter shows::
 
@@ -7,11 +8,12 @@ A mark is a comment in the text, which neither the page nor Jupyter shows::
 
     Let them say first which arrow stays. -->
 
-The first paragraph is the line that stands beside what is shown; ``shows:`` names labels of the page (none, for a line
-alone), and without it the step shows the next figure, formula, box, table, list or cell. What follows an empty line is
-for the speaker. A page without marks is shown section by section: each heading with a figure, or else with its first
-displayed formula. A page that moves its own figure as it is scrolled, an essay, puts ``data-stop`` into each of the
-sections that are its steps: the heading is the line, and the text is for the speaker.
+The first paragraph is the line that stands beside what is shown; ``shows:`` names labels of the
+page (none, for a line alone), and without it the step shows the next figure, formula, box, table,
+list or cell. What follows an empty line is for the speaker. A page without marks is shown section
+by section: each heading with a figure, or else with its first displayed formula. A page that moves
+its own figure as it is scrolled, an essay, puts ``data-stop`` into each of the sections that are
+its steps: the heading is the line, and the text is for the speaker.
 """
 
 import re
@@ -66,7 +68,9 @@ def keep_punctuation(tokens):
 
 
 def name_of(node, number):
-    """An id by which the browser finds what this node has become; a cell stands for the figure that it draws."""
+    """An id by which the browser finds what this node has become; a cell stands for the figure that
+    it draws.
+    """
     figure = next(node.findall(nodes.figure), None)
     shown = figure if figure is not None else node
     if isinstance(shown, nodes.math_block) and shown.get("label"):
@@ -114,7 +118,14 @@ def marked(doctree):
         else:
             following = [one for one in around[place + 1 :] if isinstance(one, SHOWN)]
             shows = [name_of(one, number) for one in following[:1]]
-        steps.append({"line": " ".join(line.split()), "notes": notes, "shows": shows, "section": heading_of(around)})
+        steps.append(
+            {
+                "line": " ".join(line.split()),
+                "notes": notes,
+                "shows": shows,
+                "section": heading_of(around),
+            }
+        )
     for node, _ in marks:
         node.parent.remove(node)
     return steps
@@ -127,7 +138,10 @@ def unmarked(doctree):
         if (title := next(section.findall(nodes.title), None)) is None:
             continue
         figures = [
-            one for block in section if not isinstance(block, nodes.section) for one in block.findall(nodes.figure)
+            one
+            for block in section
+            if not isinstance(block, nodes.section)
+            for one in block.findall(nodes.figure)
         ]
         formulas = [block for block in section if isinstance(block, nodes.math_block)]
         asked = [block for block in section if isinstance(block, question) and block["predicts"]]
@@ -135,7 +149,9 @@ def unmarked(doctree):
         shown[0] += formulas[:1]
         for together in [*filter(None, shown), *([one] for one in asked)]:
             shows = [name_of(one, f"{len(steps)}-{place}") for place, one in enumerate(together)]
-            steps.append({"line": title.astext(), "notes": "", "shows": shows, "section": section["ids"][0]})
+            steps.append(
+                {"line": title.astext(), "notes": "", "shows": shows, "section": section["ids"][0]}
+            )
     return steps
 
 
@@ -147,7 +163,8 @@ def note_steps(app, doctree):
 
 def as_html(step):
     return (
-        f'<li data-shows="{escape(" ".join(step["shows"]))}" data-section="{escape(step["section"])}">'
+        f'<li data-shows="{escape(" ".join(step["shows"]))}" '
+        f'data-section="{escape(step["section"])}">'
         f"<p>{in_words(step['line'], whole=False)}</p><aside>{in_words(step['notes'], whole=True)}</aside></li>"
     )
 
@@ -167,7 +184,11 @@ def add_lecture(app, pagename, templatename, context, doctree):
             items = "".join(map(as_html, steps))
         except ValueError as error:
             logger.warning(
-                "bad TeX in a step of the lecture: %s", error, location=pagename, type="website", subtype="tex"
+                "bad TeX in a step of the lecture: %s",
+                error,
+                location=pagename,
+                type="website",
+                subtype="tex",
             )
         else:
             context["body"] += f'<template id="lecture"><ol>{items}</ol></template>'

@@ -1,9 +1,9 @@
 """What KaTeX draws, said in a third of the words: formulas are most of what a page weighs.
 
-KaTeX writes for every browser and for its own program. Here its HTML is read as a tree and written again with what
-book.css draws alike. The words of the drawing, which no screen reader hears, are ``i`` for a box, ``var`` and ``b`` for
-a letter, slanted or bold, and ``s``, ``u`` and ``q`` for the three spaces. ``tests/pages`` compare where each letter
-stands with KaTeX's own, in three engines.
+KaTeX writes for every browser and for its own program. Here its HTML is read as a tree and written
+again with what book.css draws alike. The words of the drawing, which no screen reader hears, are
+``i`` for a box, ``var`` and ``b`` for a letter, slanted or bold, and ``s``, ``u`` and ``q`` for the
+three spaces. ``tests/pages`` compare where each letter stands with KaTeX's own, in three engines.
 """
 
 import re
@@ -21,7 +21,8 @@ SMALL = 0.7  # size of letters that are raised or lowered
 SMALLER = ["katex-sizing", "reset-size6", "size3"]
 #: What book.css says of every such box.
 USUAL = {"frac-line": ("border-bottom-width", "0.04em"), "arraycolsep": ("width", "0.5em")}
-#: Boxes that hold letters side by side, so that a group within them, which has no style of its own, changes nothing.
+#: Boxes that hold letters side by side, so that a group within them, which has no style of its own,
+#: changes nothing.
 ROWS = {"katex-html", "katex-sizing", "tight", "delimcenter"}
 #: Operators that are what these attributes say without them.
 FENCES = set("()[]{},")
@@ -50,7 +51,9 @@ class Box:
 
 @cache
 def styled():
-    """The names of classes that KaTeX's style sheet knows; it also writes many that only its own program needs."""
+    """The names of classes that KaTeX's style sheet knows; it also writes many that only its own
+    program needs.
+    """
     return frozenset(re.findall(r"\.([a-zA-Z][\w-]*)", KATEX_STYLES.read_text("utf8")))
 
 
@@ -77,7 +80,9 @@ def in_em(number):
 
 
 def rows_of(table):
-    """The rows of a table of KaTeX, without their struts, and the height of these, which is one in a whole table."""
+    """The rows of a table of KaTeX, without their struts, and the height of these, which is one in
+    a whole table.
+    """
     lines = table.inside[0].inside[0].inside
     struts = {line.inside[0].style["height"] for line in lines}
     if len(struts) != 1:
@@ -105,7 +110,9 @@ def hat(letter, mark, strut):
 
 
 def table(box, holder):
-    """A table of KaTeX, within ``holder``: a letter with a mark or an index, or lines that stand at their heights."""
+    """A table of KaTeX, within ``holder``: a letter with a mark or an index, or lines that stand at
+    their heights.
+    """
     lines, strut = rows_of(box)
     if holder.has("msupsub") and len(lines) == 1 and lines[0].inside[0].has(*SMALLER):
         letters = lines[0].inside[0]
@@ -125,8 +132,8 @@ def table(box, holder):
 
 
 def spread(boxes):
-    """The boxes of a row: what a group holds stands in its place, and what KaTeX leaves free beside a fraction is the
-    margin of the fraction."""
+    """The boxes of a row: what a group holds stands in its place, and what KaTeX leaves free beside
+    a fraction is the margin of the fraction."""
     found = []
     for box in boxes:
         found += spread(box.inside) if isinstance(box, Box) and box.is_group else [box]
@@ -153,8 +160,17 @@ def row(box):
     if box.has("mspace") and list(style) == ["margin-right"] and style["margin-right"] in SPACES:
         return Box(SPACES[style["margin-right"]])
     if box.tag == "svg":
-        return Box("svg", [], {}, box.inside, {name: value for name, value in box.rest.items() if name != "xmlns"})
-    inside = [table(part, box) if isinstance(part, Box) and part.has("vlist-t") else row(part) for part in box.inside]
+        return Box(
+            "svg",
+            [],
+            {},
+            box.inside,
+            {name: value for name, value in box.rest.items() if name != "xmlns"},
+        )
+    inside = [
+        table(part, box) if isinstance(part, Box) and part.has("vlist-t") else row(part)
+        for part in box.inside
+    ]
     classes = box.classes
     if box.has(*SMALLER):
         classes = ["tight", *(name for name in classes if name not in SMALLER)]
@@ -169,7 +185,11 @@ def row(box):
     for name, short in (("mathnormal", "var"), ("mathbf", "b")):
         if classes == [name] and box.is_letter:
             tag, classes = short, []
-    if len(inside) == 1 and classes in (["msupsub"], ["katex-accent"]) and inside[0].classes in (["script"], ["hat"]):
+    if (
+        len(inside) == 1
+        and classes in (["msupsub"], ["katex-accent"])
+        and inside[0].classes in (["script"], ["hat"])
+    ):
         return inside[0]
     found = Box(tag, classes, style, inside, box.rest)
     if tag == "i" and (found.is_group or ROWS & set(classes)):
@@ -185,7 +205,9 @@ def walk(box):
 
 
 def attribute(name, value):
-    return f" {name}={value}" if re.fullmatch(r"[\w.:;%#-]+", value) else f' {name}="{escape(value)}"'
+    return (
+        f" {name}={value}" if re.fullmatch(r"[\w.:;%#-]+", value) else f' {name}="{escape(value)}"'
+    )
 
 
 def short(value):
@@ -195,7 +217,9 @@ def short(value):
 
 @cache
 def names_of_styles():
-    """The names that book.css gives to the styles that stand oftenest: capitals are raised or lowered letters."""
+    """The names that book.css gives to the styles that stand oftenest: capitals are raised or
+    lowered letters.
+    """
     sheet = (WEBSITE / "static" / "book.css").read_text("utf8")
     found = {}
     for name, styles in re.findall(r"^\.katex \.([A-Za-z]) \{ (.*); \}$", sheet, re.MULTILINE):
@@ -223,12 +247,20 @@ def write(part):
 
 
 def spoken(box):
-    """MathML for the ear, without what tells how it would look and without rows that group nothing."""
+    """MathML for the ear, without what tells how it would look and without rows that group
+    nothing.
+    """
     if isinstance(box, str):
         return box
-    inside = [spoken(part) for part in box.inside if isinstance(part, str) or part.tag != "annotation"]
+    inside = [
+        spoken(part) for part in box.inside if isinstance(part, str) or part.tag != "annotation"
+    ]
     if box.tag in ("math", "mtd"):
-        while len(inside) == 1 and inside[0].tag in ("mrow", "mstyle") and inside[0].rest in ({}, IN_A_CELL):
+        while (
+            len(inside) == 1
+            and inside[0].tag in ("mrow", "mstyle")
+            and inside[0].rest in ({}, IN_A_CELL)
+        ):
             inside = inside[0].inside
     if box.tag == "semantics":
         return inside[0]
@@ -251,5 +283,8 @@ def lighten(html, tex):
     heard, drawn = formula
     heard, drawn = write(spoken(read(heard[0]))), row(read(drawn))
     boxes = "".join(write(part) for part in spread(drawn.inside))
-    light = f'<span class=katex data-tex="{escape(tex)}"><i>{heard}</i><i aria-hidden=true>{boxes}</i></span>'
+    light = (
+        f'<span class=katex data-tex="{escape(tex)}"><i>{heard}</i><i '
+        f"aria-hidden=true>{boxes}</i></span>"
+    )
     return light if formula is whole else f"<span class=katex-display>{light}</span>"

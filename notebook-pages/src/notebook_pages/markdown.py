@@ -67,7 +67,9 @@ class MarkdownWriter:
             inner = all(isinstance(child, nodes.Text) for child in node.children)
             # A number that Sphinx sets as code ("Exercise 2.1") is not code.
             is_reference = isinstance(node.parent, nodes.reference)
-            return ticks + node.astext() + ticks if inner and not is_reference else self.inline(node)
+            return (
+                ticks + node.astext() + ticks if inner and not is_reference else self.inline(node)
+            )
         if isinstance(node, SILENT):
             return ""
         if isinstance(node, nodes.image):
@@ -132,11 +134,16 @@ class MarkdownWriter:
 
     def table(self, node):
         rows = [
-            "| " + " | ".join(self.cell_text(entry) for entry in row.children) + " |" for row in node.findall(nodes.row)
+            "| " + " | ".join(self.cell_text(entry) for entry in row.children) + " |"
+            for row in node.findall(nodes.row)
         ]
         columns = len(next(node.findall(nodes.row)).children)
         rows.insert(1, "|" + " --- |" * columns)
-        titles = [f"**{self.number('table', node)}** " + self.inline(t) for t in node if isinstance(t, nodes.title)]
+        titles = [
+            f"**{self.number('table', node)}** " + self.inline(t)
+            for t in node
+            if isinstance(t, nodes.title)
+        ]
         return "\n\n".join([*titles, "\n".join(rows)])
 
     def cell_text(self, entry):
@@ -147,7 +154,9 @@ class MarkdownWriter:
         for child in node.children:
             if isinstance(child, nodes.caption):
                 number = self.number("figure", node)
-                parts.append(f"**{number}.** {self.inline(child)}" if number else self.inline(child))
+                parts.append(
+                    f"**{number}.** {self.inline(child)}" if number else self.inline(child)
+                )
             else:
                 parts.append(self.block(child, level))
         return "\n\n".join(filter(None, parts))
@@ -167,7 +176,10 @@ class MarkdownWriter:
         parts, replies = [f"**{title}**"], []
         for child in node.children:
             if isinstance(child, questions.choice_list):
-                choices = [f"- **{choice['letter']}.** {self.blocks(choice.children)}" for choice in child.children]
+                choices = [
+                    f"- **{choice['letter']}.** {self.blocks(choice.children)}"
+                    for choice in child.children
+                ]
                 parts.append("\n".join(choices))
             elif isinstance(child, questions.reply_list):
                 for reply in child.children:
@@ -212,6 +224,8 @@ class MarkdownWriter:
                 self.say(self.block(child, max(level, 1)))
 
     def figure_caption(self, figure):
-        captions = nodes.figure("", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))])
+        captions = nodes.figure(
+            "", *[c for c in figure.children if isinstance(c, (nodes.caption, nodes.legend))]
+        )
         captions["ids"] = figure["ids"]
         return self.figure(captions, 1)

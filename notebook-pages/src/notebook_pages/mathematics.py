@@ -1,7 +1,7 @@
 """Mathematics set at build time by KaTeX, so that pages need no script for it.
 
-KaTeX runs in the Node of the environment, in one process for the whole build, and gives HTML for the eye and
-MathML for screen readers. TeX that it cannot set becomes a build warning.
+KaTeX runs in the Node of the environment, in one process for the whole build, and gives HTML for
+the eye and MathML for screen readers. TeX that it cannot set becomes a build warning.
 """
 
 import atexit
@@ -26,9 +26,13 @@ KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 PUNCTUATION = tuple(".,;:!?)")
 #: What the end of a line may not part from a formula: after it, and before it.
 CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
-SHORT = 18  # signs, as a reader sees them, of a formula that need not be broken: half a line of the narrowest page
+# signs, as a reader sees them, of a formula that need not be broken: half a line of the narrowest
+# page
+SHORT = 18
 #: What TeX needs and nobody sees, or sees above or around another sign.
-UNSEEN = re.compile(r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]")
+UNSEEN = re.compile(
+    r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]"
+)
 logger = logging.getLogger(__name__)
 
 
@@ -37,20 +41,27 @@ class KaTeX:
 
     def __init__(self):
         self.process = subprocess.Popen(
-            [NODE, SCRIPT, KATEX], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf8"
+            [NODE, SCRIPT, KATEX],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            encoding="utf8",
         )
         atexit.register(self.close)
 
     def __call__(self, tex, display, stretch):
         try:
-            self.process.stdin.write(json.dumps({"tex": tex, "display": display, "stretch": stretch}) + "\n")
+            self.process.stdin.write(
+                json.dumps({"tex": tex, "display": display, "stretch": stretch}) + "\n"
+            )
             self.process.stdin.flush()
             answer = self.process.stdout.readline()
         except BrokenPipeError:
             answer = ""
         if not answer:
             raise RuntimeError(
-                f"KaTeX ended with code {self.process.wait()} (its last words stand above), at the formula {tex}"
+                f"KaTeX ended with code {self.process.wait()} (its last words stand above), at the "
+                f"formula {tex}"
             )
         return json.loads(answer)
 
@@ -64,7 +75,9 @@ class KaTeX:
 
 @cache
 def katex(process):
-    """The process that sets formulas for the Python process of this number; forks have pipes of their own."""
+    """The process that sets formulas for the Python process of this number; forks have pipes of
+    their own.
+    """
     return KaTeX()
 
 
@@ -93,14 +106,18 @@ def signs(tex):
 
 
 def keep_punctuation(app, doctree, docname):
-    """Let no line begin with the full stop, comma or ’s after a short formula, nor end with the bracket before it."""
+    """Let no line begin with the full stop, comma or ’s after a short formula, nor end with the
+    bracket before it.
+    """
     for formula in list(doctree.findall(nodes.math)):
         if signs(formula.astext()) > SHORT:
             continue
         parent = formula.parent
         place = parent.index(formula)
         before, after = (
-            parent[k] if 0 <= k < len(parent) and isinstance(parent[k], nodes.Text) else nodes.Text("")
+            parent[k]
+            if 0 <= k < len(parent) and isinstance(parent[k], nodes.Text)
+            else nodes.Text("")
             for k in (place - 1, place + 1)
         )
         opening = before[-1:] if before.endswith(OPENING) else ""
@@ -133,4 +150,6 @@ def visit_display(translator, node):
 
 def setup(app):
     app.connect("doctree-resolved", keep_punctuation)
-    app.add_html_math_renderer("katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None))
+    app.add_html_math_renderer(
+        "katex", inline_renderers=(visit_inline, None), block_renderers=(visit_display, None)
+    )

@@ -1,6 +1,8 @@
-"""What had another address in an earlier edition: whoever kept that address gets to where it is now.
+"""What had another address in an earlier edition: whoever kept that address gets to where it is
+now.
 
-``moved`` in ``_config.yml`` names each page that is gone, and each place on a page, with what took its place:
+``moved`` in ``_config.yml`` names each page that is gone, and each place on a page, with what took
+its place:
 
 .. code-block:: yaml
 
@@ -8,8 +10,8 @@
       chapters/old-name: chapters/new-name
       chapters/one#figure-old: chapters/two#figure-new
 
-A page that is gone leaves one behind that leads on. A place that is gone is found where the new one stands or, if that
-is on another page, in a last paragraph that says where it is.
+A page that is gone leaves one behind that leads on. A place that is gone is found where the new one
+stands or, if that is on another page, in a last paragraph that says where it is.
 """
 
 import html
@@ -39,7 +41,9 @@ def parted(place: str) -> tuple[str, str]:
 def address_of(place: str, seen_from: str) -> str:
     """The address of a place, relative to the page it is ``seen_from``."""
     page, name = parted(place)
-    return posixpath.relpath(f"{page}.html", posixpath.dirname(seen_from) or ".") + (f"#{name}" if name else "")
+    return posixpath.relpath(f"{page}.html", posixpath.dirname(seen_from) or ".") + (
+        f"#{name}" if name else ""
+    )
 
 
 def title_of(app: Sphinx, place: str) -> str:
@@ -47,7 +51,11 @@ def title_of(app: Sphinx, place: str) -> str:
 
 
 def keep_places(
-    app: Sphinx, pagename: str, templatename: str, context: dict[str, str], doctree: nodes.document | None
+    app: Sphinx,
+    pagename: str,
+    templatename: str,
+    context: dict[str, str],
+    doctree: nodes.document | None,
 ) -> None:
     """Let the old names of places on a page lead on."""
     for old, new in app.config.moved.items():
@@ -55,9 +63,13 @@ def keep_places(
         if page == pagename and name and doctree is not None and parted(new)[0] in app.env.titles:
             there = re.compile(rf'<[a-z0-9]+\b[^>]*\bid="{re.escape(parted(new)[1])}"')
             if parted(new)[0] == page and there.search(context["body"]):
-                context["body"] = there.sub(rf'<span id="{name}"></span>\g<0>', context["body"], count=1)
+                context["body"] = there.sub(
+                    rf'<span id="{name}"></span>\g<0>', context["body"], count=1
+                )
             else:
-                context["body"] += NOTE.format(old=name, address=address_of(new, page), title=title_of(app, new))
+                context["body"] += NOTE.format(
+                    old=name, address=address_of(new, page), title=title_of(app, new)
+                )
 
 
 def lead_on(app: Sphinx, exception: Exception | None) -> None:
@@ -69,17 +81,24 @@ def lead_on(app: Sphinx, exception: Exception | None) -> None:
         page, name = parted(new)
         file = site / f"{page}.html"
         if not file.is_file() or name and f'id="{name}"' not in file.read_text("utf8"):
-            raise SphinxError(f"moved, in _config.yml: {old} leads to {new}, and the book has no such place.")
+            raise SphinxError(
+                f"moved, in _config.yml: {old} leads to {new}, and the book has no such place."
+            )
         gone, place = parted(old)
         if bool(place) != (gone in app.env.found_docs):
             raise SphinxError(
-                f"moved, in _config.yml: {old} is no page that is gone, nor a place on one that is there."
+                f"moved, in _config.yml: {old} is no page that is gone, nor a place on one "
+                "that is there."
             )
         if not place:
             target = site / f"{gone}.html"
             target.parent.mkdir(parents=True, exist_ok=True)
             and_place = "" if name else " + location.hash"
-            about = {"address": address_of(new, gone), "title": title_of(app, new), "and_place": and_place}
+            about = {
+                "address": address_of(new, gone),
+                "title": title_of(app, new),
+                "and_place": and_place,
+            }
             target.write_text(REDIRECT.format(**about), "utf8")
 
 

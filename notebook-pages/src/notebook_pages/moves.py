@@ -1,7 +1,8 @@
-"""Whether two texts are the same but for the last digits of their numbers, and by how much these moved.
+"""Whether two texts are the same but for the last digits of their numbers, and by how much these
+moved.
 
-No two kinds of processor round alike: the order of a sum differs, and whether a product is rounded before it is
-added. What a cell prints may move by that, and by no more.
+No two kinds of processor round alike: the order of a sum differs, and whether a product is rounded
+before it is added. What a cell prints may move by that, and by no more.
 """
 
 import re
@@ -9,8 +10,8 @@ from typing import NamedTuple
 
 #: What a number in a text may move by, as a share of its size, or absolutely if it is below 1.
 ALLOWED = 1e-13
-#: What the coordinates of a drawing may move by, in its pixels: they are written to a tenth, and steps between two
-#: points are as wrong as both.
+#: What the coordinates of a drawing may move by, in its pixels: they are written to a tenth, and
+#: steps between two points are as wrong as both.
 ALLOWED_IN_DRAWINGS = 0.21
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -95,20 +96,32 @@ def _allowed(one, other):
 
 def _elsewhere(stored, now):
     """The first place that differs, with a little of what stands around it."""
-    start = next((k for k, (a, b) in enumerate(zip(stored, now)) if a != b), min(len(stored), len(now)))
+    start = next(
+        (k for k, (a, b) in enumerate(zip(stored, now)) if a != b), min(len(stored), len(now))
+    )
     begin = max(0, start - 20)
     return Move(stored[begin : start + 40], now[begin : start + 40], float("inf"), 0.0)
 
 
 def moves_of_outputs(stored, now):
-    """The moves between the outputs of a cell; ``None`` where there is more of one than of the other."""
+    """The moves between the outputs of a cell; ``None`` where there is more of one than of the
+    other.
+    """
     texts = [[_texts(output) for output in outputs] for outputs in (stored, now)]
     if [list(one) for one in texts[0]] != [list(one) for one in texts[1]]:
         return None
-    return [move for one, other in zip(*texts) for kind in one for move in moves(one[kind], other[kind])]
+    return [
+        move for one, other in zip(*texts) for kind in one for move in moves(one[kind], other[kind])
+    ]
 
 
 def _texts(output):
     """What of an output is text, by its kind."""
-    data = {kind: content for kind, content in output.get("data", {}).items() if isinstance(content, str)}
-    return dict(sorted((data | ({output["name"]: output["text"]} if "text" in output else {})).items()))
+    data = {
+        kind: content
+        for kind, content in output.get("data", {}).items()
+        if isinstance(content, str)
+    }
+    return dict(
+        sorted((data | ({output["name"]: output["text"]} if "text" in output else {})).items())
+    )

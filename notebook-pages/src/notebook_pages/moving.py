@@ -1,7 +1,8 @@
 """Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
 
 A cell that ends in a moving figure of the book puts out a still, with the state of the figure, and
-a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to life.
+a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to
+life.
 """
 
 import os
@@ -49,7 +50,9 @@ def kinds_on(doctree):
 
 
 def scripts_and_styles(kinds):
-    """What a page with these kinds of figures loads, texts by their names; and what its figures fetch later."""
+    """What a page with these kinds of figures loads, texts by their names; and what its figures
+    fetch later.
+    """
     bundle = named(REGISTERED["figures"])
     texts, later = {}, {}
     if own := [kind for kind in kinds if kind not in bundle.BUILT]:
@@ -58,9 +61,13 @@ def scripts_and_styles(kinds):
         later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
     for kind in set(kinds) & set(bundle.BUILT):
         script = built(bundle.BUILT[kind])
-        name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"  # no older page meets a newer world
+        # no older page meets a newer world
+        name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"
         later[name] = script
-        texts |= {f"{kind}.js": bundle.LOADER.replace("FILE", name), f"{kind}.css": bundle.built_style(kind)}
+        texts |= {
+            f"{kind}.js": bundle.LOADER.replace("FILE", name),
+            f"{kind}.css": bundle.built_style(kind),
+        }
     return texts, later
 
 
@@ -79,15 +86,24 @@ def add_scripts(app, pagename, templatename, context, doctree):
     for name in texts:
         if name.endswith(".js"):
             app.add_js_file(f"moving/{name}", loading_method="defer")
-    context["styles"] = [*context["styles"], *(f"moving/{name}" for name in texts if name.endswith(".css"))]
+    context["styles"] = [
+        *context["styles"],
+        *(f"moving/{name}" for name in texts if name.endswith(".css")),
+    ]
 
 
 def write_embedded(app, exception):
-    """A page for each figure alone, which others put into theirs; anew only if what they are made from has changed."""
+    """A page for each figure alone, which others put into theirs; anew only if what they are made
+    from has changed.
+    """
     if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
         return
     site = Path(app.outdir)
-    sources = [*files_used(f"import {REGISTERED['embedding']}"), NODE_MODULES / ".package-lock.json", Path(__file__)]
+    sources = [
+        *files_used(f"import {REGISTERED['embedding']}"),
+        NODE_MODULES / ".package-lock.json",
+        Path(__file__),
+    ]
     made_from, stamp = fingerprint(*sources), site.with_name("embedded-from")
     embedding = named(REGISTERED["embedding"])
     if (site / embedding.FOLDER).is_dir() and stamp.is_file() and stamp.read_text() == made_from:
@@ -101,13 +117,25 @@ def write_embedded(app, exception):
 @cache
 def built(script):
     """The text of a script with all that it imports, those of npm's packages among it."""
-    command = [NODE, ESBUILD, "--bundle", "--minify", "--format=iife", "--log-level=warning", script]
+    command = [
+        NODE,
+        ESBUILD,
+        "--bundle",
+        "--minify",
+        "--format=iife",
+        "--log-level=warning",
+        script,
+    ]
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
-    return subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+    return subprocess.run(
+        command, env=environment, stdout=subprocess.PIPE, text=True, check=True
+    ).stdout
 
 
 def setup(app):
     app.connect("config-inited", prefer_stills)
     app.connect("doctree-read", drop_widget_state)
     app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
-    app.connect("build-finished", write_embedded, priority=900)  # before page.py makes the styles small
+    app.connect(
+        "build-finished", write_embedded, priority=900
+    )  # before page.py makes the styles small

@@ -10,7 +10,8 @@ import zipfile
 from .paths import LICENCES_SAID, WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
-#: What a page asks for ahead of its turn: from a disk nothing is, and browsers complain of the hint.
+#: What a page asks for ahead of its turn: from a disk nothing is, and browsers complain of the
+#: hint.
 AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 README = """{title}
 {line}
@@ -37,7 +38,10 @@ two from the network the first time, and say so.)
 def pack(files, name, title):
     """The zip of ``files``, contents by path, in a folder called ``name``."""
     readme = README.format(title=title, line="=" * len(title), licences=LICENCES_SAID)
-    files = {path: AHEAD.sub(b"", content) if path.endswith(".html") else content for path, content in files.items()}
+    files = {
+        path: AHEAD.sub(b"", content) if path.endswith(".html") else content
+        for path, content in files.items()
+    }
     files = {"README.txt": readme.encode(), "serve.py": SERVER.read_bytes(), **files}
     date = moment_of_sources().timetuple()[:6]
     packed = io.BytesIO()

@@ -1,7 +1,8 @@
 """The packages that readers and students install: a wheel for each project that the book names.
 
-They hold no grader and no author's tools. The version of each follows from its sources, so that pip installs a
-newer one over an older one, and says that nothing is to be done where nothing has changed.
+They hold no grader and no author's tools. The version of each follows from its sources, so that pip
+installs a newer one over an older one, and says that nothing is to be done where nothing has
+changed.
 """
 
 import os
@@ -23,7 +24,8 @@ from .paths import REGISTERED, REPOSITORY
 TIME = (2026, 1, 1, 0, 0, 0)
 #: What else a wheel is made of, where a project has it.
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-#: Where a project states its version: in its ``pyproject.toml``, or else in the first of its packages.
+#: Where a project states its version: in its ``pyproject.toml``, or else in the first of its
+#: packages.
 STATED = re.compile(r'^(__version__|version) = "(?P<version>.*)"$', re.M)
 
 
@@ -33,8 +35,8 @@ class Project:
     Parameters
     ----------
     folder, packages, left_out : str, sequences of str
-        Its folder, the packages that the wheel holds, and parts of those that readers do not get; from the root of
-        the repository.
+        Its folder, the packages that the wheel holds, and parts of those that readers do not get;
+        from the root of the repository.
     repository : path, optional
     """
 
@@ -61,7 +63,12 @@ class Project:
 
     def sources(self) -> list[Path]:
         """The files that the wheel is made of."""
-        files = [path for place in self.packages for path in Path(self.repository, place).rglob("*") if path.is_file()]
+        files = [
+            path
+            for place in self.packages
+            for path in Path(self.repository, place).rglob("*")
+            if path.is_file()
+        ]
         left_out = [self.repository / place for place in self.left_out]
         about = [self.repository / self.folder / name for name in ABOUT]
         return [path for path in about if path.exists()] + sorted(
@@ -76,16 +83,21 @@ class Project:
     def version(self) -> str:
         """The version of the wheel: as the sources state it, or ``1.1.0.post20261122093000``.
 
-        A package that readers hold is only replaced by one of another version. So the version that is stated is for
-        the sources of its tag alone; built from others, it adds when they were last changed, in UTC: when they were
-        last committed or, where something is not committed or there is no repository, when the files were written.
+        A package that readers hold is only replaced by one of another version. So the version that
+        is stated is for the sources of its tag alone; built from others, it adds when they were
+        last changed, in UTC: when they were last committed or, where something is not committed or
+        there is no repository, when the files were written.
         """
         file = self._stating(self.repository)
         found = STATED.search(file.read_text("utf8"))
         if found is None:
             raise RuntimeError(f"{file} must state the version")
         stated = found["version"]
-        tag, committed, changed = f"{self.name}-{stated}", self._git("log", "-1", "--format=%ct"), self.sources()
+        tag, committed, changed = (
+            f"{self.name}-{stated}",
+            self._git("log", "-1", "--format=%ct"),
+            self.sources(),
+        )
         if committed:
             unknown = self._named("ls-files", "--others", "--exclude-standard")
             if self._git("log", "-1", "--format=%ct", tag) and not (
@@ -98,28 +110,40 @@ class Project:
         return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
 
     def _git(self, *arguments: str) -> str:
-        """What git says of the sources, or nothing where there is no git, or no repository that it would read."""
+        """What git says of the sources, or nothing where there is no git, or no repository that it
+        would read.
+        """
         if not shutil.which("git"):
             return ""
         paths = [*(str(self.folder / name) for name in ABOUT), *self.packages]
         paths += [f":(exclude){place}" for place in self.left_out]
-        done = subprocess.run(["git", "-C", self.repository, *arguments, "--", *paths], capture_output=True, text=True)
+        done = subprocess.run(
+            ["git", "-C", self.repository, *arguments, "--", *paths], capture_output=True, text=True
+        )
         return done.stdout.strip() if done.returncode == 0 else ""
 
     def _named(self, *arguments: str) -> list[Path]:
-        return [Path(self.repository, name) for name in self._git(*arguments, "-z").split("\0") if name]
+        return [
+            Path(self.repository, name) for name in self._git(*arguments, "-z").split("\0") if name
+        ]
 
     def _stating(self, repository: str | Path) -> Path:
         """The file that states the version."""
         file = "pyproject.toml" if "version" in self.about else None
-        return Path(repository, self.folder, file) if file else Path(repository, self.packages[0], "__init__.py")
+        return (
+            Path(repository, self.folder, file)
+            if file
+            else Path(repository, self.packages[0], "__init__.py")
+        )
 
     def wheel_name(self) -> str:
         """The name of the wheel's file."""
         return f"{self.name.replace('-', '_')}-{self.version()}-py3-none-any.whl"
 
     def build_wheel(self, folder: str | Path) -> Path:
-        """Build the wheel, from a copy: setuptools leaves files behind, and here the version is set."""
+        """Build the wheel, from a copy: setuptools leaves files behind, and here the version is
+        set.
+        """
         with tempfile.TemporaryDirectory() as place:
             for path in self.sources():
                 target = Path(place, path.relative_to(self.repository))
@@ -128,19 +152,35 @@ class Project:
             stating = self._stating(place)
             text, count = STATED.subn(rf'\1 = "{self.version()}"', stating.read_text("utf8"))
             if count != 1:
-                raise RuntimeError(f"{stating.relative_to(place)} must state the version once; it does {count} times")
+                raise RuntimeError(
+                    f"{stating.relative_to(place)} must state the version once; it does "
+                    f"{count} times"
+                )
             stating.write_text(text, "utf8")
-            command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--disable-pip-version-check", "--no-deps"]
+            command = [
+                sys.executable,
+                "-m",
+                "pip",
+                "wheel",
+                "--quiet",
+                "--disable-pip-version-check",
+                "--no-deps",
+            ]
             subprocess.run(
                 [*command, "--no-build-isolation", "--wheel-dir", folder, Path(place, self.folder)],
                 check=True,
-                env={**os.environ, "SOURCE_DATE_EPOCH": str(int(datetime(*TIME, tzinfo=UTC).timestamp()))},
+                env={
+                    **os.environ,
+                    "SOURCE_DATE_EPOCH": str(int(datetime(*TIME, tzinfo=UTC).timestamp())),
+                },
             )
         return Path(folder, self.wheel_name())
 
 
 class Ready:
-    """A project of which there is only the wheel; the same is asked of it as of a :class:`Project`."""
+    """A project of which there is only the wheel; the same is asked of it as of a
+    :class:`Project`.
+    """
 
     def __init__(self, file: str, packages: Iterable[str]) -> None:
         self.file, self.packages = REPOSITORY / file, tuple(packages)

@@ -28,7 +28,8 @@ THEME_STYLES = (
 STYLE = "style.css"
 # Scripts that some extension would put on every page although no page uses them.
 UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight")
-#: The scripts of the page itself, in their order, which a page fetches as one file; and those that not all pages have.
+#: The scripts of the page itself, in their order, which a page fetches as one file; and those that
+#: not all pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
     "doctools.js",
@@ -44,8 +45,8 @@ PAGE_SCRIPTS = (
 )
 SOMETIMES = ("progress", "questions", "lecture")
 JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
-#: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the whole page, and
-#: again for each in turn. book.js watches them instead.
+#: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the
+#: whole page, and again for each in turn. book.js watches them instead.
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 VALUE = re.compile(r"--(?:bs|mystnb|pst|sbt)-[\w-]+")
 UNUSED_FILES = (
@@ -89,19 +90,25 @@ def drop_thebe(app, doctree, docname):
 
 DEFINITIONS = re.compile(r"<defs>((?:<path [^>]*/>)+)</defs>")
 OUTLINE = re.compile(r'<path ([^>]*?)\bid="([^"]*)" ?([^>]*)/>')
-HIDDEN = '<svg class="outlines" width="0" height="0" style="position:absolute" aria-hidden="true"><defs>{}</defs></svg>'
+HIDDEN = (
+    '<svg class="outlines" width="0" height="0" style="position:absolute" '
+    'aria-hidden="true"><defs>{}</defs></svg>'
+)
 
 
 PLACED = re.compile(r'<use transform="translate\(([-.\d]+) ([-.\d]+)\)" href=')
 USE = re.compile(r'<use ([^>]*)href="#([^"]*)"([^>]*)/>')
 #: A name of a program within the text, and in the line that says how a function is called.
 LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
-NAME = re.compile(r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>')
+NAME = re.compile(
+    r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>'
+)
 STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
 
 
 def share_outlines(body):
-    """Move the outlines of letters from the drawings of a page into one table at its end, each of them once.
+    """Move the outlines of letters from the drawings of a page into one table at its end, each of
+    them once.
 
     A blank between two words has no outline: it goes, with every place where it stands.
     """
@@ -120,7 +127,9 @@ def share_outlines(body):
 
         def place(use):
             before, name, after = use.groups()
-            return "" if name in blanks else f'<use {before}href="#{names.get(name, name)}"{after}/>'
+            return (
+                "" if name in blanks else f'<use {before}href="#{names.get(name, name)}"{after}/>'
+            )
 
         text = DEFINITIONS.sub(take, drawing[0].replace(" />", "/>"))
         return USE.sub(place, PLACED.sub(r'<use x="\1" y="\2" href=', text))
@@ -133,11 +142,12 @@ def share_outlines(body):
 def lighten(body):
     """Say once what a page would repeat.
 
-    Every figure brings the style sheet of all figures and the outlines of its letters, since in a notebook it stands
-    alone. There it is a figure to a screen reader, too; here it lies in one that has a name, or its drawing has one.
-    Names, brackets, blanks and operators of a program have the colour of the text around them, and need no element
-    each; nor does a single word within an element. The stills of a page that moves its own figure (``data-stop``) are
-    seen on paper and without scripts: where there are scripts, the browser need not read them.
+    Every figure brings the style sheet of all figures and the outlines of its letters, since in a
+    notebook it stands alone. There it is a figure to a screen reader, too; here it lies in one that
+    has a name, or its drawing has one. Names, brackets, blanks and operators of a program have the
+    colour of the text around them, and need no element each; nor does a single word within an
+    element. The stills of a page that moves its own figure (``data-stop``) are seen on paper and
+    without scripts: where there are scripts, the browser need not read them.
     """
     seen = set()
 
@@ -160,14 +170,19 @@ def trim_page(app, pagename, templatename, context, doctree):
         return not any(word in name or word in body for word in UNUSED_SCRIPTS)
 
     context["script_files"][:] = filter(is_used, context["script_files"])
-    names = [str(getattr(script, "filename", None)).removeprefix("_static/") for script in context["script_files"]]
+    names = [
+        str(getattr(script, "filename", None)).removeprefix("_static/")
+        for script in context["script_files"]
+    ]
     context["script_files"][:] = [
         script for script, name in zip(context["script_files"], names) if name not in PAGE_SCRIPTS
     ]
     joined = "-".join(["page", *(name for name in SOMETIMES if f"{name}.js" in names)])
     app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
-        script.attributes.setdefault("defer", "defer")  # no script is awaited before the text is shown
+        script.attributes.setdefault(
+            "defer", "defer"
+        )  # no script is awaited before the text is shown
     context["styles"] = [STYLE]
     if "body" in context:
         context["body"] = lighten(context["body"])
@@ -178,17 +193,29 @@ def theme_styles(static):
 
 
 def make_small(static, files, told):
-    """Write files again without blanks and long names, all in one go; ``told`` is the least fault that is told of."""
-    options = ["--minify", f"--log-level={told}", "--allow-overwrite", f"--outdir={static}", f"--outbase={static}"]
+    """Write files again without blanks and long names, all in one go; ``told`` is the least fault
+    that is told of.
+    """
+    options = [
+        "--minify",
+        f"--log-level={told}",
+        "--allow-overwrite",
+        f"--outdir={static}",
+        f"--outbase={static}",
+    ]
     if files:
         subprocess.run([NODE, ESBUILD, *options, *files], check=True)
 
 
 def number_values(site, rules):
-    """The rules with numbers for the long names of the theme's values, unless something else asks for them."""
+    """The rules with numbers for the long names of the theme's values, unless something else asks
+    for them.
+    """
     others = [*pages_of(site), *site.glob("_static/moving/*"), WEBSITE / "print.css"]
     known = {name for path in others for name in VALUE.findall(path.read_text("utf8"))}
-    numbers = {name: f"--{number}" for number, name in enumerate(sorted({*VALUE.findall(rules)} - known))}
+    numbers = {
+        name: f"--{number}" for number, name in enumerate(sorted({*VALUE.findall(rules)} - known))
+    }
     return VALUE.sub(lambda match: numbers.get(match[0], match[0]), rules)
 
 
@@ -205,14 +232,16 @@ def purged(site, rules, *others):
 def bundle_styles(site):
     """Write the styles of all pages as one file: no icon font, no rule that no page uses, no blank.
 
-    The theme's are one layer. KaTeX's are for the words of light_formulas.py; what is set while one reads, of what a
-    cell puts out, has KaTeX's own rules with the styles of the editor.
+    The theme's are one layer. KaTeX's are for the words of light_formulas.py; what is set while one
+    reads, of what a cell puts out, has KaTeX's own rules with the styles of the editor.
     """
     static = site / "_static"
     parts = theme_styles(static)
     if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
         theme = "\n".join(path.read_text("utf8") for path in parts)
-        theme = re.sub(r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL)
+        theme = re.sub(
+            r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL
+        )
         own = [static / "book.css", WEBSITE / "live" / "js" / "page.css"]
         scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
         others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
@@ -230,18 +259,25 @@ def bundle_styles(site):
 
 
 def join_scripts(site):
-    """Write the scripts of the page itself as one file, for each choice of them that some page makes."""
+    """Write the scripts of the page itself as one file, for each choice of them that some page
+    makes.
+    """
     static = site / "_static"
     if not (static / "doctools.js").exists():  # Sphinx had nothing to build and copied nothing
         return
     theme = static / PAGE_SCRIPTS[-1]
     text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
     if count != 1:
-        raise RuntimeError("The theme's script no longer finds the boxes that scroll in the way that page.py replaces")
+        raise RuntimeError(
+            "The theme's script no longer finds the boxes that scroll in the way that page.py "
+            "replaces"
+        )
     theme.write_text(text, "utf8")
     files = {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}
     for file in files:
-        left_out = {f"{name}.js" for name in SOMETIMES} - {f"{name}.js" for name in file[:-3].split("-")}
+        left_out = {f"{name}.js" for name in SOMETIMES} - {
+            f"{name}.js" for name in file[:-3].split("-")
+        }
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
         (static / file).write_text("\n;".join(parts), "utf8")
     make_small(static, [static / file for file in files], "error")

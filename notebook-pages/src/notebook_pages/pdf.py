@@ -24,8 +24,9 @@ from .paths import LICENCES_SAID, NODE_MODULES, WEBSITE, edition, moment_of_sour
 from .spoken import spoken
 
 FACES = (
-    # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable ones as
-    # drawings. And one for code, which on a screen is the reader's own, with the Greek letters that code puts out.
+    # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable
+    # ones as drawings. And one for code, which on a screen is the reader's own, with the Greek
+    # letters that code puts out.
     ("Source Sans", "source-sans-3", "latin", 400),
     ("Source Sans", "source-sans-3", "latin", 600),
     ("Source Code Pro", "source-code-pro", "latin", 400),
@@ -33,23 +34,26 @@ FACES = (
     ("Source Code Pro Greek", "source-code-pro", "greek", 400),
 )
 LONG = 14  # lines of code that need not stay on one page
-# What only a screen can do, or what stands in the way on paper: links to a place beside themselves, the
-# code that draws figures, controls, the list of links on the front page, and what a check says of a blank.
+# What only a screen can do, or what stands in the way on paper: links to a place beside themselves,
+# the code that draws figures, controls, the list of links on the front page, and what a check says
+# of a blank.
 ONLY_ON_SCREEN = (
-    "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, .whole-book, "
+    "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
+    ".whole-book, "
     ".output:has([data-outcome='not attempted'])"
 )
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
 # Attributes that name other elements.
 NAMES_OF_OTHERS = ("aria-labelledby", "aria-describedby", "for", "headers")
 NOTE = (
-    "<strong>On paper.</strong> In this PDF, figures that move on the book\u2019s web pages are stills, and the "
+    "<strong>On paper.</strong> In this PDF, figures that move on the book\u2019s web pages are "
+    "stills, and the "
     "code that draws the figures is left out. The web pages and the notebooks have both."
 )
 SMALLEST = 0.6  # of the size of the text; what is still too wide then stops the printing
 
-# Make what is wider than its column smaller; return what is still too wide. A page is as wide as the
-# document in a window of the same width, so both are laid out alike.
+# Make what is wider than its column smaller; return what is still too wide. A page is as wide as
+# the document in a window of the same width, so both are laid out alike.
 FIT = """smallest => {
   for (const box of document.querySelectorAll(".math-box")) {
     const formula = box.querySelector(".katex");
@@ -88,7 +92,9 @@ def place(page, fragment=""):
 
 
 def target(page, address):
-    """Where a link on ``page`` leads in the document; ``None`` if it leads to no page of the book."""
+    """Where a link on ``page`` leads in the document; ``None`` if it leads to no page of the
+    book.
+    """
     path, fragment = urldefrag(address)
     if not path:
         return place(page, fragment)
@@ -102,11 +108,15 @@ def move_answers(text):
     folds = text.select("details.replies")
     if not folds:
         return
-    answers = BeautifulSoup('<section id="answers"><h2>Answers</h2></section>', "html.parser").section
+    answers = BeautifulSoup(
+        '<section id="answers"><h2>Answers</h2></section>', "html.parser"
+    ).section
     for fold in folds:
         box = fold.find_parent(class_="question")
         name = box.select_one(".admonition-title, .question-name").get_text().strip()
-        answers.append(BeautifulSoup(f'<p class="question-name leads-on">{name}</p>', "html.parser"))
+        answers.append(
+            BeautifulSoup(f'<p class="question-name leads-on">{name}</p>', "html.parser")
+        )
         answers.append(fold.ul.extract())
         fold.decompose()
     text.section.append(answers)
@@ -114,14 +124,19 @@ def move_answers(text):
 
 def as_picture(formula):
     """A PDF has no MathML: screen readers get the formula in words."""
-    formula["role"], formula["aria-label"] = "img", tagged.FORMULA + spoken(formula.select_one("math"))
+    formula["role"], formula["aria-label"] = (
+        "img",
+        tagged.FORMULA + spoken(formula.select_one("math")),
+    )
     heard, drawn = formula.find_all(recursive=False)
     heard.decompose()
     del drawn["aria-hidden"]
 
 
 def as_drawn(state):
-    """What a figure that stands still shows in numbers, in TeX; empty where it shows none that one would read off."""
+    """What a figure that stands still shows in numbers, in TeX; empty where it shows none that one
+    would read off.
+    """
 
     def degrees(angle):
         return rf"{round(math.degrees(angle), 1) + 0:g}^\circ"
@@ -132,11 +147,18 @@ def as_drawn(state):
     axis, turns = state.get("axis"), state.get("turns")
     if "angles" in state and "sequence" in state:
         names = (r"\psi", r"\theta", r"\varphi")
-        return r",\ ".join(f"{name} = {degrees(angle)}" for name, angle in zip(names, state["angles"], strict=True))
+        return r",\ ".join(
+            f"{name} = {degrees(angle)}" for name, angle in zip(names, state["angles"], strict=True)
+        )
     if "angle" in state and axis:
-        return rf"{degrees(state['angle'])}\text{{ about }}{axis if isinstance(axis, str) else vector(axis)}"
+        return (
+            rf"{degrees(state['angle'])}\text{{ about "
+            rf"}}{axis if isinstance(axis, str) else vector(axis)}"
+        )
     if turns:
-        return r"\text{, then }".join(rf"{degrees(angle)}\text{{ about }}{name}" for name, angle in turns)
+        return r"\text{, then }".join(
+            rf"{degrees(angle)}\text{{ about }}{name}" for name, angle in turns
+        )
     if "matrix" in state:
         return (
             r"\begin{bmatrix}"
@@ -150,8 +172,12 @@ def tell_numbers(text):
     """Say below each figure that moves on a screen what its still shows."""
     for figure in text.select("figure[data-figure]"):
         if tex := as_drawn(json.loads(figure.get("data-state", "{}"))):
-            words = f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
-            figure.insert_after(BeautifulSoup(words, "html.parser"))  # within it, brackets would be drawings of it
+            words = (
+                f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
+            )
+            figure.insert_after(
+                BeautifulSoup(words, "html.parser")
+            )  # within it, brackets would be drawings of it
 
 
 def article(site, page, set_formula=as_picture):
@@ -180,7 +206,9 @@ def article(site, page, set_formula=as_picture):
         if element.get("role", "").startswith("doc-"):
             del element["role"]  # in a PDF a link with such a role would be none
         if element.name == "figure":
-            element.attrs.pop("aria-labelledby", None)  # in a PDF it would be heard by that name alone
+            element.attrs.pop(
+                "aria-labelledby", None
+            )  # in a PDF it would be heard by that name alone
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):
@@ -235,7 +263,10 @@ def contents_list(chapters):
             lines.append(f'<li class="part">{escape(caption)}</li>')
         lines.append(line("chapter", place(page), heading(text.h2)))
         if page.startswith("chapters/"):
-            lines += [line("section", section.parent["id"], heading(section)) for section in text.find_all("h3")]
+            lines += [
+                line("section", section.parent["id"], heading(section))
+                for section in text.find_all("h3")
+            ]
     return "".join(lines)
 
 
@@ -268,7 +299,8 @@ def title_page(front, title):
     which = edition()
     link = f'<a href="https://doi.org/{which.doi}">doi:{which.doi}</a><br>' if which.doi else ""
     return (
-        f'<header class="title-page"><h1>{escape(title)}</h1><p class="question">{question.get_text()}</p>'
+        f'<header class="title-page"><h1>{escape(title)}</h1><p '
+        f'class="question">{question.get_text()}</p>'
         f"{figure}{beginning}"
         f"<p class='edition'>{escape(which.words)}<br>{link}{LICENCES_SAID}</p></header>"
     )
@@ -289,7 +321,8 @@ def document(site, title):
         lower_headings(text)
     body = [cover]
     body.append(
-        f'<nav class="list-of-contents" aria-label="Contents"><h1>Contents</h1><ol>{contents_list(chapters)}</ol></nav>'
+        '<nav class="list-of-contents" '
+        f'aria-label="Contents"><h1>Contents</h1><ol>{contents_list(chapters)}</ol></nav>'
     )
     body.append(str(front))
     for caption, _, text in chapters:
@@ -301,7 +334,8 @@ def document(site, title):
     links = "".join(f'<link rel="stylesheet" href="{static}/{name}">' for name in styles)
     own = (WEBSITE / "print.css").read_text("utf8")
     return (
-        f'<!doctype html><html lang="en" data-theme="light"><head><meta charset="utf-8"><title>{escape(title)}</title>'
+        '<!doctype html><html lang="en" data-theme="light"><head><meta '
+        f'charset="utf-8"><title>{escape(title)}</title>'
         f"{links}<style>{fonts.face_rules(static + '/fonts')}{faces()}{own}{running_heads(chapters)}</style></head>"
         f"<body>{''.join(body)}</body></html>"
     )
@@ -311,7 +345,9 @@ def page_numbers(printed):
     """The page on which each named place of a PDF stands, counted from 1."""
     with pikepdf.open(io.BytesIO(printed)) as pdf:
         pages = {page.objgen: number for number, page in enumerate(pdf.pages, start=1)}
-        return {name.removeprefix("/"): pages[place[0].objgen] for name, place in pdf.Root.Dests.items()}
+        return {
+            name.removeprefix("/"): pages[place[0].objgen] for name, place in pdf.Root.Dests.items()
+        }
 
 
 def in_order(bookmarks):
@@ -322,7 +358,9 @@ def in_order(bookmarks):
 
 
 def describe(pdf, title, author):
-    """Say in the file itself what it is, for programs that keep books, and that it is made for screen readers."""
+    """Say in the file itself what it is, for programs that keep books, and that it is made for
+    screen readers.
+    """
     which = edition()
     with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
         said["dc:title"] = title
@@ -334,7 +372,9 @@ def describe(pdf, title, author):
             said["dc:date"] = [which.date]
         if which.doi:
             said["dc:identifier"] = f"https://doi.org/{which.doi}"
-        said["xmp:CreateDate"] = said["xmp:ModifyDate"] = f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
+        said["xmp:CreateDate"] = said["xmp:ModifyDate"] = (
+            f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
+        )
         said["pdfuaid:part"] = "1"
 
 
@@ -378,8 +418,8 @@ def make(site, file, title, author):
         page.evaluate("document.fonts.ready")
         if faults := page.evaluate(FIT, SMALLEST):
             raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
-        # The list of contents needs the page numbers: print, read them, print again, until they are true. On a busy
-        # machine the first print may come before a typeface that only paper shows.
+        # The list of contents needs the page numbers: print, read them, print again, until they are
+        # true. On a busy machine the first print may come before a typeface that only paper shows.
         numbers, printed = None, page.pdf(**PAPER)
         for _ in range(3):
             if page_numbers(printed) == numbers:

@@ -1,6 +1,8 @@
-"""The picture that stands for a page where it is passed on: its first figure, on white, as a PNG of 1200 by 630.
+"""The picture that stands for a page where it is passed on: its first figure, on white, as a PNG of
+1200 by 630.
 
-Whoever shows a link fetches the picture by its whole address: pages name it only where the book has one.
+Whoever shows a link fetches the picture by its whole address: pages name it only where the book has
+one.
 """
 
 import html
@@ -13,11 +15,16 @@ from .paths import REGISTERED, fingerprint, named
 
 FOLDER = "pictures"
 #: The style sheet of the book's figures, and its colours on a light page, by name.
-FIGURES = named(REGISTERED["style"]) if "style" in REGISTERED else SimpleNamespace(STYLE="", LIGHT={"ink": "#000000"})
+FIGURES = (
+    named(REGISTERED["style"])
+    if "style" in REGISTERED
+    else SimpleNamespace(STYLE="", LIGHT={"ink": "#000000"})
+)
 WIDTH, HEIGHT, MARGIN = 1200, 630, 40
 LARGEST = 300_000  # bytes: some who show pictures take no larger ones
 FIGURE = re.compile(
-    r'<svg (?=[^>]*viewBox="([^"]*)")(?=[^>]*role="img")(?=[^>]*aria-label="([^"]*)")[^>]*>.*?</svg>', re.S
+    r'<svg (?=[^>]*viewBox="([^"]*)")(?=[^>]*role="img")(?=[^>]*aria-label="([^"]*)")[^>]*>.*?</svg>',
+    re.S,
 )
 MIX = re.compile(r"color-mix\(in srgb,currentColor (\d+)%,var\(--sheet\)\)")
 SHEET = "#ffffff"
@@ -30,26 +37,38 @@ def mixed(colour, per_cent):
 
 
 def plain_colours(text):
-    """``text`` with the colours of the light page where it names them, and none of those where it defines them."""
+    """``text`` with the colours of the light page where it names them, and none of those where it
+    defines them.
+    """
     text = re.sub(r"--[\w-]+:[^;]*;", "", text)
     return re.sub(r"var\(--([\w-]+)[^)]*\)", lambda name: FIGURES.LIGHT.get(name[1], SHEET), text)
 
 
 def plain_style():
-    """The style sheet of the figures without variables and mixtures, which programs that draw SVG do not know."""
+    """The style sheet of the figures without variables and mixtures, which programs that draw SVG
+    do not know.
+    """
     rules = []
-    for selector, rule in re.findall(r"([^{}]+)\{([^{}]*)\}", FIGURES.STYLE.partition("html[data-theme")[0]):
+    for selector, rule in re.findall(
+        r"([^{}]+)\{([^{}]*)\}", FIGURES.STYLE.partition("html[data-theme")[0]
+    ):
         selector = selector.replace(".orientation-figure", "").strip() or "g"
         if mix := MIX.search(rule):
             for name, colour in FIGURES.LIGHT.items():
-                rules.append(f"{selector}.{name}{{{rule.replace(mix[0], mixed(colour, int(mix[1])))}}}")
+                rules.append(
+                    f"{selector}.{name}{{{rule.replace(mix[0], mixed(colour, int(mix[1])))}}}"
+                )
         else:
-            rules.append(f"{'g.figure' if selector == 'svg' else selector}{{{plain_colours(rule)}}}")
+            rules.append(
+                f"{'g.figure' if selector == 'svg' else selector}{{{plain_colours(rule)}}}"
+            )
     return "".join(rules)
 
 
 def first_figure(body):
-    """The first figure of a page: its SVG, the shape of its sheet, and what it says to those who do not see it."""
+    """The first figure of a page: its SVG, the shape of its sheet, and what it says to those who do
+    not see it.
+    """
     found = FIGURE.search(body or "")
     if not found:
         return None
@@ -60,8 +79,14 @@ def first_figure(body):
         if f'id="{name}"' not in found[0]
     )
     figure = found[0].replace(">", f"><defs>{shared}</defs>", 1)
-    inner = re.search(r'^<svg [^>]*data-box="([^"]*)"', found[0])  # where much of the sheet is empty
-    return figure, [float(number) for number in (inner or found)[1].split()], html.unescape(found[2])
+    inner = re.search(
+        r'^<svg [^>]*data-box="([^"]*)"', found[0]
+    )  # where much of the sheet is empty
+    return (
+        figure,
+        [float(number) for number in (inner or found)[1].split()],
+        html.unescape(found[2]),
+    )
 
 
 def drawn(figure, box):
@@ -70,16 +95,23 @@ def drawn(figure, box):
 
     left, top, width, height = box
     scale = min((WIDTH - 2 * MARGIN) / width, (HEIGHT - 2 * MARGIN) / height)
-    across, down = (WIDTH - scale * width) / 2 - scale * left, (HEIGHT - scale * height) / 2 - scale * top
+    across, down = (
+        (WIDTH - scale * width) / 2 - scale * left,
+        (HEIGHT - scale * height) / 2 - scale * top,
+    )
     inner = plain_colours(figure.partition(">")[2].rpartition("</svg>")[0])
     own = re.search(r'^<svg [^>]*style="([^"]*)"', figure)
     svg = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="{WIDTH}" '
+        '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
+        f'width="{WIDTH}" '
         f'height="{HEIGHT}"><rect width="{WIDTH}" height="{HEIGHT}" fill="{SHEET}"/>'
-        f'<g class="figure" color="{FIGURES.LIGHT["ink"]}" transform="translate({across:g} {down:g}) scale({scale:g})">'
+        f'<g class="figure" color="{FIGURES.LIGHT["ink"]}" transform="translate({across:g} '
+        f'{down:g}) scale({scale:g})">'
         f'<g style="{own[1] if own else ""}">{inner}</g></g></svg>'
     )
-    return bytes(resvg_py.svg_to_bytes(svg_string=svg, style_sheet=plain_style(), skip_system_fonts=True))
+    return bytes(
+        resvg_py.svg_to_bytes(svg_string=svg, style_sheet=plain_style(), skip_system_fonts=True)
+    )
 
 
 def write_picture(app, pagename, templatename, context, doctree):

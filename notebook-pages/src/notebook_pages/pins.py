@@ -1,12 +1,16 @@
-"""``python -m notebook_pages.pins``: renew every exact version that the set-up installs, all of them or none.
+"""``python -m notebook_pages.pins``: renew every exact version that the set-up installs, all of
+them or none.
 
-- ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, found by pip;
-- the wheels for browsers, ``live/wheels.txt`` and ``lite/wheels.txt``: the same versions, with their hashes;
-- ``package.json`` and ``package-lock.json``: the newest of each major version, found by npm. The lock names no
+- ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, found
+  by pip;
+- the wheels for browsers, ``live/wheels.txt`` and ``lite/wheels.txt``: the same versions, with
+  their hashes;
+- ``package.json`` and ``package-lock.json``: the newest of each major version, found by npm. The
+  lock names no
   addresses, so that it serves whoever has another registry.
 
-A new major version in ``package.json``, or a package that a wheel for browsers newly needs, is a decision: the first is
-made by hand there, the second is told here.
+A new major version in ``package.json``, or a package that a wheel for browsers newly needs, is a
+decision: the first is made by hand there, the second is told here.
 """
 
 import json
@@ -40,7 +44,11 @@ def comments(text):
 
 def pins(text):
     """The versions in a list of pins, by name."""
-    lines = (line.split()[0].split("==") for line in text.splitlines() if line.strip() and not line.startswith("#"))
+    lines = (
+        line.split()[0].split("==")
+        for line in text.splitlines()
+        if line.strip() and not line.startswith("#")
+    )
     return {canonicalize_name(name): version for name, version in lines}
 
 
@@ -54,17 +62,34 @@ def resolve(*arguments):
     """What pip would install: a list of its reports on each package. Nothing is installed."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.json")
-        command = [sys.executable, "-m", "pip", "install", "--quiet", "--dry-run", "--ignore-installed"]
-        command += ["--disable-pip-version-check", "--only-binary=:all:", "--report", report, *arguments]
+        command = [
+            sys.executable,
+            "-m",
+            "pip",
+            "install",
+            "--quiet",
+            "--dry-run",
+            "--ignore-installed",
+        ]
+        command += [
+            "--disable-pip-version-check",
+            "--only-binary=:all:",
+            "--report",
+            report,
+            *arguments,
+        ]
         subprocess.run(command, check=True)
         return json.loads(report.read_text("utf8"))["install"]
 
 
 def asked_for():
-    """What the projects of this repository ask for, each with all its extras, but for one another."""
+    """What the projects of this repository ask for, each with all its extras, but for one
+    another.
+    """
     folders = [*(project.folder for project in PROJECTS), WEBSITE.parents[1]]
     stated = [
-        tomllib.loads(Path(REPOSITORY, folder, "pyproject.toml").read_text("utf8"))["project"] for folder in folders
+        tomllib.loads(Path(REPOSITORY, folder, "pyproject.toml").read_text("utf8"))["project"]
+        for folder in folders
     ]
     ours = {project["name"] for project in stated}
     every = [
@@ -84,12 +109,17 @@ def constraints():
 
 
 def wheels(old, versions):
-    """The new text of a list of wheels for browsers, whose old text is ``old``, and what pip reports of each."""
+    """The new text of a list of wheels for browsers, whose old text is ``old``, and what pip
+    reports of each.
+    """
     wanted = [
-        f"{name}=={versions[name]}" if name in versions else f"{name}>={version}" for name, version in pins(old).items()
+        f"{name}=={versions[name]}" if name in versions else f"{name}>={version}"
+        for name, version in pins(old).items()
     ]
     with tempfile.TemporaryDirectory() as folder:
-        reports = resolve("--no-deps", *IN_BROWSERS, "--ignore-requires-python", "--target", folder, *wanted)
+        reports = resolve(
+            "--no-deps", *IN_BROWSERS, "--ignore-requires-python", "--target", folder, *wanted
+        )
     found = {canonicalize_name(one["metadata"]["name"]): one for one in reports}
     lines = comments(old)
     for name in pins(old):
@@ -109,9 +139,14 @@ def missing(reports):
     there = {canonicalize_name(one["metadata"]["name"]) for one in reports} | NOT_IN_BROWSERS
     for one in reports:
         for requirement in map(Requirement, one["metadata"].get("requires_dist", ())):
-            needed = requirement.marker is None or requirement.marker.evaluate(browser | {"extra": ""})
+            needed = requirement.marker is None or requirement.marker.evaluate(
+                browser | {"extra": ""}
+            )
             if needed and canonicalize_name(requirement.name) not in there:
-                yield f"{one['metadata']['name']} {one['metadata']['version']} needs {requirement.name}"
+                yield (
+                    f"{one['metadata']['name']} {one['metadata']['version']} needs "
+                    f"{requirement.name}"
+                )
 
 
 def scripts():
@@ -121,7 +156,9 @@ def scripts():
         for name, version in wanted[group].items():
             if name not in HELD:
                 found = json.loads(
-                    npm("view", f"{name}@^{version}", "version", "--json", stdout=subprocess.PIPE).stdout
+                    npm(
+                        "view", f"{name}@^{version}", "version", "--json", stdout=subprocess.PIPE
+                    ).stdout
                 )
                 wanted[group][name] = max([found] if isinstance(found, str) else found, key=Version)
     with tempfile.TemporaryDirectory() as folder:
@@ -145,7 +182,8 @@ def main():
     if sys.version_info[:2] != oldest:
         wanted, this = (".".join(map(str, version[:2])) for version in (oldest, sys.version_info))
         sys.exit(
-            f"Pins must serve the oldest Python that the book supports, {wanted}, and are found by it; this is {this}. "
+            f"Pins must serve the oldest Python that the book supports, {wanted}, and are found by "
+            f"it; this is {this}. "
             f"Remove .venv, then: make PYTHON=python{wanted} renew-pins"
         )
     new, reports = {CONSTRAINTS: constraints()}, []
@@ -157,7 +195,8 @@ def main():
         sys.exit(
             "Nothing was written. In browsers "
             + "; ".join(untold)
-            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, then try again."
+            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, "
+            "then try again."
         )
     for path, text in new.items():
         changed = path.read_text("utf8") != text

@@ -1,8 +1,10 @@
-"""Previews: what a link to an equation, a figure, a term or a source leads to, for ``static/previews.js`` to show.
+"""Previews: what a link to an equation, a figure, a term or a source leads to, for
+``static/previews.js`` to show.
 
-What stands on the same page is shown from there. For each page that others link to in this way the build writes one
-script with those places of it, which is fetched when the first of them is asked for; a script, because a page opened
-from a disk may fetch nothing else. Pages themselves grow by nothing.
+What stands on the same page is shown from there. For each page that others link to in this way the
+build writes one script with those places of it, which is fetched when the first of them is asked
+for; a script, because a page opened from a disk may fetch nothing else. Pages themselves grow by
+nothing.
 """
 
 import json
@@ -14,7 +16,9 @@ from pathlib import Path
 from .finish import pages_of
 
 FOLDER = Path("_static", "previews")
-LINK = re.compile(r'<a class="reference internal" href="([\w./-]+)\.html#((?:equation-|fig|term-|id\d)[^"]*)"')
+LINK = re.compile(
+    r'<a class="reference internal" href="([\w./-]+)\.html#((?:equation-|fig|term-|id\d)[^"]*)"'
+)
 OUTLINES = re.compile(r'href="#(o\d+)"')
 
 
@@ -33,30 +37,49 @@ def element_at(text, name):
 
 def plain(shown):
     """The HTML without links and names."""
-    shown = re.sub(r'<a class="headerlink".*?</a>|<span class="label">.*?</span>(?=\s*<p)', "", shown, flags=re.DOTALL)
+    shown = re.sub(
+        r'<a class="headerlink".*?</a>|<span class="label">.*?</span>(?=\s*<p)',
+        "",
+        shown,
+        flags=re.DOTALL,
+    )
     return re.sub(r'</?a\b[^>]*>|\sid="[^"]*"', "", shown)
 
 
 def figure(page, found):
-    """A figure for other pages: its drawing, with the style and the outlines of letters that its own page has, and its
-    caption."""
+    """A figure for other pages: its drawing, with the style and the outlines of letters that its
+    own page has, and its caption."""
     drawing = re.search(r"<svg\b.*?</svg>", found, re.DOTALL)
     caption = re.search(r"<figcaption>.*</figcaption>", found, re.DOTALL)
     style = re.search(r"<style>\.orientation-figure.*?</style>", page, re.DOTALL)
     if not (drawing and caption and style):
         return None
     names = dict.fromkeys(OUTLINES.findall(drawing[0]))
-    paths = "".join(found[0] for name in names if (found := re.search(rf'<path id="{name}"[^>]*/>', page)))
-    outlines = f'<svg width="0" height="0" style="position:absolute"><defs>{paths}</defs></svg>' if paths else ""
-    shown = f'{style[0]}{outlines}<div class="orientation-figure">{drawing[0]}</div>{plain(caption[0])}'
+    paths = "".join(
+        found[0] for name in names if (found := re.search(rf'<path id="{name}"[^>]*/>', page))
+    )
+    outlines = (
+        f'<svg width="0" height="0" style="position:absolute"><defs>{paths}</defs></svg>'
+        if paths
+        else ""
+    )
+    shown = (
+        f'{style[0]}{outlines}<div class="orientation-figure">{drawing[0]}</div>{plain(caption[0])}'
+    )
     return re.sub(r'((?:id="|href="#))(?=o\d+")', r"\1preview-", shown)
 
 
 def preview(page, name):
-    """The HTML of the place ``name`` of a page, without links and names of its own; None if it is none of the kinds."""
+    """The HTML of the place ``name`` of a page, without links and names of its own; None if it is
+    none of the kinds.
+    """
     if name.startswith("term-"):
         begin = page.find(f'<dt id="{name}"')
-        shown = f'<dl class="glossary">{page[begin : page.index("</dd>", begin)]}</dd></dl>' if begin >= 0 else None
+        shown = (
+            f'<dl class="glossary">{page[begin : page.index("</dd>", begin)]}</dd></dl>'
+            if begin >= 0
+            else None
+        )
     elif (shown := element_at(page, name)) and shown.startswith("<figure"):
         return figure(page, shown)
     if not shown or (name.startswith("id") and 'class="citation"' not in shown):
@@ -65,7 +88,10 @@ def preview(page, name):
 
 
 def write(site):
-    texts = {path.relative_to(site).with_suffix("").as_posix(): path.read_text("utf8") for path in pages_of(site)}
+    texts = {
+        path.relative_to(site).with_suffix("").as_posix(): path.read_text("utf8")
+        for path in pages_of(site)
+    }
     wanted = defaultdict(set)
     for page, text in texts.items():
         for path, name in LINK.findall(text):
@@ -89,4 +115,6 @@ def finish(app, exception):
 
 def setup(app):
     app.add_js_file("previews.js", loading_method="defer")
-    app.connect("build-finished", finish, priority=965)  # when all pages are written, before their files are listed
+    app.connect(
+        "build-finished", finish, priority=965
+    )  # when all pages are written, before their files are listed

@@ -1,7 +1,8 @@
-"""The page *My progress*: what there is to do in each chapter, filled in by the reader's own browser.
+"""The page *My progress*: what there is to do in each chapter, filled in by the reader's own
+browser.
 
-The build counts; `progress.js` keeps what the reader does, and `my-progress.js` shows it. Without a script the page
-still says what there is to read, to predict, to answer and to solve.
+The build counts; `progress.js` keeps what the reader does, and `my-progress.js` shows it. Without a
+script the page still says what there is to read, to predict, to answer and to solve.
 """
 
 import re
@@ -18,7 +19,8 @@ from .paths import parts
 from .questions import question
 
 CHECK = re.compile(r"^check\(\s*[\"']([^\"']+)", re.MULTILINE)
-# What is counted, in the order of the columns: heading, and the explanation in the foot of the table.
+# What is counted, in the order of the columns: heading, and the explanation in the foot of the
+# table.
 COLUMNS = {
     "read": "Sections read",
     "predictions": "Predictions",
@@ -43,7 +45,9 @@ def questions_in(notebook):
     if not notebook.is_file():
         return []
     cells = nbformat.read(notebook, as_version=4).cells
-    return [name for cell in cells if cell.cell_type == "code" for name in CHECK.findall(cell.source)]
+    return [
+        name for cell in cells if cell.cell_type == "code" for name in CHECK.findall(cell.source)
+    ]
 
 
 def companion(page):
@@ -57,7 +61,11 @@ def count(app, doctree):
     whole = next(doctree.findall(nodes.section), [])
     sections = [section for section in whole if isinstance(section, nodes.section)]
     boxes = list(doctree.findall(question))
-    exercises = [node for node in doctree.findall() if isinstance(node, (exercise_node, exercise_enumerable_node))]
+    exercises = [
+        node
+        for node in doctree.findall()
+        if isinstance(node, (exercise_node, exercise_enumerable_node))
+    ]
     app.env.metadata[page]["to do"] = {
         "read": [section["ids"][0] for section in sections],
         "predictions": [box["ids"][0] for box in boxes if box["predicts"]],
@@ -69,7 +77,9 @@ def count(app, doctree):
 
 def chapters(env):
     """The chapters of the book, which are the pages with a number, in the order of the contents."""
-    return [page for _, pages in parts() for page in pages if env.toc_secnumbers.get(page, {}).get("")]
+    return [
+        page for _, pages in parts() for page in pages if env.toc_secnumbers.get(page, {}).get("")
+    ]
 
 
 def visit_table(translator, node):
@@ -82,7 +92,8 @@ def visit_table(translator, node):
         number = env.toc_secnumbers[page][""][0]
         address = translator.builder.get_relative_uri(here, page)
         cells = "".join(
-            f'<td data-kind="{kind}" data-heading="{heading}" data-names="{escape(" ".join(found[kind]), quote=True)}">'
+            f'<td data-kind="{kind}" data-heading="{heading}" '
+            f'data-names="{escape(" ".join(found[kind]), quote=True)}">'
             f"{len(found[kind]) or '–'}</td>"
             for kind, heading in COLUMNS.items()
         )
@@ -94,8 +105,10 @@ def visit_table(translator, node):
         )
     heads = "".join(f'<th scope="col">{heading}</th>' for heading in COLUMNS.values())
     translator.body.append(
-        '<div class="pst-scrollable-table-container" tabindex="0" role="group" aria-label="Progress by chapter">'
-        f'<table class="table my-progress"><thead><tr><th scope="col">Chapter</th>{heads}</tr></thead>'
+        '<div class="pst-scrollable-table-container" tabindex="0" role="group" '
+        'aria-label="Progress by chapter">'
+        '<table class="table my-progress"><thead><tr><th '
+        f'scope="col">Chapter</th>{heads}</tr></thead>'
         f"<tbody>{''.join(rows)}</tbody></table></div>\n"
     )
     raise nodes.SkipNode
@@ -110,7 +123,9 @@ def add_scripts(app, pagename, templatename, context, doctree):
     if doctree is None:
         return
     has_table = next(doctree.findall(progress_table), None) is not None
-    is_notebook = str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc
+    is_notebook = (
+        str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc
+    )
     if has_table or is_notebook or cells_with_code(doctree):
         app.add_js_file("progress.js", loading_method="defer", priority=400)  # before what uses it
     if has_table:

@@ -1,9 +1,11 @@
-"""What others read of the pages: search engines, those who pass a page on, programs, and readers with a correction.
+"""What others read of the pages: search engines, those who pass a page on, programs, and readers
+with a correction.
 
-The title and the author stand in ``_config.yml``; so do, once the book has them, its address (``html.baseurl``) and its
-repository (``repository.url``, ``repository.branch``), for which BOOK_ADDRESS and BOOK_REPOSITORY stand in where a
-workflow publishes. The edition, its date and its DOI stand in ``CITATION.cff``, from which the directive
-``cite-this-book`` writes how the book is cited.
+The title and the author stand in ``_config.yml``; so do, once the book has them, its address
+(``html.baseurl``) and its repository (``repository.url``, ``repository.branch``), for which
+BOOK_ADDRESS and BOOK_REPOSITORY stand in where a workflow publishes. The edition, its date and its
+DOI stand in ``CITATION.cff``, from which the directive ``cite-this-book`` writes how the book is
+cited.
 """
 
 import html
@@ -33,11 +35,15 @@ def take_addresses(app, config):
         config.html_baseurl += "/"
     if repository := os.environ.get("BOOK_REPOSITORY"):
         config.html_theme_options["repository_url"] = repository.rstrip("/")
-    config.book_edition = dict(edition(Path(app.srcdir))._asdict(), words=edition(Path(app.srcdir)).words)
+    config.book_edition = dict(
+        edition(Path(app.srcdir))._asdict(), words=edition(Path(app.srcdir)).words
+    )
 
 
 def description(doctree):
-    """The first words of a page that stand as text: its first paragraph without a set formula, cut to length."""
+    """The first words of a page that stand as text: its first paragraph without a set formula, cut
+    to length.
+    """
     for paragraph in doctree.findall(nodes.paragraph):
         inside = paragraph.parent
         while inside is not None and not isinstance(inside, ASIDE):
@@ -45,7 +51,8 @@ def description(doctree):
         words = " ".join(paragraph.astext().replace(r"^\circ", "°").split())
         words = re.sub(r" ?\[[^]]*\b\d{4}\w?\]", "", words)  # names of sources
         formula = any(
-            set(node.astext().replace(r"^\circ", "")) & set(r"\{^_") for node in paragraph.findall(nodes.math)
+            set(node.astext().replace(r"^\circ", "")) & set(r"\{^_")
+            for node in paragraph.findall(nodes.math)
         )
         if inside is None and not formula and len(words) >= SHORTEST and not words.endswith(":"):
             return shortened(words)
@@ -57,7 +64,11 @@ def shortened(words):
     if len(words) <= LONGEST:
         return words
     sentences = words[: LONGEST + 1].rpartition(". ")[0]
-    return f"{sentences}." if len(sentences) >= SHORTEST else f"{words[: LONGEST - 4].rpartition(' ')[0]} ..."
+    return (
+        f"{sentences}."
+        if len(sentences) >= SHORTEST
+        else f"{words[: LONGEST - 4].rpartition(' ')[0]} ..."
+    )
 
 
 def plain_title(context):
@@ -68,7 +79,9 @@ def write_head(app, pagename, templatename, context, doctree):
     """Give the page's template what it says of the page, and to whom readers write."""
     book = app.config.html_title
     # The theme brings a tag for the size of the screen; docutils brings it once more.
-    context["metatags"] = re.sub(r'<meta[^>]*name="viewport"[^>]*>\s*', "", context.get("metatags") or "")
+    context["metatags"] = re.sub(
+        r'<meta[^>]*name="viewport"[^>]*>\s*', "", context.get("metatags") or ""
+    )
     title = plain_title(context)
     words = description(doctree) if doctree is not None else ""
     if words and pagename.startswith(STORED):
@@ -80,14 +93,20 @@ def write_head(app, pagename, templatename, context, doctree):
     context["shared_kind"] = "book" if pagename == app.config.root_doc else "article"
     context["edition"] = app.config.book_edition
     context["licences"] = LICENCES
-    repository = context.get("theme_repository_url") or app.config.html_theme_options.get("repository_url") or ""
+    repository = (
+        context.get("theme_repository_url")
+        or app.config.html_theme_options.get("repository_url")
+        or ""
+    )
     context["repository"] = repository
     if repository and doctree is not None:
         source = os.path.relpath(app.env.doc2path(pagename), app.srcdir)
         branch = app.config.html_theme_options.get("repository_branch") or "main"
         which = app.config.book_edition["words"]
         body = f"Page: {title} ({pagename})\nSection: \n{which}\n\nWhat is wrong:\n"
-        context["report_mistake"] = f"{repository}/issues/new?{urlencode({'title': f'{title}: ', 'body': body})}"
+        context["report_mistake"] = (
+            f"{repository}/issues/new?{urlencode({'title': f'{title}: ', 'body': body})}"
+        )
         context["suggest_change"] = f"{repository}/edit/{branch}/{quote(source)}"
 
 
@@ -101,16 +120,23 @@ def begin(app, env, docnames):
 
 
 def outline(app):
-    """The pages as a list in Markdown, with what each is about: for programs that read (https://llmstxt.org)."""
+    """The pages as a list in Markdown, with what each is about: for programs that read
+    (https://llmstxt.org).
+    """
     env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
     lines = [f"# {app.config.html_title}", "", f"> {env.book_descriptions.get(root, '')}", ""]
-    said = filter(None, [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."])
+    said = filter(
+        None,
+        [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."],
+    )
     lines += [" ".join(said), "", "## Pages", ""]
     for page in in_order(env)[1:]:
         title = env.titles[page].astext()
         is_one = str(env.doc2path(page)).endswith(".ipynb")
         notebook = f" ([notebook]({address}{notebook_address(page)}))" if is_one else ""
-        lines.append(f"- [{title}]({address}{page}.html): {env.book_descriptions.get(page, '')}{notebook}")
+        lines.append(
+            f"- [{title}]({address}{page}.html): {env.book_descriptions.get(page, '')}{notebook}"
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -125,7 +151,8 @@ def in_order(env):
     return [*found, *sorted(env.found_docs - set(found))]
 
 
-#: It stands in for any address, so nothing in it is relative: where no address is set, the script looks for the book.
+#: It stands in for any address, so nothing in it is relative: where no address is set, the script
+#: looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>No such page - {title}</title><meta name="robots" content="noindex">
@@ -159,17 +186,22 @@ def write_files(app, exception):
     if exception or app.builder.format != "html":
         return
     site, address = Path(app.outdir), app.config.html_baseurl or ""
-    (site / ".nojekyll").touch()  # GitHub Pages would leave out the folders that begin with an underscore
+    (
+        site / ".nojekyll"
+    ).touch()  # GitHub Pages would leave out the folders that begin with an underscore
     # The page stands in for any address: only the path from the server's root leads away from it.
     front = urlsplit(address).path or "/"
-    (site / "404.html").write_text(NOT_FOUND.format(title=html.escape(app.config.html_title), front=front), "utf8")
+    (site / "404.html").write_text(
+        NOT_FOUND.format(title=html.escape(app.config.html_title), front=front), "utf8"
+    )
     robots = "User-agent: *\nAllow: /\n"
     sitemap = site / "sitemap.xml"
     sitemap.unlink(missing_ok=True)
     if address:  # a sitemap holds whole addresses, or nothing
         robots += f"Sitemap: {address}sitemap.xml\n"
         pages = "".join(
-            f"<url><loc>{html.escape(address + quote(page))}.html</loc></url>\n" for page in in_order(app.env)
+            f"<url><loc>{html.escape(address + quote(page))}.html</loc></url>\n"
+            for page in in_order(app.env)
         )
         sitemap.write_text(
             f'<?xml version="1.0" encoding="utf-8"?>\n'
@@ -193,14 +225,20 @@ class CiteThisBook(SphinxDirective):
             nodes.Text(f". {which.words}."),
         ]
         if address:
-            words += [nodes.Text(" "), nodes.reference("", address, refuri=address), nodes.Text(".")]
+            words += [
+                nodes.Text(" "),
+                nodes.reference("", address, refuri=address),
+                nodes.Text("."),
+            ]
         fields = {
             "title": config.html_title, "author": f"{{{config.author}}}", "edition": which.name,
             "year": which.date[:4], "date": which.date, "doi": which.doi, "url": config.html_baseurl,
         }  # fmt: skip
         key = re.sub(r"[^a-z]+", "-", config.html_title.lower())
         lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
-        code = nodes.literal_block("", "\n".join([f"@book{{{key},", *lines, "}"]), language="bibtex")
+        code = nodes.literal_block(
+            "", "\n".join([f"@book{{{key},", *lines, "}"]), language="bibtex"
+        )
         return [nodes.paragraph("", "", *words), code]
 
 

@@ -1,8 +1,10 @@
-"""Questions that the reader answers on the page: predictions before a result, and the recap of a chapter.
+"""Questions that the reader answers on the page: predictions before a result, and the recap of a
+chapter.
 
-The directive `predict` is one question; `recap` holds several, each a `question`. The last thing in a question is a
-definition list: each term is a choice, its definition the reply to whoever chooses it. The page as built is complete
-without a script, the replies in a fold; `questions.js` lets the reader commit to a choice first.
+The directive `predict` is one question; `recap` holds several, each a `question`. The last thing in
+a question is a definition list: each term is a choice, its definition the reply to whoever chooses
+it. The page as built is complete without a script, the replies in a fold; `questions.js` lets the
+reader commit to a choice first.
 """
 
 from docutils import nodes
@@ -22,9 +24,10 @@ logger = logging.getLogger(__name__)
 class question(nodes.General, nodes.Element):
     """A question with its choices.
 
-    Attributes: ``predicts``; ``place``, its number on the page; ``kind``, one of the options ``answer`` (a letter),
-    ``number`` and ``angle`` (in degrees); ``answer``, what is right; ``tolerance``; ``covers``, how many of the blocks
-    that follow are covered until the reader has answered.
+    Attributes: ``predicts``; ``place``, its number on the page; ``kind``, one of the options
+    ``answer`` (a letter), ``number`` and ``angle`` (in degrees); ``answer``, what is right;
+    ``tolerance``; ``covers``, how many of the blocks that follow are covered until the reader has
+    answered.
     """
 
 
@@ -61,7 +64,13 @@ class QuestionDirective(SphinxDirective):
     predicts = False
 
     def fault(self, words):
-        logger.warning("in a question: %s", words, location=self.get_source_info(), type="website", subtype="questions")
+        logger.warning(
+            "in a question: %s",
+            words,
+            location=self.get_source_info(),
+            type="website",
+            subtype="questions",
+        )
         return []
 
     def run(self):
@@ -76,7 +85,9 @@ class QuestionDirective(SphinxDirective):
         items = list(box.pop().children)
         kinds = [kind for kind in ("answer", "number", "angle") if kind in self.options]
         if len(kinds) != 1:
-            return self.fault("say what is right by one of `:answer: B`, `:number: 0.5` and `:angle: 30`")
+            return self.fault(
+                "say what is right by one of `:answer: B`, `:number: 0.5` and `:angle: 30`"
+            )
         box["kind"], box["answer"] = kinds[0], self.options[kinds[0]]
         box["covers"] = self.options.get("covers", 0)
         if box["kind"] == "answer":
@@ -88,7 +99,9 @@ class QuestionDirective(SphinxDirective):
                 return self.fault(f"a question for a number needs a last reply, to `{ANY_OTHER}`")
         rights = [self.is_right(box, name) for name in names]
         if sum(rights) != 1:
-            return self.fault(f"the right answer is {box['answer']}, and the replies are to {', '.join(names)}")
+            return self.fault(
+                f"the right answer is {box['answer']}, and the replies are to {', '.join(names)}"
+            )
         if box["kind"] == "answer":
             choices = choice_list()
             for name, item in zip(names, items, strict=True):
@@ -132,7 +145,11 @@ def number_questions(app, doctree):
         (label,) = box["ids"]
         if label in labels:
             logger.warning(
-                "two questions are called %s", label, location=where(box), type="website", subtype="questions"
+                "two questions are called %s",
+                label,
+                location=where(box),
+                type="website",
+                subtype="questions",
             )
         labels.add(label)
 
@@ -143,13 +160,19 @@ def name_of(box):
 
 
 def visit_question(translator, node):
-    attributes = {"data-kind": node["kind"], "data-answer": f"{node['answer']}", "data-covers": f"{node['covers']}"}
+    attributes = {
+        "data-kind": node["kind"],
+        "data-answer": f"{node['answer']}",
+        "data-covers": f"{node['covers']}",
+    }
     if "tolerance" in node:
         attributes["data-tolerance"] = f"{node['tolerance']}"
     classes = "question admonition predict" if node["predicts"] else "question"
     translator.body.append(translator.starttag(node, "div", CLASS=classes, **attributes))
     if node["predicts"]:
-        translator.body.append(f'<p class="admonition-title">Predict, then see ({node["place"]})</p>\n')
+        translator.body.append(
+            f'<p class="admonition-title">Predict, then see ({node["place"]})</p>\n'
+        )
     else:
         translator.body.append(f'<p class="question-name">Question {node["place"]}</p>\n')
 
@@ -172,7 +195,8 @@ def visit_reply(translator, node):
     words = "right" if node["right"] else "not so"
     capital = name[0].upper() + name[1:]
     translator.body.append(
-        f'<li data-name="{name}"{right}><p class="verdict"><strong>{capital}</strong>: {words}.</p>\n<div>'
+        f'<li data-name="{name}"{right}><p class="verdict"><strong>{capital}</strong>: '
+        f"{words}.</p>\n<div>"
     )
 
 

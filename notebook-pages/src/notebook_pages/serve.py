@@ -30,11 +30,14 @@ class Handler(SimpleHTTPRequestHandler):
     isolated = True
 
     def end_headers(self):
-        # JupyterLite's kernel hangs in an isolated page when a file is written, or an error is shown.
+        # JupyterLite's kernel hangs in an isolated page when a file is written, or an error is
+        # shown.
         if self.isolated and not self.path.startswith("/lite/"):
             self.send_header("Cross-Origin-Opener-Policy", "same-origin")
             self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
-            self.send_header("Cross-Origin-Resource-Policy", "cross-origin")  # for frames without an origin
+            self.send_header(
+                "Cross-Origin-Resource-Policy", "cross-origin"
+            )  # for frames without an origin
         super().end_headers()
 
     def log_message(self, *arguments):

@@ -1,7 +1,9 @@
-"""``python -m notebook_pages.set_up``: fetch what pages are made with and pip does not install, all from exact pins.
+"""``python -m notebook_pages.set_up``: fetch what pages are made with and pip does not install, all
+from exact pins.
 
-Packages of npm (``package.json``) come into ``node_modules``, and Python packages for browsers (``live/wheels.txt`` and
-``lite/wheels.txt``) into ``.venv/runtime``: in the folder of the book, or where ``NOTEBOOK_PAGES_FETCHED`` says.
+Packages of npm (``package.json``) come into ``node_modules``, and Python packages for browsers
+(``live/wheels.txt`` and ``lite/wheels.txt``) into ``.venv/runtime``: in the folder of the book, or
+where ``NOTEBOOK_PAGES_FETCHED`` says.
 """
 
 import shutil
@@ -15,7 +17,16 @@ from .paths import FETCHED, NODE, NODE_MODULES, WEBSITE
 PACKAGE, LOCK = WEBSITE / "package.json", WEBSITE / "package-lock.json"
 WHEELS = [WEBSITE / place / "wheels.txt" for place in ("live", "lite")]
 #: For wheels that run in browsers. The Python that matters is not the one that asks.
-IN_BROWSERS = ("--python-version", "3.14", "--platform", "any", "--implementation", "py", "--abi", "none")
+IN_BROWSERS = (
+    "--python-version",
+    "3.14",
+    "--platform",
+    "any",
+    "--implementation",
+    "py",
+    "--abi",
+    "none",
+)
 
 
 def npm(*arguments, **keywords):
@@ -26,7 +37,9 @@ def npm(*arguments, **keywords):
 def fetch_packages():
     print(f"Setting up KaTeX, the typefaces and Python for browsers in {NODE_MODULES} ...")
     FETCHED.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=FETCHED) as folder:  # the folder may have a package.json of its own
+    with tempfile.TemporaryDirectory(
+        dir=FETCHED
+    ) as folder:  # the folder may have a package.json of its own
         for file in (PACKAGE, LOCK):
             shutil.copy(file, folder)
         npm("ci", "--silent", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
@@ -38,10 +51,20 @@ def fetch_wheels():
     runtime = FETCHED / ".venv" / "runtime"
     print(f"Setting up Python packages for browsers in {runtime} ...")
     shutil.rmtree(runtime, ignore_errors=True)
-    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "download",
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-deps",
+    ]
     command += ["--only-binary=:all:", *IN_BROWSERS, "--require-hashes"]
     for wheels in WHEELS:
-        subprocess.run([*command, "--requirement", wheels, "--dest", runtime / wheels.parent.name], check=True)
+        subprocess.run(
+            [*command, "--requirement", wheels, "--dest", runtime / wheels.parent.name], check=True
+        )
 
 
 PARTS = {"packages": fetch_packages, "wheels": fetch_wheels}
@@ -49,12 +72,17 @@ PARTS = {"packages": fetch_packages, "wheels": fetch_wheels}
 
 def main(names):
     if unknown := set(names) - set(PARTS):
-        sys.exit(f"there is no {', '.join(sorted(unknown))} to set up: say {' or '.join(PARTS)}, or nothing for both")
+        sys.exit(
+            f"there is no {', '.join(sorted(unknown))} to set up: say {' or '.join(PARTS)}, or "
+            "nothing for both"
+        )
     for name in names or PARTS:
         try:
             PARTS[name]()
         except subprocess.CalledProcessError as error:
-            sys.exit(f"What pages are made with was not fetched: see above (code {error.returncode})")
+            sys.exit(
+                f"What pages are made with was not fetched: see above (code {error.returncode})"
+            )
 
 
 if __name__ == "__main__":

@@ -1,15 +1,20 @@
-"""The contents at the side, in parts that open and close: the part of this page stands open, or else the first."""
+"""The contents at the side, in parts that open and close: the part of this page stands open, or
+else the first.
+"""
 
 from bs4 import BeautifulSoup
 
 
 def fold(soup):
-    """Make each caption and the list below it one fold; a title does not repeat the caption of its part.
+    """Make each caption and the list below it one fold; a title does not repeat the caption of its
+    part.
 
     Of *Exercises: Gimbal lock*, in the part *Exercises*, the sidebar shows *Gimbal lock*.
     """
     captions = soup.select("p.caption")
-    current = [caption for caption in captions if caption.find_next_sibling("ul").select(".current")]
+    current = [
+        caption for caption in captions if caption.find_next_sibling("ul").select(".current")
+    ]
     for caption in captions:
         pages, beginning = caption.find_next_sibling("ul"), f"{caption.get_text(strip=True)}: "
         for link in pages.select("a"):
@@ -33,4 +38,6 @@ def fold_contents(app, pagename, templatename, context, doctree):
 
 
 def setup(app):
-    app.connect("html-page-context", fold_contents, priority=960)  # after the theme has put its function there
+    app.connect(
+        "html-page-context", fold_contents, priority=960
+    )  # after the theme has put its function there

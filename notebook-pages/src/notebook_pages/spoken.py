@@ -1,8 +1,9 @@
-"""A formula in words, from its MathML: for a PDF, where it is a picture, and for programs that know no MathML.
+"""A formula in words, from its MathML: for a PDF, where it is a picture, and for programs that know
+no MathML.
 
-Said is what somebody would say who reads the formula to a colleague. Superscripts on both sides of a letter name frames
-and are no powers; a hat is said once, with its direction; a raised T after an expression is its transpose; a cross
-between two numbers is "times", or "by" where it tells a shape.
+Said is what somebody would say who reads the formula to a colleague. Superscripts on both sides of
+a letter name frames and are no powers; a hat is said once, with its direction; a raised T after an
+expression is its transpose; a cross between two numbers is "times", or "by" where it tells a shape.
 """
 
 import re
@@ -23,8 +24,23 @@ WORDS = {
     "arcsin": "arc sine", "arctan": "arc tangent", "exp": "exponential", "det": "determinant", "lim": "the limit",
     "log": "logarithm", "ln": "natural logarithm", "diag": "diagonal", "max": "maximum", "min": "minimum",
 }  # fmt: skip
-ACCENTS = {"^": "hat", "˙": "dot", "¨": "double dot", "~": "tilde", "ˉ": "bar", "¯": "bar", "→": "arrow"}
-POWERS = {"2": "squared", "3": "cubed", "T": "transpose", "∗": "conjugate", "*": "conjugate", "∘": "degrees"}
+ACCENTS = {
+    "^": "hat",
+    "˙": "dot",
+    "¨": "double dot",
+    "~": "tilde",
+    "ˉ": "bar",
+    "¯": "bar",
+    "→": "arrow",
+}
+POWERS = {
+    "2": "squared",
+    "3": "cubed",
+    "T": "transpose",
+    "∗": "conjugate",
+    "*": "conjugate",
+    "∘": "degrees",
+}
 POWERS |= {"−1": "inverse", "′": "prime", "′′": "double prime", "⊤": "transpose"}
 #: What reaches over something, and how that is said when it is one thing.
 LIMITED = {"∑": "over", "∫": "over", "lim": "as", "min": "over", "max": "over"}
@@ -38,7 +54,9 @@ def parts(node):
     for child in node.children:
         if isinstance(child, NavigableString):
             continue
-        alone = child.name in ("mstyle", "semantics") or child.name == "mrow" and len(parts(child)) == 1
+        alone = (
+            child.name in ("mstyle", "semantics") or child.name == "mrow" and len(parts(child)) == 1
+        )
         found += parts(child) if alone else [child]
     return found
 
@@ -49,12 +67,21 @@ def bare(node):
 
 
 def is_simple(node):
-    """Whether one hears where ``node`` ends: one letter or number, with its marks or sign, or a few such in a row."""
+    """Whether one hears where ``node`` ends: one letter or number, with its marks or sign, or a few
+    such in a row.
+    """
     if node.name in ("mrow", "mstyle", "math"):
         inside = parts(node)
         signed = len(inside) == 2 and bare(inside[0]) in ("−", "-", "+")
         plain = all(one.name in ("mi", "mn") for one in inside)
-        return signed and is_simple(inside[1]) or plain and len(inside) < 4 or len(inside) == 1 and is_simple(inside[0])
+        return (
+            signed
+            and is_simple(inside[1])
+            or plain
+            and len(inside) < 4
+            or len(inside) == 1
+            and is_simple(inside[0])
+        )
     if node.name in ("mover", "msub"):
         return all(is_simple(child) for child in parts(node))
     return node.name in ("mi", "mn", "mo", "mtext")
@@ -105,7 +132,10 @@ def is_before(node):
 def with_scripts(node, after_frame=False):
     base, *scripts = parts(node)
     if bare(base) in LIMITED and node.name != "msup":
-        limits = [LIMITED[bare(base)] if len(scripts) == 1 else "from", *(say(one) for one in scripts[:1])]
+        limits = [
+            LIMITED[bare(base)] if len(scripts) == 1 else "from",
+            *(say(one) for one in scripts[:1]),
+        ]
         return " ".join([say(base), *limits, *(f"to {say(one)}" for one in scripts[1:]), "of"])
     words = [", end of magnitude," if bare(base) in BARS else say(base)]
     if node.name in ("msub", "msubsup"):
@@ -117,7 +147,8 @@ def with_scripts(node, after_frame=False):
 
 def table(node):
     rows = [
-        [say(cell) for cell in row.find_all("mtd", recursive=False)] for row in node.find_all("mtr", recursive=False)
+        [say(cell) for cell in row.find_all("mtd", recursive=False)]
+        for row in node.find_all("mtr", recursive=False)
     ]
     width = max(len(row) for row in rows)
     if width == 1:
@@ -139,7 +170,12 @@ def product(text, before, after):
 def argument(node):
     """What stands alone between brackets, as after the name of a function; otherwise ``None``."""
     inside = parts(node) if node is not None and node.name == "mrow" else []
-    is_one = len(inside) == 3 and bare(inside[0]) == "(" and bare(inside[2]) == ")" and is_simple(inside[1])
+    is_one = (
+        len(inside) == 3
+        and bare(inside[0]) == "("
+        and bare(inside[2]) == ")"
+        and is_simple(inside[1])
+    )
     return inside[1] if is_one else None
 
 

@@ -1,8 +1,9 @@
-"""The directive ``subject-index``: where the book speaks of each term, and uses each symbol and function.
+"""The directive ``subject-index``: where the book speaks of each term, and uses each symbol and
+function.
 
-Nothing is marked for it. Terms are those of the glossary, found where the text refers to them, or else where it says
-them; symbols are the rows of the notation page; functions are those of the reference, found where code or text names
-them.
+Nothing is marked for it. Terms are those of the glossary, found where the text refers to them, or
+else where it says them; symbols are the rows of the notation page; functions are those of the
+reference, found where code or text names them.
 """
 
 import re
@@ -44,7 +45,9 @@ def note_uses(app, doctree):
     for reference in doctree.findall(addnodes.pending_xref):
         if reference.get("reftype") == "term":
             terms.setdefault(reference["reftarget"].casefold(), section_of(reference))
-    for code in doctree.findall(lambda node: isinstance(node, (nodes.literal, nodes.literal_block))):
+    for code in doctree.findall(
+        lambda node: isinstance(node, (nodes.literal, nodes.literal_block))
+    ):
         for name in re.findall(r"[A-Za-z_]\w+", code.astext()):
             names.setdefault(name, section_of(code))
     for text in doctree.findall(lambda node: isinstance(node, (nodes.paragraph, nodes.title))):
@@ -74,7 +77,9 @@ def forget(app, env, docname):
 
 
 def merge(app, env, docnames, other):
-    env.subject_uses.update({name: other.subject_uses[name] for name in docnames if name in other.subject_uses})
+    env.subject_uses.update(
+        {name: other.subject_uses[name] for name in docnames if name in other.subject_uses}
+    )
     if page := getattr(other, "subject_index_page", None):
         env.subject_index_page = page
 
@@ -91,16 +96,23 @@ def link(app, page, target, anchor, words):
 
 
 def places(app, page, uses):
-    """The links to the places of ``uses``, a list of pages with sections, in the order of the book."""
+    """The links to the places of ``uses``, a list of pages with sections, in the order of the
+    book.
+    """
     made = []
     for target, section in uses:
-        made += [nodes.Text(", "), link(app, page, target, section, [nodes.Text(app.env.titles[target].astext())])]
+        made += [
+            nodes.Text(", "),
+            link(app, page, target, section, [nodes.Text(app.env.titles[target].astext())]),
+        ]
     return made[1:]
 
 
 def entry(app, page, name, main, uses, formula=None):
     """One line: what it is, leading to where it is explained, and where else it stands."""
-    paragraph = nodes.paragraph("", "", *([formula, nodes.Text(" ")] if formula else []), link(app, page, *main, name))
+    paragraph = nodes.paragraph(
+        "", "", *([formula, nodes.Text(" ")] if formula else []), link(app, page, *main, name)
+    )
     if uses:
         paragraph += [nodes.Text(": "), *places(app, page, uses)]
     return nodes.list_item("", paragraph)
@@ -117,11 +129,14 @@ def terms(app):
 
 
 def functions(app):
-    """What the reference explains: functions, classes and such, by their short names, with their pages and anchors."""
+    """What the reference explains: functions, classes and such, by their short names, with their
+    pages and anchors.
+    """
     return {
         name.rpartition(".")[2]: (entry.docname, entry.node_id)
         for name, entry in app.env.domains["py"].objects.items()
-        if entry.docname in REFERENCE and entry.objtype in ("function", "class", "exception", "data")
+        if entry.docname in REFERENCE
+        and entry.objtype in ("function", "class", "exception", "data")
     }
 
 
@@ -130,7 +145,9 @@ def symbols(app):
     doctree = app.env.get_doctree(NOTATION)
     for row in doctree.findall(nodes.row):
         cells = list(row.findall(nodes.entry))
-        formula = next((cell.next_node(nodes.math) for cell in cells[1:2] if cell.next_node(nodes.math)), None)
+        formula = next(
+            (cell.next_node(nodes.math) for cell in cells[1:2] if cell.next_node(nodes.math)), None
+        )
         if formula is not None:
             name = [
                 node.deepcopy() if isinstance(node, nodes.math) else nodes.Text(node.astext())
@@ -141,7 +158,11 @@ def symbols(app):
 
 def fill(app, doctree, docname):
     for stand_in in list(doctree.findall(subject_index)):
-        order = [name for name in in_order(app.env) if name in app.env.subject_uses and name not in NOT_LISTED]
+        order = [
+            name
+            for name in in_order(app.env)
+            if name in app.env.subject_uses and name not in NOT_LISTED
+        ]
         uses = defaultdict(list)
         for page in order:
             if page == docname:
@@ -154,7 +175,10 @@ def fill(app, doctree, docname):
 
         def part(title, items):
             section = nodes.section(ids=[nodes.make_id(title)], names=[])
-            section += [nodes.title("", title), nodes.bullet_list("", *items, classes=["subject-index"])]
+            section += [
+                nodes.title("", title),
+                nodes.bullet_list("", *items, classes=["subject-index"]),
+            ]
             made.append(section)
 
         found = sorted(terms(app).items(), key=lambda item: item[0].casefold())
@@ -163,7 +187,8 @@ def fill(app, doctree, docname):
             for name, anchor in found for key in [name.casefold()]
         ])  # fmt: skip
         part("Symbols", [
-            entry(app, docname, name, (NOTATION, section), [], formula.deepcopy())  # a link of words: those are heard
+            # a link of words: those are heard
+            entry(app, docname, name, (NOTATION, section), [], formula.deepcopy())
             for name, formula, section in symbols(app)
         ])  # fmt: skip
         part("Functions and classes", [

@@ -1,8 +1,10 @@
-"""The structure of a printed PDF, put in order: what a screen reader is told, by ISO 14289-1 (PDF/UA).
+"""The structure of a printed PDF, put in order: what a screen reader is told, by ISO 14289-1
+(PDF/UA).
 
-Chromium tags what it prints, nearly well. Here its tree of elements is read, mended and written anew: empty groups go,
-formulas become formulas, lists get their parts, links say where they lead, and whatever is on a page and in no element,
-such as page numbers, lines and shades, is marked as an artifact.
+Chromium tags what it prints, nearly well. Here its tree of elements is read, mended and written
+anew: empty groups go, formulas become formulas, lists get their parts, links say where they lead,
+and whatever is on a page and in no element, such as page numbers, lines and shades, is marked as an
+artifact.
 """
 
 import re
@@ -109,13 +111,17 @@ def letters(font):
 
 
 class Stream:
-    """What a page, or a form on it, draws: lines with an operator at the end of each, as Chromium writes them."""
+    """What a page, or a form on it, draws: lines with an operator at the end of each, as Chromium
+    writes them.
+    """
 
     def __init__(self, page, key, content, resources, known_letters):
         self.page, self.key, self.content = page, key, content
         self.lines = content.read_bytes().decode("latin-1").split("\n")
         self.forms = {
-            name[1:]: form for name, form in resources.get("/XObject", {}).items() if form.Subtype == Name.Form
+            name[1:]: form
+            for name, form in resources.get("/XObject", {}).items()
+            if form.Subtype == Name.Form
         }
         self.fonts = {}
         for name, font in resources.get("/Font", {}).items():
@@ -125,7 +131,11 @@ class Stream:
 
     def texts(self):
         """The words of each marked sequence, by its number."""
-        found, stack, font = {}, [], {}  # the stack: the number of each open sequence, or what it says it stands for
+        found, stack, font = (
+            {},
+            [],
+            {},
+        )  # the stack: the number of each open sequence, or what it says it stands for
         for line in self.lines:
             operator = line.rsplit(" ", 1)[-1]
             number = next((one for one in reversed(stack) if isinstance(one, int)), None)
@@ -138,7 +148,9 @@ class Stream:
                 else:
                     stack.append(None)
                     if stands_for:
-                        stack[-1] = stands_for[2] or bytes.fromhex(stands_for[1]).decode("utf-16-be")
+                        stack[-1] = stands_for[2] or bytes.fromhex(stands_for[1]).decode(
+                            "utf-16-be"
+                        )
                     if stands_for and number is not None:
                         found[number] += stack[-1]
             elif operator == "EMC":
@@ -147,13 +159,17 @@ class Stream:
                 font = self.fonts[line.split()[0][1:]]
             elif operator in SHOW and number is not None and not isinstance(stack[-1], str):
                 for code in re.findall(r"<([0-9A-Fa-f]+)>", line):
-                    found[number] += "".join(font.get(int(code[k : k + 4], 16), "") for k in range(0, len(code), 4))
+                    found[number] += "".join(
+                        font.get(int(code[k : k + 4], 16), "") for k in range(0, len(code), 4)
+                    )
             elif operator == "ET" and number is not None:
                 found[number] += " "
         return {number: said.replace("\u200b", "") for number, said in found.items()}
 
     def marked(self, kept, forms_with_marks):
-        """The stream with every sequence that is not ``kept``, and all that stands outside of any, as artifacts."""
+        """The stream with every sequence that is not ``kept``, and all that stands outside of any,
+        as artifacts.
+        """
         out, open_sequences, open_artifact, path = [], [], False, None
 
         def close():
@@ -168,7 +184,9 @@ class Stream:
                 close()
                 number = re.search(r"/MCID (\d+)", line)
                 if number and any(open_sequences):
-                    raise RuntimeError(f"page {self.page + 1} of the PDF has a marked sequence within another")
+                    raise RuntimeError(
+                        f"page {self.page + 1} of the PDF has a marked sequence within another"
+                    )
                 # What a sequence stands for is left as it is where it stands within another.
                 is_kept = int(number[1]) in kept if number else bool(open_sequences)
                 open_sequences.append(bool(number))
@@ -177,7 +195,8 @@ class Stream:
             if operator == "EMC":
                 open_sequences.pop()
             elif not open_sequences:
-                # A path becomes an artifact when it is painted, not when it only cuts off what follows.
+                # A path becomes an artifact when it is painted, not when it only cuts off what
+                # follows.
                 if operator in PATH and path is None:
                     path = len(out)
                 elif operator in PAINT:
@@ -218,7 +237,8 @@ def streams(pdf):
 
 
 def boxes(printed, pages):
-    """Where the marked sequences of some ``pages`` of a PDF draw: left, bottom, right and top, by :class:`Piece`.
+    """Where the marked sequences of some ``pages`` of a PDF draw: left, bottom, right and top, by
+    :class:`Piece`.
 
     What is drawn by a form on the page is left out: its numbers are its own.
     """
@@ -269,7 +289,9 @@ def name_figures(element):
 
 
 def drop_blank(element, texts):
-    """Leave out what shows nothing to read: lines and shades. A picture keeps all that it is drawn of."""
+    """Leave out what shows nothing to read: lines and shades. A picture keeps all that it is drawn
+    of.
+    """
     if element.kind in WORDED:
         return
     inside = []
@@ -290,11 +312,17 @@ def once(element):
         if one.kind == "TH" and (pieces := one.pieces()):
             first = min(piece.page for piece in pieces)
             for cell in one.walk():
-                cell.inside = [part for part in cell.inside if not isinstance(part, Piece) or part.page == first]
+                cell.inside = [
+                    part
+                    for part in cell.inside
+                    if not isinstance(part, Piece) or part.page == first
+                ]
 
 
 def in_paragraphs(element):
-    """Text that stands in a group among blocks is a paragraph; what follows the sign of an item is its body."""
+    """Text that stands in a group among blocks is a paragraph; what follows the sign of an item is
+    its body.
+    """
     for one in element.inside:
         if isinstance(one, Element):
             in_paragraphs(one)
@@ -305,7 +333,9 @@ def in_paragraphs(element):
     elif element.kind in GROUPS:
         inside, run = [], []
         for one in [*element.inside, None]:
-            if one is not None and (not isinstance(one, Element) or one.kind in INLINE and one.kind != "Formula"):
+            if one is not None and (
+                not isinstance(one, Element) or one.kind in INLINE and one.kind != "Formula"
+            ):
                 run.append(one)
                 continue
             if run:
@@ -335,7 +365,11 @@ def words(element, texts):
     if element.kind in WORDED:
         return element.said
     said = (
-        words(one, texts) if isinstance(one, Element) else texts.get(one, "") if isinstance(one, Piece) else ""
+        words(one, texts)
+        if isinstance(one, Element)
+        else texts.get(one, "")
+        if isinstance(one, Piece)
+        else ""
         for one in element.inside
     )
     return re.sub(r"\s+", " ", "".join(said)).strip()
@@ -372,14 +406,18 @@ def write(pdf, root, found):
         top.RoleMap[f"/{kind}"] = Name(f"/{known}")
 
     def put(element, above):
-        here = pdf.make_indirect(Dictionary(Type=Name.StructElem, S=Name(f"/{element.kind}"), P=above))
+        here = pdf.make_indirect(
+            Dictionary(Type=Name.StructElem, S=Name(f"/{element.kind}"), P=above)
+        )
         if element.said:
             here.Alt = String(element.said)
         if element.name:
             here.ID = String(element.name)
             names.append((element.name, here))
         if element.attributes:
-            here.A = Array(element.attributes) if len(element.attributes) > 1 else element.attributes[0]
+            here.A = (
+                Array(element.attributes) if len(element.attributes) > 1 else element.attributes[0]
+            )
         inside, page = [], None
         for one in element.inside:
             if isinstance(one, Element):
@@ -421,7 +459,9 @@ def write(pdf, root, found):
 
 
 def mend(pdf, printed):
-    """Put the structure of ``pdf``, opened from the bytes ``printed``, in order; return the words that are read."""
+    """Put the structure of ``pdf``, opened from the bytes ``printed``, in order; return the words
+    that are read.
+    """
     found = streams(pdf)
     texts = {
         Piece(number, key, mark): said
@@ -429,7 +469,10 @@ def mend(pdf, printed):
         for mark, said in stream.texts().items()
     }
     places = {page.objgen: number for number, page in enumerate(pdf.pages)}
-    places = {name: places[place[0].objgen] for name, place in pdf.Root.get("/Dests", Dictionary()).items()}
+    places = {
+        name: places[place[0].objgen]
+        for name, place in pdf.Root.get("/Dests", Dictionary()).items()
+    }
     root = read(pdf)
     without_groups(root)
     name_figures(root)

@@ -45,7 +45,8 @@ def first_words(title):
 
 
 def packages_archive():
-    """The name of the zip of all packages that the notebooks import; its version is that of the newest of them.
+    """The name of the zip of all packages that the notebooks import; its version is that of the
+    newest of them.
 
     Empty in a book that has no packages.
     """
@@ -62,7 +63,8 @@ def introduction(title):
         return f"{first_words(title)} {LICENCES_SAID}".rstrip()
     return (
         f"{first_words(title)} To run it, install the packages that it "
-        f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
+        f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its "
+        "folder `packages` run "
         f"`python -m pip install -r requirements.txt`. {LICENCES_SAID}"
     ).rstrip()
 
@@ -95,7 +97,9 @@ def make_notebook(app, docname, doctree):
     cells[0].source = "\n\n".join(filter(None, [title, note, rest]))
     for position, cell in enumerate(cells):
         cell["id"] = f"cell-{position}"  # not random, so that builds are the same
-    return nbformat.v4.new_notebook(cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+    return nbformat.v4.new_notebook(
+        cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
+    )
 
 
 def write_page(app, pagename, templatename, context, doctree):
@@ -107,7 +111,9 @@ def write_page(app, pagename, templatename, context, doctree):
     source = Path(app.env.doc2path(pagename)).read_text("utf8")
     for name, data in DATA.items():
         if data["package"] in source:
-            context["downloads"].append({"path": f"{FOLDER}/{name}.zip", "text": data["text"], "note": data["note"]})
+            context["downloads"].append(
+                {"path": f"{FOLDER}/{name}.zip", "text": data["text"], "note": data["note"]}
+            )
 
 
 def chapter_downloads(app, pagename, doctree):
@@ -123,8 +129,16 @@ def chapter_downloads(app, pagename, doctree):
         "note": "what the code imports, with how to install it",
     }
     return [
-        {"path": notebook_address(pagename), "text": "Notebook", "note": "for Jupyter, with the prose"},
-        {"path": f"{FOLDER}/{target.name}.py", "text": "Python script", "note": "the prose as comments"},
+        {
+            "path": notebook_address(pagename),
+            "text": "Notebook",
+            "note": "for Jupyter, with the prose",
+        },
+        {
+            "path": f"{FOLDER}/{target.name}.py",
+            "text": "Python script",
+            "note": "the prose as comments",
+        },
         *([packages] if PROJECTS else []),
     ]
 
@@ -135,8 +149,16 @@ def exercise_downloads(app, pagename, doctree):
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(app.env.doc2path(pagename), target)
     return [
-        {"path": notebook_address(pagename), "text": "Notebook", "note": "to answer in Jupyter and hand in"},
-        {"path": f"{FOLDER}/{ARCHIVE}", "text": "All exercises", "note": "with the package and how to start"},
+        {
+            "path": notebook_address(pagename),
+            "text": "Notebook",
+            "note": "to answer in Jupyter and hand in",
+        },
+        {
+            "path": f"{FOLDER}/{ARCHIVE}",
+            "text": "All exercises",
+            "note": "with the package and how to start",
+        },
     ]
 
 
@@ -159,12 +181,17 @@ def pack_data(app, exception):
     if exception or app.builder.format != "html":
         return
     for name, data in DATA.items():
-        files = {f"{name}/{path.name}": path.read_bytes() for path in (REPOSITORY / data["folder"]).iterdir()}
+        files = {
+            f"{name}/{path.name}": path.read_bytes()
+            for path in (REPOSITORY / data["folder"]).iterdir()
+        }
         write_zip(Path(app.outdir) / FOLDER / f"{name}.zip", files)
 
 
 def build_wheels(app, exception):
-    """Build our packages into the site, as wheels and all in one zip; their names tell what they were built from."""
+    """Build our packages into the site, as wheels and all in one zip; their names tell what they
+    were built from.
+    """
     if exception or app.builder.format != "html" or not PROJECTS:
         return
     folder = Path(app.outdir) / FOLDER
@@ -178,7 +205,9 @@ def build_wheels(app, exception):
             project.build_wheel(folder)
     if not archive.exists():
         files = {f"packages/{wheel.name}": wheel.read_bytes() for wheel in wheels}
-        files["packages/requirements.txt"] = "".join(f"./{wheel.name}\n" for wheel in wheels).encode()
+        files["packages/requirements.txt"] = "".join(
+            f"./{wheel.name}\n" for wheel in wheels
+        ).encode()
         write_zip(archive, files)
 
 

@@ -1,7 +1,7 @@
 """Whether a built site is what a build would make again: then there is nothing to do.
 
-The sources are told by their names, sizes and times; so is what is installed, and what the environment says. Of the
-site it is enough that all files are there: nobody else writes into it.
+The sources are told by their names, sizes and times; so is what is installed, and what the
+environment says. Of the site it is enough that all files are there: nobody else writes into it.
 """
 
 import hashlib
@@ -28,14 +28,27 @@ def sources(folder: Path) -> Iterator[Path]:
 
 
 def fingerprint_of_all() -> str:
-    """A text that changes with the sources, with what is installed, or when a file of the site has gone."""
+    """A text that changes with the sources, with what is installed, or when a file of the site has
+    gone.
+    """
     roots = dict.fromkeys((Path.cwd(), REPOSITORY))
     files = [path for root in roots for path in sources(root)]
     files += [path for root in roots for name in SET_UP if (path := root / name).is_file()]
-    said = [f"{path} {about.st_size} {about.st_mtime_ns}" for path in files for about in (path.stat(),)]
-    said += [f"{name}={value}" for name, value in os.environ.items() if name.startswith(("BOOK_", "SOURCE_DATE_"))]
-    commit = subprocess.run(["git", "-C", REPOSITORY, "rev-parse", "HEAD"], capture_output=True, text=True)
-    said += [sys.version, commit.stdout]  # the version of the package for students follows from the commit
+    said = [
+        f"{path} {about.st_size} {about.st_mtime_ns}" for path in files for about in (path.stat(),)
+    ]
+    said += [
+        f"{name}={value}"
+        for name, value in os.environ.items()
+        if name.startswith(("BOOK_", "SOURCE_DATE_"))
+    ]
+    commit = subprocess.run(
+        ["git", "-C", REPOSITORY, "rev-parse", "HEAD"], capture_output=True, text=True
+    )
+    said += [
+        sys.version,
+        commit.stdout,
+    ]  # the version of the package for students follows from the commit
     said += [f"{path} {path.stat().st_size}" for path in HTML.rglob("*") if path.is_file()]
     return hashlib.sha256("\n".join(sorted(said)).encode("utf8", "surrogateescape")).hexdigest()
 

@@ -1,8 +1,8 @@
 """What of our packages a notebook uses: the files whose change may change what its cells give.
 
-A notebook is followed from what its cells import through every import in those modules, also those inside
-functions, to the files that lie beside them (scripts, style sheets), and to the sealed questions that it asks.
-What is not reached, such as the grader, does not make a chapter run again.
+A notebook is followed from what its cells import through every import in those modules, also those
+inside functions, to the files that lie beside them (scripts, style sheets), and to the sealed
+questions that it asks. What is not reached, such as the grader, does not make a chapter run again.
 """
 
 import ast
@@ -27,7 +27,9 @@ _PARSING = threading.Lock()
 
 
 def parse(code: str) -> ast.Module:
-    """The syntax tree of some code, from any thread: Python 3.11 fails when two threads make trees at once."""
+    """The syntax tree of some code, from any thread: Python 3.11 fails when two threads make trees
+    at once.
+    """
     with _PARSING:
         return ast.parse(code)
 
@@ -38,11 +40,15 @@ def file_of(module: str) -> Path | None:
     if package not in PACKAGES:
         return None
     place = PACKAGES[package].joinpath(*inner)
-    return next((path for path in (place / "__init__.py", place.with_suffix(".py")) if path.is_file()), None)
+    return next(
+        (path for path in (place / "__init__.py", place.with_suffix(".py")) if path.is_file()), None
+    )
 
 
 def names_imported(code: str, module: str = "") -> set[str]:
-    """All that ``code`` may import, by full names; ``module`` is where it stands, for relative imports."""
+    """All that ``code`` may import, by full names; ``module`` is where it stands, for relative
+    imports.
+    """
     found: set[str] = set()
     file = file_of(module)
     for node in ast.walk(parse(code)):
@@ -64,7 +70,9 @@ def modules_imported(code: str, module: str = "") -> set[str]:
     found = names_imported(code, module)
     ours = {name for name in found if file_of(name)}
     # Importing a.b imports a first.
-    return ours | {name.rsplit(".", depth)[0] for name in ours for depth in range(1, name.count(".") + 1)}
+    return ours | {
+        name.rsplit(".", depth)[0] for name in ours for depth in range(1, name.count(".") + 1)
+    }
 
 
 @cache
@@ -90,13 +98,21 @@ def modules_used(code: str) -> set[str]:
 def files_used(code: str) -> list[Path]:
     """The files of this repository that running ``code`` may read, in their order."""
     modules = modules_used(code)
-    files = {file for module in modules if (file := file_of(module))} | ({PINS} if PINS.is_file() else set())
+    files = {file for module in modules if (file := file_of(module))} | (
+        {PINS} if PINS.is_file() else set()
+    )
     for folder in {path.parent for path in files if path != PINS} - {SEALED.parent}:
-        beside = {path for path in folder.rglob("*") if path.is_file() and path.suffix not in (".py", ".pyc")}
+        beside = {
+            path
+            for path in folder.rglob("*")
+            if path.is_file() and path.suffix not in (".py", ".pyc")
+        }
         files |= {path for path in beside if package_of(path) == folder}
     files -= set(SEALED.glob("*"))
     if "coursework" in modules:
-        files |= {path for path in SEALED.glob("*.json") if re.search(rf"\b{re.escape(path.stem)}/", code)}
+        files |= {
+            path for path in SEALED.glob("*.json") if re.search(rf"\b{re.escape(path.stem)}/", code)
+        }
     return sorted(files)
 
 
@@ -115,14 +131,18 @@ def _digest(path: Path) -> bytes:
 
 
 def fingerprint_of_used(notebook: "NotebookNode") -> str:
-    """A text that changes when anything changes that the cells of ``notebook`` use, themselves not among it."""
+    """A text that changes when anything changes that the cells of ``notebook`` use, themselves not
+    among it.
+    """
     code = "\n".join(code_of(notebook))
     parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
 def code_of(notebook: "NotebookNode") -> list[str]:
-    """The code of each cell that is Python; what cannot be read as Python is left for the run to complain of."""
+    """The code of each cell that is Python; what cannot be read as Python is left for the run to
+    complain of.
+    """
     codes = []
     for cell in notebook.cells:
         if cell.cell_type == "code":

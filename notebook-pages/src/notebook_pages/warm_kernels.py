@@ -1,9 +1,10 @@
 """Kernels that are forked from a process which has loaded what nearly every notebook imports.
 
-The build and nbval take theirs from here. Each kernel is as fresh as one that was started by itself, has its own
-process and its own names, and is there at once. Loaded beforehand is only what others wrote: a notebook's imports of
-our own packages are its own. That a notebook imports all that it uses is seen where it is stored, by ``python -m
-notebook_pages.notebooks``, in a kernel that was started.
+The build and nbval take theirs from here. Each kernel is as fresh as one that was started by
+itself, has its own process and its own names, and is there at once. Loaded beforehand is only what
+others wrote: a notebook's imports of our own packages are its own. That a notebook imports all that
+it uses is seen where it is stored, by ``python -m notebook_pages.notebooks``, in a kernel that was
+started.
 """
 
 import contextlib
@@ -21,7 +22,13 @@ import psutil
 from jupyter_client.manager import AsyncKernelManager, KernelManager
 from jupyter_client.provisioning import LocalProvisioner
 
-LOADED = ("ipykernel.kernelapp", "ipykernel.ipkernel", "sympy.physics.mechanics", "matplotlib.pyplot", "anywidget")
+LOADED = (
+    "ipykernel.kernelapp",
+    "ipykernel.ipkernel",
+    "sympy.physics.mechanics",
+    "matplotlib.pyplot",
+    "anywidget",
+)
 SETTINGS = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}  # as in every kernel
 
 
@@ -103,16 +110,22 @@ class Forked(psutil.Process):
 
 class WarmProvisioner(LocalProvisioner):
     async def launch_kernel(self, cmd, **settings):
-        number = warm.fork(command=cmd, folder=settings["cwd"], environment=settings["env"] | SETTINGS)
+        number = warm.fork(
+            command=cmd, folder=settings["cwd"], environment=settings["env"] | SETTINGS
+        )
         self.process, self.pid, self.pgid = Forked(number), number, number
         return self.connection_info
 
 
 class FromWarmProcess:
     def start_kernel(self, **settings):
-        if sys.platform == "linux":  # elsewhere a process that has loaded NumPy may not fork: a kernel is started
+        if (
+            sys.platform == "linux"
+        ):  # elsewhere a process that has loaded NumPy may not fork: a kernel is started
             self.kernel_id = str(uuid.uuid4())
-            self.provisioner = WarmProvisioner(kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self)
+            self.provisioner = WarmProvisioner(
+                kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self
+            )
         return super().start_kernel(**settings)
 
 

@@ -1,4 +1,5 @@
-"""``python -m notebook_pages.whole_book``: the whole book to take away, as a PDF, as an EPUB and as a zip.
+"""``python -m notebook_pages.whole_book``: the whole book to take away, as a PDF, as an EPUB and as
+a zip.
 
 All are made from the built site and put into it, and the front page offers them. Each is made
 again only when something that goes into it has changed; `make book` withdraws what has become old.
@@ -22,22 +23,33 @@ FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
 STAMPS = BUILD / "whole-book.json"  # what they were made from
 FRONT = "index.html"
-# The place on the front page: a comment in its source, and what stands between it and the second mark.
+# The place on the front page: a comment in its source, and what stands between it and the second
+# mark.
 PLACE = re.compile(r"<!-- whole-book -->(?:.*?<!-- /whole-book -->)?", re.DOTALL)
 LINK = '<a href="take-away/{name}">{title}<small>{note}, {size:.1f} MB</small></a>'
 
 
 def with_offer(front, links):
     """The front page ``front`` with ``links`` in their place; with none, as the build wrote it."""
-    words = '<p class="whole-book"><span>The whole book, to take with you:</span>{}</p><!-- /whole-book -->'
-    front, count = PLACE.subn("<!-- whole-book -->" + (words.format("".join(links)) if links else ""), front)
+    words = (
+        '<p class="whole-book"><span>The whole book, to take with you:</span>{}</p><!-- '
+        "/whole-book -->"
+    )
+    front, count = PLACE.subn(
+        "<!-- whole-book -->" + (words.format("".join(links)) if links else ""), front
+    )
     if count != 1:
-        raise RuntimeError(f"the front page needs one place for the whole book, `<!-- whole-book -->`; it has {count}")
+        raise RuntimeError(
+            "the front page needs one place for the whole book, `<!-- whole-book -->`; "
+            f"it has {count}"
+        )
     return front
 
 
 def site_files():
-    """What is in the site, contents by path, without the PDF, the EPUB, the zip and the offer of them."""
+    """What is in the site, contents by path, without the PDF, the EPUB, the zip and the offer of
+    them.
+    """
     files = {
         str(path.relative_to(HTML)): path.read_bytes()
         for path in sorted(HTML.rglob("*"))
@@ -48,7 +60,9 @@ def site_files():
 
 
 def digest(files, *programs):
-    """A fingerprint of ``files``, contents by path, and of the programs that make something of them."""
+    """A fingerprint of ``files``, contents by path, and of the programs that make something of
+    them.
+    """
     contents = [f"{path} {sha256(content).hexdigest()}" for path, content in sorted(files.items())]
     return sha256("\n".join([*contents, fingerprint(*programs)]).encode()).hexdigest()
 
@@ -57,11 +71,17 @@ def stamps():
     """What each of them would be made from now."""
     files = site_files()
     kinds = tuple(f"{page}.html" for page in pages())
-    printed = {path: text for path, text in files.items() if path in kinds or path.endswith((".css", ".woff2"))}
+    printed = {
+        path: text
+        for path, text in files.items()
+        if path in kinds or path.endswith((".css", ".woff2"))
+    }
     programs = ("pdf.py", "tagged.py", "spoken.py", "print.css", "browser.py")
     found = {PDF.name: digest(printed, *(WEBSITE / name for name in programs))}
     texts = {path: text for path, text in files.items() if path in kinds}
-    found[EPUB.name] = digest(texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py", "spoken.py")))
+    found[EPUB.name] = digest(
+        texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py", "spoken.py"))
+    )
     for path in (PDF, EPUB):
         if path.exists():
             files[path.name] = path.read_bytes()
@@ -77,16 +97,24 @@ def link_to_pdf():
 
 
 def link_to_epub():
-    return LINK.format(name=EPUB.name, title="EPUB", note="for reading programs", size=EPUB.stat().st_size / 1e6)
+    return LINK.format(
+        name=EPUB.name, title="EPUB", note="for reading programs", size=EPUB.stat().st_size / 1e6
+    )
 
 
 def link_to_zip():
-    return LINK.format(name=ZIP.name, title="Offline pages", note="a zip", size=ZIP.stat().st_size / 1e6)
+    return LINK.format(
+        name=ZIP.name, title="Offline pages", note="a zip", size=ZIP.stat().st_size / 1e6
+    )
 
 
 def write_front_page():
     """Offer on the front page what is there."""
-    links = [link() for path, link in ((PDF, link_to_pdf), (EPUB, link_to_epub), (ZIP, link_to_zip)) if path.exists()]
+    links = [
+        link()
+        for path, link in ((PDF, link_to_pdf), (EPUB, link_to_epub), (ZIP, link_to_zip))
+        if path.exists()
+    ]
     before = (HTML / FRONT).read_text("utf8")
     after = with_offer(before, links)
     if after != before:
@@ -106,13 +134,18 @@ def withdraw_outdated():
 
 def note_stamps():
     found = stamps()
-    STAMPS.write_text(json.dumps({path.name: found[path.name] for path in (PDF, EPUB, ZIP) if path.exists()}), "utf8")
+    STAMPS.write_text(
+        json.dumps({path.name: found[path.name] for path in (PDF, EPUB, ZIP) if path.exists()}),
+        "utf8",
+    )
 
 
 def make_pdf(settings):
     from . import pdf
 
-    PDF.write_bytes(pdf.make(HTML, BUILD / "print" / "book.html", settings["title"], settings["author"]))
+    PDF.write_bytes(
+        pdf.make(HTML, BUILD / "print" / "book.html", settings["title"], settings["author"])
+    )
 
 
 def make_epub(settings):
@@ -140,7 +173,10 @@ def main():
             print(f"Making {path.name} ...", flush=True)
             make(settings)
             note_stamps()
-            print(f"Made in {time.monotonic() - start:.0f} s: {path}, {path.stat().st_size / 1e6:.1f} MB")
+            print(
+                f"Made in {time.monotonic() - start:.0f} s: {path}, "
+                f"{path.stat().st_size / 1e6:.1f} MB"
+            )
     write_front_page()
     install.write_list(HTML)
     let_everybody_read(HTML)

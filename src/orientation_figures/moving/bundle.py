@@ -1,7 +1,8 @@
-"""Put the modules of a figure together: one text for Jupyter, classic scripts for pages without a kernel.
+"""Put the modules of a figure together: one text for Jupyter, classic scripts for pages without a
+kernel.
 
-Pages opened from disk cannot import modules, and anywidget wants one module for each figure. Both come
-from the same files.
+Pages opened from disk cannot import modules, and anywidget wants one module for each figure. Both
+come from the same files.
 """
 
 import re
@@ -13,12 +14,14 @@ from ..style import STYLE
 FOLDER = Path(__file__).parent
 SHARED = ("formulas", "mathematics", "common_picture", "glyphs", "model", "address", "shared")
 #: What ``pictures`` describes, and ``javascript`` has translated.
-PICTURES = sorted(path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js"))
+PICTURES = sorted(
+    path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js")
+)
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
 OWN |= {name: (*OWN.get(name, ()), f"{name}_picture") for name in PICTURES if name != "common"}
-#: Figures that use packages of npm: what their page loads when they are seen is built from this script, and each has a
-#: style sheet of its own.
+#: Figures that use packages of npm: what their page loads when they are seen is built from this
+#: script, and each has a style sheet of its own.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
 #: Fetches that, when the page stands and the figure is in sight.
 LOADER = """(() => {
@@ -66,7 +69,10 @@ def esm(name):
 def shared_script():
     """Return the classic script that every page with figures loads first."""
     names = [name for module in SHARED for name in EXPORT.findall(source(module))]
-    return f"const orientation = (() => {{\n{''.join(map(body, SHARED))}return {{ {', '.join(names)} }};\n}})();\n"
+    return (
+        f"const orientation = (() => {{\n{''.join(map(body, SHARED))}return {{ {', '.join(names)} "
+        f"}};\n}})();\n"
+    )
 
 
 def script(name):
@@ -74,10 +80,17 @@ def script(name):
     own = OWN.get(name, ())
     texts = [IMPORT_FROM.findall(source(module)) for module in (*own, name)]
     taken = {
-        one.strip(): 0 for text in texts for names, module in text if module not in own for one in names.split(",")
+        one.strip(): 0
+        for text in texts
+        for names, module in text
+        if module not in own
+        for one in names.split(",")
     }
     names = ", ".join(filter(None, taken))
-    return f"(() => {{\nconst {{ {names} }} = orientation;\n{whole(name)}orientation.start('{name}', render);\n}})();\n"
+    return (
+        f"(() => {{\nconst {{ {names} }} = orientation;\n"
+        f"{whole(name)}orientation.start('{name}', render);\n}})();\n"
+    )
 
 
 def beside(name):

@@ -16,21 +16,22 @@ from .state import Turns
 class ChallengeFigure(MovingFigure):
     r"""A box with the frame :math:`A`, which the reader turns about its own axes to a goal.
 
-    In the task 'match' the goal is an orientation of which only the matrix is shown. In 'undo' the box has been
-    turned, and the goal is where it came from, :math:`N`. In 'ghost' a ghost has made three turns through angles
-    that are told, about axes that are not. How well it is done is said by the angle that remains.
+    In the task 'match' the goal is an orientation of which only the matrix is shown. In 'undo' the
+    box has been turned, and the goal is where it came from, :math:`N`. In 'ghost' a ghost has made
+    three turns through angles that are told, about axes that are not. How well it is done is said
+    by the angle that remains.
 
     Attributes
     ----------
     task : {'match', 'undo', 'ghost'}
     given : tuple of one to three pairs
-        The turns of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: of the goal in 'match' and
-        'ghost', and in 'undo' those that are to be undone.
+        The turns of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: of the
+        goal in 'match' and 'ghost', and in 'undo' those that are to be undone.
     turns : tuple of no to twenty pairs
         The reader's own turns, each about a unit vector of the box (body fixed).
     goal : array_like, shape (3, 3)
-        Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which makes ``given`` three
-        turns that lead there.
+        Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which makes
+        ``given`` three turns that lead there.
 
     Raises
     ------
@@ -71,7 +72,9 @@ class ChallengeFigure(MovingFigure):
     @goal.setter
     def goal(self, dcm):
         if self.task != "match":
-            raise ValueError(f"the goal of the task {self.task!r} follows from given; it can be set in 'match'")
+            raise ValueError(
+                f"the goal of the task {self.task!r} follows from given; it can be set in 'match'"
+            )
         check_dcm(dcm)
         self.given = tuple(zip("zxy", body_fixed_from_dcm(dcm, "zxy")))
 

@@ -9,7 +9,8 @@ from orientation_workbench.programs import FORMS, OTHER, PROGRAMS, expected_of
 from .figure import MovingFigure
 from .state import Numbers
 
-# What a side of the converter says; for a program of the table its own convention goes before the last three.
+# What a side of the converter says; for a program of the table its own convention goes before the
+# last three.
 CHOICES = {
     "program": (*PROGRAMS, OTHER),
     "form": FORMS,
@@ -18,7 +19,13 @@ CHOICES = {
     "scalar": ("first", "last"),
     "unit": ("radians", "degrees"),
 }
-FIRST = {"form": "quaternion", "sequence": "zyx", "matrix": "as here", "scalar": "first", "unit": "radians"}
+FIRST = {
+    "form": "quaternion",
+    "sequence": "zyx",
+    "matrix": "as here",
+    "scalar": "first",
+    "unit": "radians",
+}
 # The camera in its gimbal that the whole chapter is about: 0.4, 0.7 and -0.3 rad, body fixed z-x-y.
 AT_FIRST = (0.9204901330363197, 0.3601778830129209, -0.07022156093803689, 0.13430837632305287)
 
@@ -36,9 +43,14 @@ _FORM_OF = {"quaternion": "quaternion", "rotation vector": "axis times angle", "
 
 
 def _as_the_page_has_it(program):
-    """What the table says of a program, with the forms that mean the inverse, and its axes as rows of numbers."""
+    """What the table says of a program, with the forms that mean the inverse, and its axes as rows
+    of numbers.
+    """
     facts, inverse = PROGRAMS[program], expected_of(program)["inverse"]
-    axes = [[list(_WAYS[way]) for way in facts[whose]] if facts.get(whose) else None for whose in ("body", "world")]
+    axes = [
+        [list(_WAYS[way]) for way in facts[whose]] if facts.get(whose) else None
+        for whose in ("body", "world")
+    ]
     return facts | {"turned": [_FORM_OF[kind] for kind in inverse], "axes": axes}
 
 
@@ -57,26 +69,34 @@ class Side(traitlets.TraitType):
         side = FIRST | {"program": "this book"} | value
         for name, chosen in side.items():
             if name not in CHOICES:
-                raise traitlets.TraitError(f"{self.name} has {name!r}; what can be chosen is {', '.join(CHOICES)}")
+                raise traitlets.TraitError(
+                    f"{self.name} has {name!r}; what can be chosen is {', '.join(CHOICES)}"
+                )
             allowed = CHOICES[name]
             if chosen not in allowed:
-                raise traitlets.TraitError(f"{self.name} has {name} {chosen!r}; there is {', '.join(allowed)}")
+                raise traitlets.TraitError(
+                    f"{self.name} has {name} {chosen!r}; there is {', '.join(allowed)}"
+                )
         lines = PROGRAMS.get(side["program"], {}).get("lines", FORMS)
         if side["form"] not in lines:
-            raise traitlets.TraitError(f"{side['program']} takes no {side['form']}; it takes {', '.join(lines)}")
+            raise traitlets.TraitError(
+                f"{side['program']} takes no {side['form']}; it takes {', '.join(lines)}"
+            )
         return side
 
 
 class ConverterFigure(MovingFigure):
-    r"""Numbers of one program, read as that program means them, and the same orientation in another.
+    r"""Numbers of one program, read as that program means them, and the same orientation in
+    another.
 
     Attributes
     ----------
     quaternion : tuple of four floats
-        The orientation that both sides describe: :math:`{}^A\mathbf{C}^N` as a quaternion, scalar first.
+        The orientation that both sides describe: :math:`{}^A\mathbf{C}^N` as a quaternion, scalar
+        first.
     source, target : dict
-        For each side ``program``, one of those in ``orientation_workbench.programs``; ``form``; ``sequence``;
-        and for another program ``matrix``, ``scalar`` and ``unit``.
+        For each side ``program``, one of those in ``orientation_workbench.programs``; ``form``;
+        ``sequence``; and for another program ``matrix``, ``scalar`` and ``unit``.
 
     Examples
     --------
@@ -91,9 +111,9 @@ class ConverterFigure(MovingFigure):
     room = (862, 1270)
     quaternion = Numbers(AT_FIRST, (4,), 1.0).tag(sync=True, state=True)
     source = Side(FIRST | {"program": "SciPy"}).tag(sync=True, state=True)
-    target = Side(FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}).tag(
-        sync=True, state=True
-    )
+    target = Side(
+        FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}
+    ).tag(sync=True, state=True)
     programs = traitlets.Dict(FOR_THE_PAGE, read_only=True).tag(sync=True, told=True)
 
     @property

@@ -1,7 +1,9 @@
-"""Pages with one figure each, to stand in other people's pages: in a frame, or as an element of HTML.
+"""Pages with one figure each, to stand in other people's pages: in a frame, or as an element of
+HTML.
 
-Both show a figure as an address says that it stands (see ``address.py``). The element's name ends in its version, and
-it leaves no other name in the page. It only sets the frame and gives it the height that the figure asks for.
+Both show a figure as an address says that it stands (see ``address.py``). The element's name ends
+in its version, and it leaves no other name in the page. It only sets the frame and gives it the
+height that the figure asks for.
 """
 
 from importlib import import_module
@@ -70,14 +72,16 @@ def figures():
 def line(site, kind, fragment=""):
     """The one line of HTML that puts a figure into a page: a frame.
 
-    ``site`` is the address of the book, ``fragment`` what :func:`orientation_figures.moving.address.fragment_of` gives.
+    ``site`` is the address of the book, ``fragment`` what
+    :func:`orientation_figures.moving.address.fragment_of` gives.
 
     >>> line('https://example.org/book/', 'gimbal')
     '<iframe src="https://example.org/book/embed/gimbal.html" title="A figure that can be moved" loading="lazy" \
 width="100%" height="600" style="border: 0"></iframe>'
     """
     return (
-        f'<iframe src="{site.rstrip("/")}/{FOLDER}/{kind}.html{fragment}" title="A figure that can be moved" '
+        f'<iframe src="{site.rstrip("/")}/{FOLDER}/{kind}.html{fragment}" title="A figure that can '
+        'be moved" '
         'loading="lazy" width="100%" height="600" style="border: 0"></iframe>'
     )
 
@@ -86,7 +90,10 @@ def files():
     """What lies in the folder ``embed`` of the site: texts by their names."""
     found = {f"{ELEMENT}.js": SCRIPT.replace("NAME", ELEMENT)}
     for kind, figure in figures().items():
-        scripts = "".join(f'<script defer src="../_static/moving/{name}.js"></script>' for name in ("shared", kind))
+        scripts = "".join(
+            f'<script defer src="../_static/moving/{name}.js"></script>'
+            for name in ("shared", kind)
+        )
         found[f"{kind}.html"] = PAGE.format(
             kind=kind, style="", sheet="moving", scripts=scripts, figure=figure().still()
         )
@@ -94,5 +101,7 @@ def files():
         still = Gimbal("which-way")._repr_html_().replace("<figure ", "<figure data-play ", 1)
         scripts = f'<script defer src="../_static/moving/{kind}.js"></script>'
         style = STYLE + painted_style()
-        found[f"{kind}.html"] = PAGE.format(kind=kind, style=style, sheet=kind, scripts=scripts, figure=still)
+        found[f"{kind}.html"] = PAGE.format(
+            kind=kind, style=style, sheet=kind, scripts=scripts, figure=still
+        )
     return found

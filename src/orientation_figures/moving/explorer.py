@@ -1,4 +1,5 @@
-"""An explorer of the twelve sequences: choose one, type angles, and read what the three turns multiply out to.
+"""An explorer of the twelve sequences: choose one, type angles, and read what the three turns
+multiply out to.
 
 SymPy does the algebra, so this needs Python: a kernel's, or that of the page.
 """
@@ -29,30 +30,36 @@ from .state import Sequence
 
 NAMES = ("psi", "theta", "phi")
 #: What an angle may be made of besides numbers and symbols.
-FUNCTIONS = {name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")}
+FUNCTIONS = {
+    name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")
+}
 KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ("Integer", "Float", "Rational")}
 TURN = 2 * sm.pi  # beyond it, degrees may have been meant
 SPACE = '<mspace width="0.17em"></mspace>'
 FIXED = '<mo stretchy="false">{}</mo>'
 #: The symbol of the matrix, with its frames around it.
 SYMBOL = (
-    '<mmultiscripts><mi mathvariant="normal" class="matrix">C</mi><mrow></mrow><mi>A</mi><mprescripts></mprescripts>'
+    '<mmultiscripts><mi mathvariant="normal" '
+    'class="matrix">C</mi><mrow></mrow><mi>A</mi><mprescripts></mprescripts>'
     "<mrow></mrow><mi>D</mi></mmultiscripts>"
 )
 
 
 class SequenceExplorer(anywidget.AnyWidget):
-    r"""The direction cosine matrix of any of the twelve sequences, with its factors, as the reader changes them.
+    r"""The direction cosine matrix of any of the twelve sequences, with its factors, as the reader
+    changes them.
 
-    Shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied out, and what
-    is left of it at gimbal lock, where only the sum or the difference of two angles counts.
+    Shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied out,
+    and what is left of it at gimbal lock, where only the sum or the difference of two angles
+    counts.
 
     Parameters
     ----------
     sequence : str
         One of the twelve sequences.
     angles : three strings, numbers or SymPy expressions
-        Radians: symbols, numbers, or expressions such as ``'pi/6'``. They are kept as they are typed.
+        Radians: symbols, numbers, or expressions such as ``'pi/6'``. They are kept as they are
+        typed.
     fixed : {'body', 'space'}
         Whether the turns are about axes of the turned frame or of the frame that stays.
 
@@ -114,7 +121,9 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def matrices(self):
-        """All that is shown: the factors as they are multiplied, their product, and that at gimbal lock."""
+        """All that is shown: the factors as they are multiplied, their product, and that at gimbal
+        lock.
+        """
         psi, _, phi = self.values
         factors = self.factors[::-1] if self.fixed == "body" else self.factors
         return [*factors, self.dcm, sm.trigsimp(self._dcm((psi, self._locked, phi)))]
@@ -146,7 +155,9 @@ class SequenceExplorer(anywidget.AnyWidget):
         )
 
     def lock(self):
-        """Return a sentence that says where the sequence locks, and how far from there it stands."""
+        """Return a sentence that says where the sequence locks, and how far from there it
+        stands.
+        """
         proper = self.sequence in PROPER_EULER
         where = "θ = 0 and θ = π" if proper else "θ = π/2 and θ = −π/2"
         axes = "the first and the third turn are about one line"
@@ -155,7 +166,11 @@ class SequenceExplorer(anywidget.AnyWidget):
         if not theta.is_number:
             return said
         [margin] = lock_margin_formula(self.sequence)(NUMBERS, 0, float(theta), 0)
-        return f"{said} Here it is {margin:.3g} rad away from that." if margin > 1e-12 else f"{said} Here it is locked."
+        return (
+            f"{said} Here it is {margin:.3g} rad away from that."
+            if margin > 1e-12
+            else f"{said} Here it is locked."
+        )
 
     def _dcm(self, angles):
         build = dcm_from_body_fixed if self.fixed == "body" else dcm_from_space_fixed
@@ -184,7 +199,8 @@ class SequenceExplorer(anywidget.AnyWidget):
 
 
 def angle_from_text(text, name="angle"):
-    """Return the SymPy expression that was typed; nothing but arithmetic and the usual functions is read.
+    """Return the SymPy expression that was typed; nothing but arithmetic and the usual functions is
+    read.
 
     Raises
     ------
@@ -197,7 +213,10 @@ def angle_from_text(text, name="angle"):
     >>> angle_from_text('alpha + pi/6'), angle_from_text('phi')
     (alpha + pi/6, varphi)
     """
-    symbols = {word: sm.Symbol("varphi" if word == "phi" else word) for word in re.findall(r"[A-Za-z]\w*", text)}
+    symbols = {
+        word: sm.Symbol("varphi" if word == "phi" else word)
+        for word in re.findall(r"[A-Za-z]\w*", text)
+    }
     allowed = (
         re.fullmatch(r"[\w\s+\-*/().]+", text, re.ASCII)
         and not any(map(iskeyword, symbols))
@@ -207,13 +226,20 @@ def angle_from_text(text, name="angle"):
         if not allowed:
             raise SyntaxError
         angle = parse_expr(
-            text, {**symbols, **FUNCTIONS}, global_dict={"__builtins__": {}, "Symbol": sm.Symbol, **KINDS_OF_NUMBERS}
+            text,
+            {**symbols, **FUNCTIONS},
+            global_dict={"__builtins__": {}, "Symbol": sm.Symbol, **KINDS_OF_NUMBERS},
         )
     except (SyntaxError, TypeError, AttributeError, NameError, ValueError, RecursionError):
         raise ValueError(
-            f"{name} is {text!r}: a symbol, a number of radians or an expression such as pi/6 was expected"
+            f"{name} is {text!r}: a symbol, a number of radians or an expression such as pi/6 was "
+            "expected"
         ) from None
-    if not isinstance(angle, sm.Expr) or angle.is_number and not (angle.is_real and angle.is_finite):
+    if (
+        not isinstance(angle, sm.Expr)
+        or angle.is_number
+        and not (angle.is_real and angle.is_finite)
+    ):
         raise ValueError(f"{name} is {text!r}: one real angle was expected")
     return angle
 
@@ -223,7 +249,9 @@ def _tex(value):
 
 
 def _mathml(value):
-    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` leaves them out of TeX."""
+    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` leaves
+    them out of TeX.
+    """
     text = mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
     text = text.replace("<mn>-", "<mn>−")
     text = re.sub(r"<mrow><mo>\(</mo>(<m[in]>[^<]+</m[in]>)<mo>\)</mo></mrow>", rf"{SPACE}\1", text)

@@ -1,4 +1,6 @@
-"""What every moving figure is: a widget in Jupyter, a still on paper, and the state that both show."""
+"""What every moving figure is: a widget in Jupyter, a still on paper, and the state that both
+show.
+"""
 
 import json
 from difflib import get_close_matches
@@ -16,15 +18,15 @@ from . import bundle
 class MovingFigure(anywidget.AnyWidget):
     """A figure that the reader moves, in Jupyter and on the pages of the book.
 
-    Its attributes and the figure move together: setting one moves the figure, moving the figure sets it
-    and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a page of the book
-    runs the same front end without one, in place of the still.
+    Its attributes and the figure move together: setting one moves the figure, moving the figure
+    sets it and calls what ``observe`` has registered. In Jupyter a kernel keeps both in step; a
+    page of the book runs the same front end without one, in place of the still.
 
-    A figure has a ``kind``, the name of its modules in ``js`` and in ``pictures``, and traits tagged
-    ``state=True``; traits tagged ``told=True`` are constants that the front end needs. ``sheet`` gives
-    left, top, right and bottom of what may be drawn, in pixels from the origin: still and figure have the
-    same size. ``room`` is the height of the whole figure in pixels, beside and below its controls, which
-    a page keeps free so that nothing moves.
+    A figure has a ``kind``, the name of its modules in ``js`` and in ``pictures``, and traits
+    tagged ``state=True``; traits tagged ``told=True`` are constants that the front end needs.
+    ``sheet`` gives left, top, right and bottom of what may be drawn, in pixels from the origin:
+    still and figure have the same size. ``room`` is the height of the whole figure in pixels,
+    beside and below its controls, which a page keeps free so that nothing moves.
     """
 
     kind = ""
@@ -58,16 +60,25 @@ class MovingFigure(anywidget.AnyWidget):
         super().__setattr__(name, value)
 
     def _without(self, name):
-        """Return the message for a name that cannot be set, with the one that was probably meant."""
+        """Return the message for a name that cannot be set, with the one that was probably
+        meant.
+        """
         names = sorted({*self.trait_names(state=True), *self._settable()})
         near = "".join(f" (did you mean {close}?)" for close in get_close_matches(name, names, 1))
         return f"{type(self).__name__} has no {name}{near}; what can be set is {', '.join(names)}"
 
     @classmethod
     def _settable(cls):
-        """The names of what is computed from the state and can be set all the same, such as a matrix."""
+        """The names of what is computed from the state and can be set all the same, such as a
+        matrix.
+        """
         own = [vars(one) for one in cls.__mro__ if issubclass(one, MovingFigure)]
-        return {name for found in own for name, value in found.items() if isinstance(value, property) and value.fset}
+        return {
+            name
+            for found in own
+            for name, value in found.items()
+            if isinstance(value, property) and value.fset
+        }
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
@@ -87,7 +98,8 @@ class MovingFigure(anywidget.AnyWidget):
         state = escape(json.dumps(told, separators=(",", ":")), quote=False).replace("'", "&#39;")
         return (
             f'<figure class="orientation-figure moving" data-figure="{self.kind}" '
-            f"style=\"--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px\" data-state='{state}'>"
+            f'style="--room-wide:{self.room[0]}px;--room-narrow:{self.room[1]}px" '
+            f"data-state='{state}'>"
             f'<style>{STYLE}</style><div class="still">{svg}</div></figure>'
         )
 
@@ -104,11 +116,14 @@ class MovingFigure(anywidget.AnyWidget):
 
 def stills_can_be_drawn():
     """Return whether NumPy and Matplotlib are there."""
-    # They are looked for, not imported in vain: where they are missing, as in a browser, a figure is shown by
-    # its front end and needs no still; where they are there, no error of a still must be lost.
+    # They are looked for, not imported in vain: where they are missing, as in a browser, a figure
+    # is shown by its front end and needs no still; where they are there, no error of a still must
+    # be lost.
     try:
         return all(map(find_spec, ("numpy", "matplotlib")))
-    except ModuleNotFoundError:  # so answers the Python of a page, which could fetch them: a still is no reason to
+    except (
+        ModuleNotFoundError
+    ):  # so answers the Python of a page, which could fetch them: a still is no reason to
         return False
 
 

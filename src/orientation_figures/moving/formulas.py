@@ -1,14 +1,23 @@
 """Write the formulas of ``orientation`` for the page, in ``js/formulas.js``.
 
-Run it with ``python -m orientation_figures.moving.formulas``. They are recorded from the module, so that none stands
-in JavaScript a second time; the file is kept with the others, as the figures need it where nothing is recorded.
+Run it with ``python -m orientation_figures.moving.formulas``. They are recorded from the module, so
+that none stands in JavaScript a second time; the file is kept with the others, as the figures need
+it where nothing is recorded.
 """
 
 from dataclasses import replace
 
 from orientation import PROPER_EULER, SEQUENCES, TAIT_BRYAN
 from orientation.axis_angle import axis_angle_components
-from orientation_workbench.formulas import CHOICES, FORMULAS, LISTS, SIZES, applied, formula_of, variable
+from orientation_workbench.formulas import (
+    CHOICES,
+    FORMULAS,
+    LISTS,
+    SIZES,
+    applied,
+    formula_of,
+    variable,
+)
 from orientation_workbench.languages import LANGUAGES, written
 
 from .bundle import FOLDER
@@ -32,17 +41,23 @@ NAMES = {
     ),
 }  # fmt: skip
 JAVASCRIPT = replace(
-    LANGUAGES["JavaScript"], part="const {part} = {value};", chosen="const {part} = {condition} ? {yes} : {no};"
+    LANGUAGES["JavaScript"],
+    part="const {part} = {value};",
+    chosen="const {part} = {condition} ? {yes} : {no};",
 )
 
 
 def text():
     """The module: matrices are three rows, here as in the other modules of the figures."""
     lines = [
-        f"// Written by `{COMMAND}`: the formulas of the module `orientation`. Angles in radians, quaternions",
+        f"// Written by `{COMMAND}`: the formulas of the module `orientation`. Angles in radians, "
+        "quaternions",
         "// scalar first; the rows of a matrix A_C_N are A's unit vectors along N.",
         "",
-        *(f"export const {name} = [{', '.join(map(repr, value))}];" for name, value in CONSTANTS.items()),
+        *(
+            f"export const {name} = [{', '.join(map(repr, value))}];"
+            for name, value in CONSTANTS.items()
+        ),
         "",
     ]
     for name, choices in NAMES.items():
@@ -55,9 +70,13 @@ def text():
         lines.append(f"const {camel(name)}By = {{\n{''.join(rows)}}};")
         order = [what, *takes] if name == "simple_dcm" else [*takes, what]
         lines.append(
-            f"export const {camel(name)} = ({', '.join(order)}) => {camel(name)}By[{what}]({', '.join(takes)});"
+            f"export const {camel(name)} = ({', '.join(order)}) => "
+            f"{camel(name)}By[{what}]({', '.join(takes)});"
         )
-    quaternion, (omega, moments) = components("quaternion", "q"), (components("vector", one) for one in "om")
+    quaternion, (omega, moments) = (
+        components("quaternion", "q"),
+        (components("vector", one) for one in "om"),
+    )
     for name, entries, given in (
         ("axisAngleComponents", applied(axis_angle_components, *quaternion), [quaternion]),
         ("angularAcceleration", list(angular_acceleration(omega, moments)), [omega, moments]),
@@ -82,7 +101,9 @@ def function(name, takes, gives, choice=None):
     given = [components(kind, letter) for kind, letter in zip(takes.values(), "abc")]
     results = formula_of(name, given, choice)
     if gives == "angles":
-        results = [one + 0.0 for one in results]  # as in the module: -0 would look like a wrong sign
+        results = [
+            one + 0.0 for one in results
+        ]  # as in the module: -0 would look like a wrong sign
     return arrow(given, list(takes.values()), results, gives)
 
 
@@ -90,9 +111,15 @@ def arrow(given, kinds, results, gives):
     """A function of lists that are taken apart, as its parts and its result."""
     names = {entry.parts[0]: entry.parts[0] for entries in given for entry in entries}
     lines, values = written(JAVASCRIPT, results, names)
-    head = ", ".join(shaped([one.parts[0] for one in entries], kind) for entries, kind in zip(given, kinds))
+    head = ", ".join(
+        shaped([one.parts[0] for one in entries], kind) for entries, kind in zip(given, kinds)
+    )
     result = shaped(values, gives)
-    return f"({head}) => {{ {' '.join(lines)} return {result}; }}" if lines else f"({head}) => {result}"
+    return (
+        f"({head}) => {{ {' '.join(lines)} return {result}; }}"
+        if lines
+        else f"({head}) => {result}"
+    )
 
 
 def shaped(texts, kind):

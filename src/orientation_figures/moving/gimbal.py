@@ -15,8 +15,9 @@ from .state import Numbers, Sequence
 class GimbalFigure(MovingFigure):
     r"""A camera gimbal: handgrip :math:`A`, two rings :math:`B` and :math:`C`, camera :math:`D`.
 
-    Each joint turns what it carries about one axis, in the order of the sequence, so that the angles are
-    body fixed Euler angles. Near gimbal lock the figure says which two sliders turn about one line.
+    Each joint turns what it carries about one axis, in the order of the sequence, so that the
+    angles are body fixed Euler angles. Near gimbal lock the figure says which two sliders turn
+    about one line.
 
     Attributes
     ----------
@@ -44,7 +45,9 @@ class GimbalFigure(MovingFigure):
 
     kind = "gimbal"
     sheet = (-180, -185, 200, 185)
-    angles = Numbers(tuple(map(math.radians, (15, -25, -30))), (3,), math.pi).tag(sync=True, state=True)
+    angles = Numbers(tuple(map(math.radians, (15, -25, -30))), (3,), math.pi).tag(
+        sync=True, state=True
+    )
     sequence = Sequence("zxy").tag(sync=True, state=True)
     more = traitlets.Bool(True).tag(sync=True, told=True)
 

@@ -2,8 +2,8 @@
 
 Run it with ``python -m orientation_figures.moving.glyphs``.
 
-They look like those of ``orientation_figures.drawing``. The file is kept with the others, so that the figures are
-alive where there is no Matplotlib to set anything.
+They look like those of ``orientation_figures.drawing``. The file is kept with the others, so that
+the figures are alive where there is no Matplotlib to set anything.
 """
 
 import json
@@ -75,7 +75,12 @@ def glyphs():
         labels[text] = {
             "ink": [round(float(edge)) for edge in ink.ravel()],
             "glyphs": [
-                [outlines.setdefault(outline, len(outlines)), round(float(x)), round(float(y)), round(float(size), 3)]
+                [
+                    outlines.setdefault(outline, len(outlines)),
+                    round(float(x)),
+                    round(float(y)),
+                    round(float(size), 3),
+                ]
                 for outline, (x, y), size in placed
             ],
         }

@@ -13,43 +13,52 @@ LETTERS = "NABCDE"
 
 
 class Edges(traitlets.TraitType):
-    """One to five orientations: a new frame, the one it is turned in, an axis and an angle in radians."""
+    """One to five orientations: a new frame, the one it is turned in, an axis and an angle in
+    radians.
+    """
 
     def validate(self, obj, value):
         whole = isinstance(value, (list, tuple)) and 1 <= len(value) < len(LETTERS)
-        if not whole or not all(isinstance(edge, (list, tuple)) and len(edge) == 4 for edge in value):
+        if not whole or not all(
+            isinstance(edge, (list, tuple)) and len(edge) == 4 for edge in value
+        ):
             raise traitlets.TraitError(
-                f"edges is {value!r}: one to five were expected, each a frame, the frame it is turned in, an axis and "
+                f"edges is {value!r}: one to five were expected, each a frame, the frame it is "
+                "turned in, an axis and "
                 "an angle in radians, as (('A', 'N', 'z', 0.7), ('B', 'A', 'x', 0.5))"
             )
         known = ["N"]
         for frame, reference, *_ in value:
             if reference not in known:
                 raise traitlets.TraitError(
-                    f"edges turns {frame} in {reference}, which is not there: the frames are {known}"
+                    f"edges turns {frame} in {reference}, which is not there: the "
+                    f"frames are {known}"
                 )
             if frame in known or frame not in LETTERS:
                 raise traitlets.TraitError(
-                    f"edges makes the frame {frame!r}: a new one of {', '.join(LETTERS[1:])} was expected"
+                    f"edges makes the frame {frame!r}: a new one of {', '.join(LETTERS[1:])} was "
+                    "expected"
                 )
             known.append(frame)
         turns = Turns((), most=5)
         turns.name = self.name
         turns = turns.validate(obj, [(axis, angle) for _, _, axis, angle in value])
-        return tuple((frame, reference, *turn) for (frame, reference, *_), turn in zip(value, turns))
+        return tuple(
+            (frame, reference, *turn) for (frame, reference, *_), turn in zip(value, turns)
+        )
 
 
 class GraphFigure(MovingFigure):
     r"""A tree of frames, each turned in another about a unit vector that both share.
 
-    The reader adds frames, turns them, and asks for the matrix between any two: it is the product over the path
-    from one to the other, some of its factors transposed.
+    The reader adds frames, turns them, and asks for the matrix between any two: it is the product
+    over the path from one to the other, some of its factors transposed.
 
     Attributes
     ----------
     edges : tuple of one to five tuples
-        ``(frame, reference, axis, angle)``: a new frame, one that is there already, 'x', 'y' or 'z', and an angle in
-        radians, from :math:`-\pi` to :math:`\pi`. The first frame is ``'N'``.
+        ``(frame, reference, axis, angle)``: a new frame, one that is there already, 'x', 'y' or
+        'z', and an angle in radians, from :math:`-\pi` to :math:`\pi`. The first frame is ``'N'``.
     target, source : str
         The two frames whose matrix is shown.
 
@@ -81,7 +90,9 @@ class GraphFigure(MovingFigure):
         known = ["N", *(edge[0] for edge in now["edges"])]
         for name in ("target", "source"):
             if now[name] not in known:
-                raise traitlets.TraitError(f"{name} is {now[name]}, and the frames are {', '.join(known)}")
+                raise traitlets.TraitError(
+                    f"{name} is {now[name]}, and the frames are {', '.join(known)}"
+                )
         return proposal["value"]
 
     @property

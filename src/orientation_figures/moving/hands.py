@@ -9,17 +9,18 @@ from .state import Direction
 
 
 class HandsFigure(MovingFigure):
-    r"""A right-handed triad :math:`N`, and beside it either its mirror image or a copy, which the reader turns.
+    r"""A right-handed triad :math:`N`, and beside it either its mirror image or a copy, which the
+    reader turns.
 
-    The angles between the arrows of the same name are shown. A copy can be brought onto :math:`N`. Of the mirror
-    image two arrows can fit, and then the third points the wrong way.
+    The angles between the arrows of the same name are shown. A copy can be brought onto :math:`N`.
+    Of the mirror image two arrows can fit, and then the third points the wrong way.
 
     Attributes
     ----------
     image : {'mirror', 'copy'}
     quaternion : tuple of four floats
-        The turn that the image has made, scalar first. Any four numbers but zeros may be given; they are kept at
-        unit length.
+        The turn that the image has made, scalar first. Any four numbers but zeros may be given;
+        they are kept at unit length.
     together : bool
         Whether the image is drawn over :math:`N`, or beside it.
 
@@ -47,4 +48,8 @@ class HandsFigure(MovingFigure):
     def rows(self):
         """The unit vectors of the image along N, three tuples."""
         first, second, third = (tuple(float(entry) + 0.0 for entry in row) for row in self.dcm)
-        return (first, tuple(0.0 - entry for entry in second) if self.image == "mirror" else second, third)
+        return (
+            first,
+            tuple(0.0 - entry for entry in second) if self.image == "mirror" else second,
+            third,
+        )

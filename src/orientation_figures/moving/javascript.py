@@ -1,13 +1,15 @@
 """Write the pictures of the moving figures in JavaScript, too, in ``js/*_picture.js``.
 
-Run it with ``python -m orientation_figures.moving.javascript``. What a figure shows is described once, in
-``pictures``: functions of its state in the words of a sheet and of :mod:`~orientation_figures.moving.vectors`. Python
-paints stills with them; here they are translated, statement by statement, for the figures in the page. The files are
-kept with the others, as the figures need them where nothing is translated.
+Run it with ``python -m orientation_figures.moving.javascript``. What a figure shows is described
+once, in ``pictures``: functions of its state in the words of a sheet and of
+:mod:`~orientation_figures.moving.vectors`. Python paints stills with them; here they are
+translated, statement by statement, for the figures in the page. The files are kept with the others,
+as the figures need them where nothing is translated.
 
-A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is given by name
-becomes an object. What begins with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an empty
-list counts as true, so ask for its length; and a text is no list until ``list`` makes it one.
+A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is
+given by name becomes an object. What begins with ``_``, and functions of a whole ``figure``, stay
+in Python. In JavaScript an empty list counts as true, so ask for its length; and a text is no list
+until ``list`` makes it one.
 """
 
 import ast
@@ -41,12 +43,22 @@ def translated(name):
                 modules |= {alias.name: source for alias in node.names}
             case ast.Assign(targets=[ast.Name(id=constant)]) if not constant.startswith("_"):
                 parts.append((node, f"export const {constant} = {expression(node.value)};"))
-            case ast.FunctionDef() if not node.name.startswith("_") and node.args.args[0].arg != "figure":
-                parts.append((node, f"\nexport function {camel(node.name)}({parameters(node.args)}) {block(node)}"))
+            case ast.FunctionDef() if (
+                not node.name.startswith("_") and node.args.args[0].arg != "figure"
+            ):
+                parts.append(
+                    (
+                        node,
+                        f"\nexport function {camel(node.name)}({parameters(node.args)}) "
+                        f"{block(node)}",
+                    )
+                )
     used = {one.id for node, _ in parts for one in ast.walk(node) if isinstance(one, ast.Name)}
     lines = [f"// Written by `{COMMAND}` from pictures/{name}.py."]
     for module in sorted({modules[one] for one in used & set(modules)}):
-        names = ", ".join(sorted(camel(one) for one in used & set(modules) if modules[one] == module))
+        names = ", ".join(
+            sorted(camel(one) for one in used & set(modules) if modules[one] == module)
+        )
         lines.append(f"import {{ {names} }} from './{module}.js';")
     return "\n".join([*lines, *(text for _, text in parts)]) + "\n"
 
@@ -61,7 +73,8 @@ def parameters(arguments):
     for k, default in enumerate(reversed(arguments.defaults), 1):
         given[-k] += f" = {expression(default)}"
     named = [
-        f"{camel(one.arg)} = {expression(value)}" for one, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
+        f"{camel(one.arg)} = {expression(value)}"
+        for one, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
     ]
     return ", ".join(given + ([f"{{ {', '.join(named)} }} = {{}}"] if named else []))
 
@@ -72,11 +85,15 @@ def block(function):
     while found:
         node = found.pop()
         if isinstance(node, ast.Assign | ast.AugAssign):
-            together.append(names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target))
+            together.append(
+                names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target)
+            )
         if isinstance(node, ast.stmt) and not isinstance(node, ast.FunctionDef):
             found += ast.iter_child_nodes(node)
     every = sum(together, [])
-    changing = sorted({one for names in together if any(every.count(name) > 1 for name in names) for one in names})
+    changing = sorted(
+        {one for names in together if any(every.count(name) > 1 for name in names) for one in names}
+    )
     first = [f"let {', '.join(map(camel, changing))};"] if changing else []
     return braces(first + [statement(one, changing) for one in function.body])
 
@@ -87,7 +104,11 @@ def braces(lines):
 
 
 def names_in(target):
-    return [one.id for one in ast.walk(target) if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)]
+    return [
+        one.id
+        for one in ast.walk(target)
+        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+    ]
 
 
 def statement(node, changing):
@@ -106,14 +127,22 @@ def statement(node, changing):
             first = "const " if names and not set(names) & set(changing) else ""
             return f"{first}{expression(target)} = {expression(node.value)};"
         case ast.AugAssign():
-            return f"{expression(node.target)} {_OPERATORS[type(node.op)][0]}= {expression(node.value)};"
+            return (
+                f"{expression(node.target)} {_OPERATORS[type(node.op)][0]}= "
+                f"{expression(node.value)};"
+            )
         case ast.For():
-            return f"for (const {expression(node.target)} of {expression(node.iter)}) {all_of(node.body)}"
+            return (
+                f"for (const {expression(node.target)} of {expression(node.iter)}) "
+                f"{all_of(node.body)}"
+            )
         case ast.If():
             other = ""
             if node.orelse:
                 chained = len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
-                other = " else " + (statement(node.orelse[0], changing) if chained else all_of(node.orelse))
+                other = " else " + (
+                    statement(node.orelse[0], changing) if chained else all_of(node.orelse)
+                )
             return f"if ({expression(node.test)}) {all_of(node.body)}{other}"
         case ast.FunctionDef():
             return f"const {camel(node.name)} = ({parameters(node.args)}) => {block(node)};"
@@ -192,7 +221,9 @@ def expression(node):
 
 
 def over(part):
-    conditions = "".join(f".filter(({expression(part.target)}) => {expression(one)})" for one in part.ifs)
+    conditions = "".join(
+        f".filter(({expression(part.target)}) => {expression(one)})" for one in part.ifs
+    )
     return within(part.iter) + conditions
 
 
@@ -200,7 +231,10 @@ def call(node):
     given = [expression(one) for one in node.args]
     if node.keywords:
         if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
-            raise ValueError(f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, without names")
+            raise ValueError(
+                f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, "
+                "without names"
+            )
         given.append(entries((one.arg, one.value) for one in node.keywords))
     if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):
         return f"Math.{node.func.id}({'...' if len(given) == 1 else ''}{', '.join(given)})"

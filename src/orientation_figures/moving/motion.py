@@ -1,4 +1,6 @@
-"""A racket that tumbles, its orientation integrated as a matrix, as a quaternion and as Euler angles."""
+"""A racket that tumbles, its orientation integrated as a matrix, as a quaternion and as Euler
+angles.
+"""
 
 import traitlets
 
@@ -21,7 +23,8 @@ class Between(Numbers):
         number = super().validate(obj, value)
         if not self.least <= number <= self.most:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} {self.unit} can be had"
+                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} "
+                f"{self.unit} can be had"
             )
         return number
 
@@ -44,32 +47,35 @@ class Moments(Numbers):
 
 
 class MotionFigure(MovingFigure):
-    r"""A body that tumbles freely, integrated in three descriptions with or without the restoring step.
+    r"""A body that tumbles freely, integrated in three descriptions with or without the restoring
+    step.
 
-    The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation is
-    carried along as a direction cosine matrix, as a quaternion and as Euler angles in the sequence
-    :math:`z`-:math:`x`-:math:`y`. Each is given one and the same angular velocity, which is found in steps
-    ten times finer; what they differ in is their own. One of them is drawn, and dashed the reference, a quaternion
-    integrated in the finer steps. Plots show how the drift grows.
+    The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
+    is carried along as a direction cosine matrix, as a quaternion and as Euler angles in the
+    sequence :math:`z`-:math:`x`-:math:`y`. Each is given one and the same angular velocity, which
+    is found in steps ten times finer; what they differ in is their own. One of them is drawn, and
+    dashed the reference, a quaternion integrated in the finer steps. Plots show how the drift
+    grows.
 
     Attributes
     ----------
     moments : tuple of three floats
-        The principal moments of inertia about :math:`\hat{a}_x`, :math:`\hat{a}_y` and :math:`\hat{a}_z`, from
-        0.1 to 20 g m\ :sup:`2`, none larger than the sum of the others. A racket is drawn for its own,
-        otherwise the uniform block that has them.
+        The principal moments of inertia about :math:`\hat{a}_x`, :math:`\hat{a}_y` and
+        :math:`\hat{a}_z`, from 0.1 to 20 g m\ :sup:`2`, none larger than the sum of the others. A
+        racket is drawn for its own, otherwise the uniform block that has them.
     axis : str
         The principal axis that it spins about, 'x', 'y' or 'z'.
     disturbance : float
         Angular velocity about the two other axes at the start, 0 to 0.5 rad/s.
     method : str
-        'Euler', 'Runge-Kutta' (of fourth order) or 'exponential', which turns matrix and quaternion by the rotation
-        vector of each step (Magnus, of fourth order). Euler angles have no such step, and take Runge-Kutta's.
+        'Euler', 'Runge-Kutta' (of fourth order) or 'exponential', which turns matrix and quaternion
+        by the rotation vector of each step (Magnus, of fourth order). Euler angles have no such
+        step, and take Runge-Kutta's.
     step : float
         From 0.005 to 0.1 seconds.
     restored : bool
-        Whether after every step the matrix is replaced by the nearest orthogonal one, and the quaternion
-        divided by its length.
+        Whether after every step the matrix is replaced by the nearest orthogonal one, and the
+        quaternion divided by its length.
     description : str
         Which one is drawn: 'matrix', 'quaternion' or 'angles'.
     time : float
@@ -92,23 +98,28 @@ class MotionFigure(MovingFigure):
     moments = Moments(MOMENTS["racket"], (3,)).tag(sync=True, state=True)
     axis = traitlets.Enum(tuple("xyz"), "y").tag(sync=True, state=True)
     disturbance = Between(0.01, 0, 0.5, "rad/s").tag(sync=True, state=True)
-    method = traitlets.Enum(("Euler", "Runge-Kutta", "exponential"), "Euler").tag(sync=True, state=True)
+    method = traitlets.Enum(("Euler", "Runge-Kutta", "exponential"), "Euler").tag(
+        sync=True, state=True
+    )
     step = Between(0.01, 0.005, 0.1, "seconds").tag(sync=True, state=True)
     restored = traitlets.Bool(False).tag(sync=True, state=True)
     description = traitlets.Enum(tuple(COLOURS), "matrix").tag(sync=True, state=True)
     time = Between(6.0, 0, SECONDS, "seconds").tag(sync=True, state=True)
 
     def run(self):
-        """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for each step.
+        """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for
+        each step.
 
         ``'time'``; ``'angular_velocity'`` along A; ``'matrix'``, ``'quaternion'``, ``'angles'`` as
-        integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run ends early where
-        its numbers have grown beyond ten thousand.
+        integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run
+        ends early where its numbers have grown beyond ten thousand.
         """
         from . import tumbling  # only now: it needs NumPy
 
         count = int(self.time / self.step + 1e-9)
-        return tumbling.run(self.moments, self.axis, self.disturbance, self.method, self.step, self.restored, count)
+        return tumbling.run(
+            self.moments, self.axis, self.disturbance, self.method, self.step, self.restored, count
+        )
 
     @property
     def dcm(self):

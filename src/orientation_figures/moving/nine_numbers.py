@@ -1,4 +1,6 @@
-"""Nine numbers that should be a direction cosine matrix: what fails, and the nearest matrix that is one."""
+"""Nine numbers that should be a direction cosine matrix: what fails, and the nearest matrix that is
+one.
+"""
 
 from orientation.direction_cosines import check_dcm, nearest_dcm
 
@@ -9,13 +11,14 @@ from .state import Numbers
 class NineNumbersFigure(MovingFigure):
     r"""Nine numbers, seen as three row vectors, against the nearest direction cosine matrix.
 
-    The reader edits the numbers or drags the arrows. The figure says which of the conditions fails, rows of
-    unit length, right angles, right-handed, in the words of :func:`orientation.check_dcm`.
+    The reader edits the numbers or drags the arrows. The figure says which of the conditions fails,
+    rows of unit length, right angles, right-handed, in the words of :func:`orientation.check_dcm`.
 
     Attributes
     ----------
     matrix : three tuples of three floats
-        Any numbers from -10 to 10; that they are no direction cosine matrix is what the figure is about.
+        Any numbers from -10 to 10; that they are no direction cosine matrix is what the figure is
+        about.
 
     Examples
     --------
@@ -30,7 +33,9 @@ class NineNumbersFigure(MovingFigure):
     kind = "nine_numbers"
     sheet = (-180, -165, 180, 165)
     room = (524, 941)
-    matrix = Numbers(((0.98, 0.43, -0.2), (-0.31, 0.8, 0.7), (0.08, -0.4, 0.74)), (3, 3), 10).tag(sync=True, state=True)
+    matrix = Numbers(((0.98, 0.43, -0.2), (-0.31, 0.8, 0.7), (0.08, -0.4, 0.74)), (3, 3), 10).tag(
+        sync=True, state=True
+    )
 
     @property
     def nearest(self):

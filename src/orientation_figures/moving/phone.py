@@ -1,4 +1,6 @@
-"""The reader's own phone: its sensors as a browser reports them, or a recording where there are none."""
+"""The reader's own phone: its sensors as a browser reports them, or a recording where there are
+none.
+"""
 
 import math
 
@@ -12,10 +14,10 @@ from .state import Numbers
 class PhoneFigure(MovingFigure):
     r"""A phone :math:`B`, and the ground :math:`N` with axes to the east, the north and upwards.
 
-    On a phone the figure asks for its sensors when a button is pressed, and follows it; nothing is sent
-    anywhere. The angles are those that browsers report: body fixed z-x-y, from the ground to the phone, whose
-    :math:`\hat{b}_x` points to the right across the screen, :math:`\hat{b}_y` to its top and
-    :math:`\hat{b}_z` out of it.
+    On a phone the figure asks for its sensors when a button is pressed, and follows it; nothing is
+    sent anywhere. The angles are those that browsers report: body fixed z-x-y, from the ground to
+    the phone, whose :math:`\hat{b}_x` points to the right across the screen, :math:`\hat{b}_y` to
+    its top and :math:`\hat{b}_z` out of it.
 
     Attributes
     ----------
@@ -37,7 +39,9 @@ class PhoneFigure(MovingFigure):
     kind = "phone"
     sheet = (-180, -172, 180, 172)
     room = (640, 1010)
-    angles = Numbers(tuple(map(math.radians, (100, 50, -10))), (3,), math.pi).tag(sync=True, state=True)
+    angles = Numbers(tuple(map(math.radians, (100, 50, -10))), (3,), math.pi).tag(
+        sync=True, state=True
+    )
 
     @property
     def dcm(self):

@@ -7,7 +7,11 @@ import traitlets
 from orientation.axis_angle import quaternion_from_axis_angle
 from orientation.direction_cosines import nearest_dcm
 from orientation.euler_angles import dcm_from_body_fixed
-from orientation.quaternions import dcm_from_quaternion, interpolate_quaternions, quaternion_from_dcm
+from orientation.quaternions import (
+    dcm_from_quaternion,
+    interpolate_quaternions,
+    quaternion_from_dcm,
+)
 
 from .figure import MovingFigure
 from .pictures.quaternion import SECONDS, angle_between
@@ -20,13 +24,13 @@ STEP = 1e-4
 class QuaternionFigure(MovingFigure):
     r"""Half angles, and what they are good for, in two views.
 
-    In the view 'double' a frame :math:`A` turns in :math:`N` about an axis, and beside it
-    :math:`q = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the speed.
+    In the view 'double' a frame :math:`A` turns in :math:`N` about an axis, and beside it :math:`q
+    = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the speed.
     After one full turn it has come to :math:`-q`, after two it is back.
 
     In the view 'way' three frames go from the orientation of :math:`A` to that of :math:`B` in four
-    seconds: :math:`C` by interpolating quaternions (slerp), :math:`D` by interpolating Euler angles z-x-y,
-    :math:`E` by the direction cosine matrix nearest to the interpolated matrix entries.
+    seconds: :math:`C` by interpolating quaternions (slerp), :math:`D` by interpolating Euler angles
+    z-x-y, :math:`E` by the direction cosine matrix nearest to the interpolated matrix entries.
 
     Attributes
     ----------
@@ -38,8 +42,8 @@ class QuaternionFigure(MovingFigure):
     angle : float
         :math:`\theta` in radians, from 0 to :math:`4\pi`.
     first, second : tuples of three floats
-        Body fixed angles ``(psi, theta, phi)`` of :math:`A` and :math:`B` in :math:`N` for the sequence
-        'zxy', in radians, each from :math:`-\pi` to :math:`\pi`.
+        Body fixed angles ``(psi, theta, phi)`` of :math:`A` and :math:`B` in :math:`N` for the
+        sequence 'zxy', in radians, each from :math:`-\pi` to :math:`\pi`.
     unit_vector : {'x', 'y', 'z'}
         The unit vector whose tip is followed.
     share : float
@@ -57,8 +61,12 @@ class QuaternionFigure(MovingFigure):
     view = traitlets.Enum(("double", "way"), "double").tag(sync=True, state=True)
     axis = Direction((-1, 2, 4)).tag(sync=True, state=True)
     angle = Numbers(math.radians(60), largest=FULL).tag(sync=True, state=True)
-    first = Numbers(tuple(map(math.radians, (-70, -30, 70))), (3,), largest=math.pi).tag(sync=True, state=True)
-    second = Numbers(tuple(map(math.radians, (90, 80, -120))), (3,), largest=math.pi).tag(sync=True, state=True)
+    first = Numbers(tuple(map(math.radians, (-70, -30, 70))), (3,), largest=math.pi).tag(
+        sync=True, state=True
+    )
+    second = Numbers(tuple(map(math.radians, (90, 80, -120))), (3,), largest=math.pi).tag(
+        sync=True, state=True
+    )
     unit_vector = traitlets.Enum(("x", "y", "z"), "y").tag(sync=True, state=True)
     share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
     more = traitlets.Bool(True).tag(sync=True, told=True)
@@ -95,17 +103,20 @@ class QuaternionFigure(MovingFigure):
         return dcm_from_quaternion(self.quaternion)
 
     def ways(self, share):
-        r"""Return :math:`{}^C\mathbf{C}^N`, :math:`{}^D\mathbf{C}^N` and :math:`{}^E\mathbf{C}^N` part of the way.
+        r"""Return :math:`{}^C\mathbf{C}^N`, :math:`{}^D\mathbf{C}^N` and :math:`{}^E\mathbf{C}^N`
+        part of the way.
 
-        None stands for a way that does not exist: slerp between orientations half a turn apart, or blended
-        entries to which several matrices are equally near.
+        None stands for a way that does not exist: slerp between orientations half a turn apart, or
+        blended entries to which several matrices are equally near.
         """
         first, second = self.ends
         angles = [(1 - share) * start + share * end for start, end in zip(self.first, self.second)]
         return (
             _or_none(
                 lambda: dcm_from_quaternion(
-                    interpolate_quaternions(quaternion_from_dcm(first), quaternion_from_dcm(second), share)
+                    interpolate_quaternions(
+                        quaternion_from_dcm(first), quaternion_from_dcm(second), share
+                    )
                 )
             ),
             dcm_from_body_fixed(angles, "zxy"),
@@ -113,12 +124,16 @@ class QuaternionFigure(MovingFigure):
         )
 
     def blend(self, share):
-        """Return the matrix whose entries lie part of the way between those of the ends; its rows are too short."""
+        """Return the matrix whose entries lie part of the way between those of the ends; its rows
+        are too short.
+        """
         first, second = self.ends
         return (1 - share) * first + share * second
 
     def speeds(self, share):
-        """Return the three angular speeds part of the way, radians per second for a way of four seconds."""
+        """Return the three angular speeds part of the way, radians per second for a way of four
+        seconds.
+        """
         early, late = max(0, share - STEP), min(1, share + STEP)
         return tuple(
             angle_between(before, after) / (SECONDS * (late - early))

@@ -1,4 +1,6 @@
-"""The sheet of paper on which a picture is painted: the same words as the ``Sheet`` of ``js/shared.js``."""
+"""The sheet of paper on which a picture is painted: the same words as the ``Sheet`` of
+``js/shared.js``.
+"""
 
 import numpy as np
 
@@ -8,7 +10,8 @@ from ..drawing import ROUND, Drawing, ellipse
 class Sheet(Drawing):
     """A drawing in layers: what has the higher one lies above, within a layer what comes later.
 
-    In the page ``faded`` marks step back behind a number that is touched; on paper nothing is touched.
+    In the page ``faded`` marks step back behind a number that is touched; on paper nothing is
+    touched.
     """
 
     def __init__(self, alt, **attributes):
@@ -43,8 +46,12 @@ class Sheet(Drawing):
         # The style sheet of a page makes slim tubes; that which goes with a still knows none.
         return super().line(points, colour, "thick" if kind == "tube slim" else kind)
 
-    def circle(self, normal, *, half="", radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide"):
-        """Draw a circle, or the half of it that is nearer to the reader ('front') or farther ('back')."""
+    def circle(
+        self, normal, *, half="", radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide"
+    ):
+        """Draw a circle, or the half of it that is nearer to the reader ('front') or farther
+        ('back').
+        """
         if not half:
             return super().circle(normal, radius, origin, colour, kind)
         across = np.cross(normal, self.view[2])
@@ -59,7 +66,9 @@ class Sheet(Drawing):
 
     def ring(self, point, colour="ink", radius=5):
         """Draw a small circle with a radius in pixels."""
-        return self.path(*ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"paper {colour}")
+        return self.path(
+            *ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"paper {colour}"
+        )
 
     def label_beyond(self, point, text, colour="ink", pixels=17):
         """Write a label beyond a point as seen from the origin."""

@@ -37,9 +37,14 @@ class Numbers(traitlets.TraitType):
         entries = _entries(numbers)
         # A slider's end, converted from degrees, may be a rounding beyond.
         if max(entries) > self.largest + 1e-12 or min(entries) < self.smallest - 1e-12:
-            cause = ". Angles are in radians, not degrees" if (self.largest / math.pi).is_integer() else ""
+            cause = (
+                ". Angles are in radians, not degrees"
+                if (self.largest / math.pi).is_integer()
+                else ""
+            )
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: numbers from {self.smallest:.6g} to {self.largest:.6g} were expected{cause}"
+                f"{self.name} is {value!r}: numbers from {self.smallest:.6g} to {self.largest:.6g} "
+                f"were expected{cause}"
             )
         return numbers
 
@@ -77,14 +82,17 @@ class Turns(traitlets.TraitType):
         )
         if turns is None:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: {COUNTS[self.fewest]} to {COUNTS[self.most]} pairs were expected, each an "
+                f"{self.name} is {value!r}: {COUNTS[self.fewest]} to {COUNTS[self.most]} pairs "
+                "were expected, each an "
                 "axis and an angle in radians, as (('z', 0.7), ('x', 0.5))"
             )
         return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
 
     def _axis(self, axis):
         if axis not in ("x", "y", "z"):
-            raise traitlets.TraitError(f"{self.name} holds the axis {axis!r}: 'x', 'y' or 'z' was expected")
+            raise traitlets.TraitError(
+                f"{self.name} holds the axis {axis!r}: 'x', 'y' or 'z' was expected"
+            )
         return axis
 
     def _angle(self, angle):
@@ -94,7 +102,8 @@ class Turns(traitlets.TraitType):
             raise traitlets.TraitError(f"{self.name}: {error}") from None
         if abs(number) > math.pi + 1e-12:
             raise traitlets.TraitError(
-                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. Angles are in radians, "
+                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. Angles are "
+                "in radians, "
                 "not degrees"
             )
         return number
@@ -105,7 +114,9 @@ class Sequence(traitlets.TraitType):
 
     def validate(self, obj, value):
         if value not in SEQUENCES:
-            raise traitlets.TraitError(f"{self.name} is {value!r}; the twelve are {', '.join(SEQUENCES)}")
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}; the twelve are {', '.join(SEQUENCES)}"
+            )
         return value
 
 
@@ -116,4 +127,8 @@ def _unit(vector):
 
 
 def _entries(numbers):
-    return [one for entry in numbers for one in _entries(entry)] if isinstance(numbers, tuple) else [numbers]
+    return (
+        [one for entry in numbers for one in _entries(entry)]
+        if isinstance(numbers, tuple)
+        else [numbers]
+    )

@@ -13,23 +13,25 @@ from .state import Numbers, Turns
 
 
 class SuccessiveFigure(MovingFigure):
-    r"""A chain of up to four simple turns from :math:`N` to :math:`A`, :math:`B`, :math:`C` and :math:`D`.
+    r"""A chain of up to four simple turns from :math:`N` to :math:`A`, :math:`B`, :math:`C` and
+    :math:`D`.
 
-    Beside the frames stand the matrices of the turns and their product. With body fixed turns the newest
-    stands on the left,
+    Beside the frames stand the matrices of the turns and their product. With body fixed turns the
+    newest stands on the left,
 
     .. math::
 
        {}^D\mathbf{C}^N = {}^D\mathbf{C}^C\,{}^C\mathbf{C}^B\,{}^B\mathbf{C}^A\,{}^A\mathbf{C}^N ,
 
-    with turns about the axes of :math:`N` on the right. A second chain can be drawn beside the first, with
-    two neighbouring turns exchanged or of the other kind; its end is the frame :math:`E`.
+    with turns about the axes of :math:`N` on the right. A second chain can be drawn beside the
+    first, with two neighbouring turns exchanged or of the other kind; its end is the frame
+    :math:`E`.
 
     Attributes
     ----------
     turns : tuple of pairs
-        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from :math:`-\pi` to
-        :math:`\pi`.
+        One to four turns, each an axis 'x', 'y' or 'z' and an angle in radians, from :math:`-\pi`
+        to :math:`\pi`.
     fixed : {'body', 'space'}
         Whether each turn is about a unit vector of the frame before it, or about one of :math:`N`.
     compare : str
@@ -65,7 +67,9 @@ class SuccessiveFigure(MovingFigure):
     @traitlets.validate("share")
     def _not_negative(self, proposal):
         if proposal["value"] < 0:
-            raise traitlets.TraitError(f"share is {proposal['value']!r}: a number from 0 to 1 was expected")
+            raise traitlets.TraitError(
+                f"share is {proposal['value']!r}: a number from 0 to 1 was expected"
+            )
         return proposal["value"]
 
     @traitlets.validate("turns", "compare")
@@ -76,13 +80,16 @@ class SuccessiveFigure(MovingFigure):
         )
         if 1 <= COMPARISONS.index(compare) <= 3 and len(turns) <= COMPARISONS.index(compare):
             raise traitlets.TraitError(
-                f"compare is {compare!r}, but the chain has only {len(turns)} turn{'s' * (len(turns) > 1)}"
+                f"compare is {compare!r}, but the chain has only {len(turns)} "
+                f"turn{'s' * (len(turns) > 1)}"
             )
         return proposal["value"]
 
     @property
     def dcms(self):
-        """Direction cosine matrices of N and of every further frame with respect to N, shape ``(n + 1, 3, 3)``."""
+        """Direction cosine matrices of N and of every further frame with respect to N, shape ``(n +
+        1, 3, 3)``.
+        """
         import numpy as np  # only now: the figure itself does without
 
         return np.array(chain(self.turns, self.fixed))
@@ -95,9 +102,17 @@ class SuccessiveFigure(MovingFigure):
     @property
     def other(self):
         """Direction cosine matrix of E with respect to N, or None where nothing is compared."""
-        return None if self.compare == "nothing" else chain(*second_chain(self.turns, self.fixed, self.compare))[-1]
+        return (
+            None
+            if self.compare == "nothing"
+            else chain(*second_chain(self.turns, self.fixed, self.compare))[-1]
+        )
 
     @property
     def angle_between(self):
-        """Angle of the turn from the end of the chain to E, radians, or None where nothing is compared."""
-        return None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])
+        """Angle of the turn from the end of the chain to E, radians, or None where nothing is
+        compared.
+        """
+        return (
+            None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])
+        )

@@ -4,7 +4,11 @@ import math
 
 import traitlets
 
-from orientation.axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
+from orientation.axis_angle import (
+    axis_angle_from_dcm,
+    dcm_from_axis_angle,
+    quaternion_from_axis_angle,
+)
 from orientation.direction_cosines import check_dcm
 from orientation.euler_angles import body_fixed_from_dcm
 from orientation.quaternions import dcm_from_quaternion
@@ -16,14 +20,14 @@ from .state import Direction, Numbers, Sequence
 class TriadFigure(MovingFigure):
     r"""A triad :math:`A`, turned in :math:`N` through an angle about an axis.
 
-    Beside the drawing stand :math:`{}^A\mathbf{C}^N`, Euler angles, axis and angle, and the quaternion of
-    the same orientation. A number that is touched lights up what it means.
+    Beside the drawing stand :math:`{}^A\mathbf{C}^N`, Euler angles, axis and angle, and the
+    quaternion of the same orientation. A number that is touched lights up what it means.
 
     Attributes
     ----------
     axis : tuple of three floats
-        Direction of the axis, the same along :math:`N` and :math:`A`. Any vector but zero may be given; it
-        is kept at unit length.
+        Direction of the axis, the same along :math:`N` and :math:`A`. Any vector but zero may be
+        given; it is kept at unit length.
     angle : float
         Radians, from :math:`-\pi` to :math:`\pi`.
     sequence : str

@@ -1,4 +1,6 @@
-"""The integration of a body that tumbles without torque, in three descriptions of its orientation."""
+"""The integration of a body that tumbles without torque, in three descriptions of its
+orientation.
+"""
 
 from functools import lru_cache
 
@@ -25,8 +27,8 @@ GAUSS = 0.5 - 3**0.5 / 6, 0.5 + 3**0.5 / 6
 def run(moments, axis, disturbance, method, step, restored, count):
     """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them.
 
-    The angular velocity is found once, in steps ten times finer, and every description is given the same: what they
-    differ in is their own.
+    The angular velocity is found once, in steps ten times finer, and every description is given the
+    same: what they differ in is their own.
     """
     start = np.where([axis == other for other in "xyz"], SPIN, disturbance)
     omegas, reference = _reference(start, moments, step / FINER, FINER * count)
@@ -52,7 +54,11 @@ def run(moments, axis, disturbance, method, step, restored, count):
 def angular_acceleration(omega, moments):
     """Return the change of the angular velocity along the principal axes, without torque."""
     (x, y, z), (a, b, c) = omega, moments
-    return -(y * (c * z) - z * (b * y)) / a, -(z * (a * x) - x * (c * z)) / b, -(x * (b * y) - y * (a * x)) / c
+    return (
+        -(y * (c * z) - z * (b * y)) / a,
+        -(z * (a * x) - x * (c * z)) / b,
+        -(x * (b * y) - y * (a * x)) / c,
+    )
 
 
 def _turned_on(omega, moments, step):
@@ -65,15 +71,19 @@ def _turned_on(omega, moments, step):
     second = angular_acceleration(middle := beyond(step / 2, first), moments)
     third = angular_acceleration(again := beyond(step / 2, second), moments)
     fourth = angular_acceleration(end := beyond(step, third), moments)
-    last = beyond(step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)])
+    last = beyond(
+        step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)]
+    )
     return (omega, middle, again, end), last
 
 
 def _reference(start, moments, step, count):
-    """Return the angular velocities and unit quaternions of so many Runge-Kutta steps from the identity.
+    """Return the angular velocities and unit quaternions of so many Runge-Kutta steps from the
+    identity.
 
-    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4 matrix,
-    and those of all steps are found together, which is ten times as fast as one after the other.
+    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4
+    matrix, and those of all steps are found together, which is ten times as fast as one after the
+    other.
     """
     omegas, stages = [start.tolist()], []
     for _ in range(count):
@@ -83,7 +93,10 @@ def _reference(start, moments, step, count):
     quaternions = [np.eye(4)[0]]
     if count:
         # The fixed quaternions 1, i, j, k, and in front of them an axis for the steps.
-        units, (first, second, third, fourth) = np.eye(4), np.array(stages).transpose(1, 0, 2)[:, :, None]
+        units, (first, second, third, fourth) = (
+            np.eye(4),
+            np.array(stages).transpose(1, 0, 2)[:, :, None],
+        )
         a = quaternion_rate(units, first)
         b = quaternion_rate(units + step / 2 * a, second)
         c = quaternion_rate(units + step / 2 * b, third)
@@ -101,7 +114,9 @@ def _rates(state, omega):
 
 
 def _step(state, step, method, moments, omegas):
-    """Return matrix, quaternion and angles one step later; ``omegas`` are those of the finer steps from here."""
+    """Return matrix, quaternion and angles one step later; ``omegas`` are those of the finer steps
+    from here.
+    """
 
     def beyond(length, slopes):
         return tuple(value + length * slope for value, slope in zip(state, slopes))
@@ -119,7 +134,8 @@ def _step(state, step, method, moments, omegas):
         turn = _turn(step, moments, omegas)
         matrix = dcm_from_rotation_vector(turn) @ state[0]
         quaternion = multiply_quaternions(
-            state[1], quaternion_from_axis_angle(turn, np.sqrt(turn @ turn)) if turn.any() else np.eye(4)[0]
+            state[1],
+            quaternion_from_axis_angle(turn, np.sqrt(turn @ turn)) if turn.any() else np.eye(4)[0],
         )
     return matrix, quaternion, angles
 
@@ -127,7 +143,11 @@ def _step(state, step, method, moments, omegas):
 def _turn(step, moments, omegas):
     """Return the rotation vector of a step of the fourth order (Magnus)."""
     one, other = (
-        np.array(_turned_on(omegas[int(FINER * point)], moments, step * (point - int(FINER * point) / FINER))[1])
+        np.array(
+            _turned_on(
+                omegas[int(FINER * point)], moments, step * (point - int(FINER * point) / FINER)
+            )[1]
+        )
         for point in GAUSS
     )
     return step / 2 * (one + other) + 3**0.5 / 12 * step**2 * np.cross(one, other)
@@ -137,7 +157,9 @@ def _turn(step, moments, omegas):
 
 
 def matrices(run, description, which):
-    """Return the direction cosine matrices of a description; that of a quaternion is |q|^2 times orthogonal."""
+    """Return the direction cosine matrices of a description; that of a quaternion is |q|^2 times
+    orthogonal.
+    """
     values = run[description][which]
     if description == "matrix":
         return values
@@ -148,13 +170,17 @@ def matrices(run, description, which):
 
 
 def fault_of(dcms):
-    """Return the largest entry by which each matrix times its transpose differs from the identity."""
+    """Return the largest entry by which each matrix times its transpose differs from the
+    identity.
+    """
     return abs(dcms @ dcms.swapaxes(-1, -2) - np.eye(3)).max(axis=(-2, -1))
 
 
 def error_of(dcms, references):
     """Return the angle between the nearest valid orientation and the reference, in radians."""
-    return axis_angle_from_dcm(nearest_dcm(dcms @ dcm_from_quaternion(references).swapaxes(-1, -2)).dcm)[1]
+    return axis_angle_from_dcm(
+        nearest_dcm(dcms @ dcm_from_quaternion(references).swapaxes(-1, -2)).dcm
+    )[1]
 
 
 def momentum(run, moments):

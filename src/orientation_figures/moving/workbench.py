@@ -12,7 +12,8 @@ from .state import Numbers
 
 UNKNOWN = "not known"
 NOTHING_KNOWN = {"program": UNKNOWN, "kind": UNKNOWN, "sequence": UNKNOWN}
-#: Cases as they are met, most with the numbers of a public thread: what both programs gave, and what is known of each.
+#: Cases as they are met, most with the numbers of a public thread: what both programs gave, and
+#: what is known of each.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
@@ -29,7 +30,8 @@ EXAMPLES = {
         {"program": "ROS tf2 (C++)"},
     ),
     "A lamp and a camera out of Blender, in glTF (glTF-Blender-IO 438)": (
-        "<Quaternion (w=0.5709, x=0.1691, y=0.2722, z=0.7559)>\n<Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>",
+        "<Quaternion (w=0.5709, x=0.1691, y=0.2722, z=0.7559)>\n"
+        "<Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>",
         '"rotation": [0.16907575, 0.75588035, -0.27217138, 0.57094753]\n'
         '"rotation": [0.48353603, 0.33687159, -0.20870360, 0.78048271]',
     ),
@@ -62,22 +64,29 @@ EXAMPLES = {
 
 
 def _as_the_page_has_it(data):
-    """Plain data with lists in the place of tuples, so that it is the same after its way to a page and back."""
+    """Plain data with lists in the place of tuples, so that it is the same after its way to a page
+    and back.
+    """
     return json.loads(json.dumps(data))
 
 
 class Known(traitlets.TraitType):
-    """What is known of one side's numbers: a dictionary with a program, a kind, and for Euler angles a sequence."""
+    """What is known of one side's numbers: a dictionary with a program, a kind, and for Euler
+    angles a sequence.
+    """
 
     def validate(self, obj, value):
         if not isinstance(value, dict) or set(value) - set(NOTHING_KNOWN):
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: a dictionary with 'program', 'kind' and 'sequence' was expected"
+                f"{self.name} is {value!r}: a dictionary with 'program', 'kind' and 'sequence' was "
+                "expected"
             )
         known = NOTHING_KNOWN | value
         for name, allowed in (("program", PROGRAMS), ("kind", COUNTS), ("sequence", SEQUENCES)):
             if known[name] != UNKNOWN and known[name] not in allowed:
-                raise traitlets.TraitError(f"{self.name} has {name} {known[name]!r}; there is {', '.join(allowed)}")
+                raise traitlets.TraitError(
+                    f"{self.name} has {name} {known[name]!r}; there is {', '.join(allowed)}"
+                )
         return known
 
 
@@ -89,7 +98,8 @@ class WorkbenchFigure(MovingFigure):
     first, second : str
         What each program gave, as :func:`orientation_workbench.explain` reads it.
     first_is, second_is : dict
-        What is known of each: ``program``, ``kind`` and ``sequence``, each ``'not known'`` at first.
+        What is known of each: ``program``, ``kind`` and ``sequence``, each ``'not known'`` at
+        first.
     noise : float
         Degrees by which the two may differ besides rounding.
 
@@ -102,10 +112,18 @@ class WorkbenchFigure(MovingFigure):
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
     room = (1070, 1480)
-    first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(sync=True, state=True)
-    second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(sync=True, state=True)
+    first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(
+        sync=True, state=True
+    )
+    second = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][1]).tag(
+        sync=True, state=True
+    )
     first_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     second_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     noise = Numbers(0.0, (), 30.0, smallest=0.0).tag(sync=True, state=True)
-    table = traitlets.Dict(_as_the_page_has_it(whole_table()), read_only=True).tag(sync=True, told=True)
-    examples = traitlets.Dict(_as_the_page_has_it(EXAMPLES), read_only=True).tag(sync=True, told=True)
+    table = traitlets.Dict(_as_the_page_has_it(whole_table()), read_only=True).tag(
+        sync=True, told=True
+    )
+    examples = traitlets.Dict(_as_the_page_has_it(EXAMPLES), read_only=True).tag(
+        sync=True, told=True
+    )

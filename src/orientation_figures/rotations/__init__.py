@@ -1,8 +1,8 @@
 """The stills of the essay *Rotations*: what each of its stops shows where nothing can move.
 
-The page of the essay holds one figure, which stays while the text goes past. Its scenes are made by ``js/scene.js``,
-which the page runs; ``scenes.json`` holds one of each stop, written down by ``python -m tools.rotations``, and
-:mod:`orientation_figures.rotations.painter` paints it.
+The page of the essay holds one figure, which stays while the text goes past. Its scenes are made by
+``js/scene.js``, which the page runs; ``scenes.json`` holds one of each stop, written down by
+``python -m tools.rotations``, and :mod:`orientation_figures.rotations.painter` paints it.
 """
 
 import json
@@ -25,7 +25,8 @@ _DARK = {
     "ground": "#24292f",
     "shade": "#15181c",
 }
-#: How much black or white each tone has, in per cent, darkest first; the third is the colour itself.
+#: How much black or white each tone has, in per cent, darkest first; the third is the colour
+#: itself.
 _TONES = ((45, "#000"), (28, "#000"), (13, "#000"), (0, "#fff"), (14, "#fff"), (30, "#fff"))
 
 
@@ -61,7 +62,10 @@ def _light(name):
         part = 0
     known = (LIGHT | _OWN)[colour]
     towards = 0 if other == "#000" else 255
-    mixed = (round(int(known[k : k + 2], 16) * (1 - part / 100) + towards * part / 100) for k in (1, 3, 5))
+    mixed = (
+        round(int(known[k : k + 2], 16) * (1 - part / 100) + towards * part / 100)
+        for k in (1, 3, 5)
+    )
     return "#" + "".join(f"{value:02x}" for value in mixed)
 
 
@@ -76,14 +80,17 @@ class Stop:
         self.still = scenes()["stills"][known.index(name)]
 
     def svg(self, colours=None):
-        """The SVG element; ``colours`` as in :func:`orientation_figures.rotations.painter.picture`."""
+        """The SVG element; ``colours`` as in
+        :func:`orientation_figures.rotations.painter.picture`.
+        """
         from .painter import picture
 
         return picture(self.still, scenes(), colours)
 
     def _repr_html_(self):
         return (
-            f'<figure class="orientation-figure painted" data-stop="{self.name}"><style>{STYLE}{style()}</style>'
+            '<figure class="orientation-figure painted" '
+            f'data-stop="{self.name}"><style>{STYLE}{style()}</style>'
             f"{self.svg()}</figure>"
         )
 
@@ -94,7 +101,9 @@ class Stop:
 
 
 class Gimbal(Stop):
-    """The gimbal itself, which on the page of the essay stays and moves, and elsewhere stands as one stop has it."""
+    """The gimbal itself, which on the page of the essay stays and moves, and elsewhere stands as
+    one stop has it.
+    """
 
     def _repr_html_(self):
         return (

@@ -1,7 +1,8 @@
 """Paint a scene of the essay on paper: flat faces, the farthest first.
 
-A scene is what ``js/scene.js`` makes of a state: shapes with their places and colours. The page paints it with light
-and gloss; here every face has one of a few tones of its colour, so that it reads in light and in dark and on paper.
+A scene is what ``js/scene.js`` makes of a state: shapes with their places and colours. The page
+paints it with light and gloss; here every face has one of a few tones of its colour, so that it
+reads in light and in dark and on paper.
 """
 
 from html import escape
@@ -18,7 +19,8 @@ FAINT = 0.5
 #: An edge that is cut off less is a sharp one on paper.
 FINEST_BEVEL = 0.045
 TURN = 2 * np.pi
-#: Less is rounding, which no two kinds of processor do alike: what is as far off or edge-on is painted alike by all.
+#: Less is rounding, which no two kinds of processor do alike: what is as far off or edge-on is
+#: painted alike by all.
 SMALL = 1e-9
 #: Parts of a pixel in which the places of corners are counted.
 FINE = 2
@@ -26,7 +28,9 @@ FINE = 2
 
 def _net(rows, columns, at):
     """Quadrilaterals of a net of points, shape ``(rows * columns, 4, 3)``."""
-    grid = at(*np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij"))
+    grid = at(
+        *np.meshgrid(np.linspace(0, 1, rows + 1), np.linspace(0, 1, columns + 1), indexing="ij")
+    )
     corners = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     return np.stack(corners, axis=2).reshape(-1, 4, 3)
 
@@ -100,7 +104,8 @@ SHAPES = {"arc": _arc, "rod": _rod, "ball": _ball, "box": _box, "ribbon": _ribbo
 class Paper:
     """The square sheet that a scene is painted on, ``size`` pixels wide.
 
-    ``world`` says how the eye stands: ``distance``, ``target``, ``half``, ``ground`` and ``light`` of ``scenes.json``.
+    ``world`` says how the eye stands: ``distance``, ``target``, ``half``, ``ground`` and ``light``
+    of ``scenes.json``.
     """
 
     def __init__(self, view, world):
@@ -110,9 +115,13 @@ class Paper:
         self.eye = self.target + world["distance"] * self.view[2]
 
     def place(self, points):
-        """Where points are seen, in pixels right and down from the middle, and how far towards the eye they lie."""
+        """Where points are seen, in pixels right and down from the middle, and how far towards the
+        eye they lie.
+        """
         x, y, z = np.moveaxis((np.asarray(points) - self.target) @ self.view.T, -1, 0)
-        near = self.world["distance"] / (self.world["distance"] - z) * self.half / self.world["half"]
+        near = (
+            self.world["distance"] / (self.world["distance"] - z) * self.half / self.world["half"]
+        )
         return np.stack((near * x, -near * y), axis=-1), z
 
     def faces(self, item):
@@ -122,7 +131,9 @@ class Paper:
         if shape == "tube" or thick < THIN or (shape in ("rod", "arc") and alpha < FAINT):
             yield from self.thread(item)
             return
-        local = _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)  # the largest is seen to be round
+        local = (
+            _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)
+        )  # the largest is seen to be round
         both = shape == "ribbon"
         for face in local:
             points = np.array(origin) + (face * size) @ np.array(rows)
@@ -140,17 +151,27 @@ class Paper:
             light = 0.36 + 0.13 * (1 + normal[2]) + 0.56 * max(0.0, normal @ self.light)
             tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES + SMALL), 0, TONES - 1))
             pixels, depth = self.place(points)
-            # What is flat and large is sorted by its farthest point: the ground lies behind all that stands on it.
-            yield (-50 if colour == "ground" else depth.mean()), f"{colour} tone-{tone}", pixels, alpha
+            # What is flat and large is sorted by its farthest point: the ground lies behind all
+            # that stands on it.
+            yield (
+                (-50 if colour == "ground" else depth.mean()),
+                f"{colour} tone-{tone}",
+                pixels,
+                alpha,
+            )
 
     def thread(self, item):
-        """A thin thing is one band that faces the eye, in a few pieces, since others may lie between them."""
+        """A thin thing is one band that faces the eye, in a few pieces, since others may lie
+        between them.
+        """
         shape, of, rows, origin, size, colour, alpha, _ = item
         if shape == "tube":
             points, radii = np.reshape(of[1:], (-1, 3)), np.full(len(of) // 3, of[0])
         elif shape == "arc":
             angles = np.linspace(of[2], of[3], 17)
-            points = np.array(origin) + of[0] * np.stack((np.cos(angles), np.sin(angles)), axis=-1) @ np.array(rows[:2])
+            points = np.array(origin) + of[0] * np.stack(
+                (np.cos(angles), np.sin(angles)), axis=-1
+            ) @ np.array(rows[:2])
             radii = np.full(17, of[1])
         else:
             points = np.array((origin, np.array(origin) + size[2] * np.array(rows[2])))
@@ -158,12 +179,15 @@ class Paper:
         pixels, depth = self.place(points)
         along = np.gradient(pixels, axis=0)
         across = (
-            np.stack((-along[:, 1], along[:, 0]), axis=-1) / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
+            np.stack((-along[:, 1], along[:, 0]), axis=-1)
+            / np.maximum(np.linalg.norm(along, axis=1), 1e-9)[:, None]
         )
         across *= (radii * self.half / self.world["half"])[:, None]
         for k in range(0, len(points) - 1, 3):
             piece = slice(k, k + 4)
-            band = np.concatenate((pixels[piece] + across[piece], (pixels[piece] - across[piece])[::-1]))
+            band = np.concatenate(
+                (pixels[piece] + across[piece], (pixels[piece] - across[piece])[::-1])
+            )
             yield depth[piece].mean(), f"{colour} tone-3", band, alpha
 
     def shadow(self, item):
@@ -175,7 +199,9 @@ class Paper:
             points = np.array(origin) + (face * size) @ np.array(rows)
             if np.cross(points[1] - points[0], points[2] - points[0]) @ self.light <= SMALL:
                 continue
-            fallen = points - np.outer((points[:, 2] - self.world["ground"]) / self.light[2], self.light)
+            fallen = points - np.outer(
+                (points[:, 2] - self.world["ground"]) / self.light[2], self.light
+            )
             if (np.hypot(fallen[:, 0], fallen[:, 1]) < self.world["rim"] + SMALL).all():
                 yield -40, "shade tone-3", self.place(fallen)[0], 1
 
@@ -183,7 +209,8 @@ class Paper:
 def picture(still, world, colours=None):
     """The SVG element of one stop, with the words that say what is seen.
 
-    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a page.
+    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a
+    page.
     """
     paper = Paper(still["view"], world)
     found = [face for item in still["items"] for face in paper.faces(item)]
@@ -210,16 +237,21 @@ def picture(still, world, colours=None):
     end()
     outlines = {}
     for text, tex, colour, (x, y), _ in still["labels"]:
-        placed, _ink = typeset(f"${text}$" if tex else "$\\mathrm{" + text.replace("-", "\u2010") + "}$")
+        placed, _ink = typeset(
+            f"${text}$" if tex else "$\\mathrm{" + text.replace("-", "\u2010") + "}$"
+        )
         size = FINE * (0.02 if tex else 0.016)
         glyphs = "".join(
-            f'<use transform="translate({at[0]:.0f} {at[1]:.0f}){"" if by == 1 else f" scale({by:.3g})"}" '
+            f'<use transform="translate({at[0]:.0f} '
+            f'{at[1]:.0f}){"" if by == 1 else f" scale({by:.3g})"}" '
             f'href="#{still["id"]}-{outlines.setdefault(outline, len(outlines))}"/>'
             for outline, at, by in placed
         )
         place = f"translate({FINE * x:g} {FINE * y:g}) scale({size:g})"
         marks.append(f'<g class="text {colour}" transform="{place}">{glyphs}</g>')
-    letters = "".join(f'<path id="{still["id"]}-{k}" d="{outline}"/>' for outline, k in outlines.items())
+    letters = "".join(
+        f'<path id="{still["id"]}-{k}" d="{outline}"/>' for outline, k in outlines.items()
+    )
     marks.insert(0, f"<defs>{letters}</defs>" if letters else "")
     half, inner = FINE * paper.half, ""
     if colours:  # what of the sheet is drawn on, for a picture that is cut out of it
@@ -235,7 +267,11 @@ def picture(still, world, colours=None):
 
 def words(still):
     """What a stop shows, for those who do not see it: first what is there, then what it becomes."""
-    return still["before"] if still["before"] == still["after"] else f"{still['before']} Then: {still['after']}"
+    return (
+        still["before"]
+        if still["before"] == still["after"]
+        else f"{still['before']} Then: {still['after']}"
+    )
 
 
 def _pairs(points):

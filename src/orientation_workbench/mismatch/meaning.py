@@ -63,7 +63,8 @@ def dcms_from_numbers(reading, numbers):
 
 
 def numbers_from_dcms(reading, dcms):
-    """All numbers by which a reading writes orientations: two triples of Euler angles, otherwise one item.
+    """All numbers by which a reading writes orientations: two triples of Euler angles, otherwise
+    one item.
 
     Parameters
     ----------
@@ -83,7 +84,9 @@ def numbers_from_dcms(reading, dcms):
     if kind == "axis and angle":
         axes, angles = axis_angle_from_dcm(dcms)
         both = [axes, angles[:, None] / _radians(choices)]
-        return [np.concatenate(both if choices["place of the angle"] == "last" else both[::-1], axis=1)]
+        return [
+            np.concatenate(both if choices["place of the angle"] == "last" else both[::-1], axis=1)
+        ]
     sequence = choices["sequence"]
     from_behind = -1 if choices["axes of the turns"] == "space fixed" else 1
     turns = body_fixed_from_dcm(dcms, sequence[::from_behind])

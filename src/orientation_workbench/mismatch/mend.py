@@ -1,7 +1,7 @@
 """The one line that mends a mix-up: in NumPy with SciPy, in C++ with Eigen, and as a formula.
 
-Each line makes of ``second``, what the second program gives, what the first program gives for the same pose. Before
-one is shown, the Python line is run on the numbers that were pasted.
+Each line makes of ``second``, what the second program gives, what the first program gives for the
+same pose. Before one is shown, the Python line is run on the numbers that were pasted.
 """
 
 import numpy as np
@@ -36,7 +36,11 @@ def _signs(choices, name):
 
 
 def _letters(choices):
-    return choices["sequence"] if choices["axes of the turns"] == "space fixed" else choices["sequence"].upper()
+    return (
+        choices["sequence"]
+        if choices["axes of the turns"] == "space fixed"
+        else choices["sequence"].upper()
+    )
 
 
 def _degrees(choices):
@@ -48,7 +52,9 @@ def _pick(name, places):
 
 
 def _read_in_python(reading, name):
-    """Code for the matrix of this book, A_C_N, of what a program gives. SciPy's is its transpose."""
+    """Code for the matrix of this book, A_C_N, of what a program gives. SciPy's is its
+    transpose.
+    """
     kind, choices = reading["kind"], reading["choices"]
     if kind == "matrix":
         return name
@@ -56,7 +62,9 @@ def _read_in_python(reading, name):
         return f"Rotation.from_quat({_pick(name, _index(choices['order'], 'xyzw'))}).as_matrix().T"
     if kind == "Euler angles":
         angles = _signs(choices, _pick(name, [choices["places"].index(which) for which in "123"]))
-        return f"Rotation.from_euler({_letters(choices)!r}, {angles}{_degrees(choices)}).as_matrix().T"
+        return (
+            f"Rotation.from_euler({_letters(choices)!r}, {angles}{_degrees(choices)}).as_matrix().T"
+        )
     if kind == "rotation vector":
         return f"Rotation.from_rotvec({name}{_degrees(choices)}).as_matrix().T"
     last = choices["place of the angle"] == "last"
@@ -73,7 +81,9 @@ def _write_in_python(reading, matrix):
     bare = f"({matrix})" if "@" in matrix else matrix
     there = matrix[:-2] if matrix.endswith(".T") and "@" not in matrix else f"{bare}.T"
     if kind == "quaternion":
-        return f"Rotation.from_matrix({there}).as_quat()" + _subscript(_index("xyzw", choices["order"]))
+        return f"Rotation.from_matrix({there}).as_quat()" + _subscript(
+            _index("xyzw", choices["order"])
+        )
     if kind == "Euler angles":
         angles = f"Rotation.from_matrix({there}).as_euler({_letters(choices)!r}{_degrees(choices)})"
         return _signs(choices, angles) + _subscript([int(which) - 1 for which in choices["places"]])
@@ -96,7 +106,9 @@ def _undo_in_python(relation, matrix):
     for whose in ("body", "world"):
         turn = relation.get(f"{whose} turn")
         if turn is not None:
-            matrix = f"{_turn(turn.T)} @ {matrix}" if whose == "body" else f"{matrix} @ {_turn(turn.T)}"
+            matrix = (
+                f"{_turn(turn.T)} @ {matrix}" if whose == "body" else f"{matrix} @ {_turn(turn.T)}"
+            )
     if not _is_identity(relation["body"]):
         matrix = f"{_python_matrix(relation['body'])}.T @ {matrix}"
     if not _is_identity(relation["world"]):
@@ -109,12 +121,18 @@ def _undo_in_python(relation, matrix):
 def python_line(chain):
     """One line of Python that gives what the first program gives, from ``second``."""
     relation, first, second = chain.relation, chain.first, chain.second
-    plain = _is_identity(relation["body"]) and _is_identity(relation["world"]) and "body turn" not in relation
+    plain = (
+        _is_identity(relation["body"])
+        and _is_identity(relation["world"])
+        and "body turn" not in relation
+    )
     if plain and first["kind"] == second["kind"] == "quaternion":
         places = _index(second["choices"]["order"], first["choices"]["order"])
         line = _pick("second", places)
         if relation["inverse"]:
-            line += f" * np.array({[1 if part == 'w' else -1 for part in first['choices']['order']]})"
+            line += (
+                f" * np.array({[1 if part == 'w' else -1 for part in first['choices']['order']]})"
+            )
         return line
     return _write_in_python(first, _undo_in_python(relation, _read_in_python(second, "second")))
 
@@ -133,12 +151,16 @@ def tried(chain, first, second, tolerance):
     for numbers in second:
         names = {"np": np, "Rotation": Rotation, "second": shaped(numbers, chain.second["kind"])}
         mended.append(np.ravel(eval(code, names)))  # noqa: S307
-    gap = np.abs(dcms_from_numbers(chain.first, np.array(mended)) - dcms_from_numbers(chain.first, first)).max()
+    gap = np.abs(
+        dcms_from_numbers(chain.first, np.array(mended)) - dcms_from_numbers(chain.first, first)
+    ).max()
     return bool(gap <= tolerance)
 
 
 def formula(chain):
-    """How the second program's matrix follows from the first's, with the signed permutations written out."""
+    """How the second program's matrix follows from the first's, with the signed permutations
+    written out.
+    """
     relation, parts = chain.relation, []
     for whose in ("body", "world"):
         rows = relation.get(f"{whose} turn")
@@ -151,12 +173,19 @@ def formula(chain):
 
 def _rows(matrix):
     return (
-        "[" + ", ".join("[" + ", ".join(f"{entry + 0:.6g}" for entry in row) + "]" for row in np.round(matrix, 4)) + "]"
+        "["
+        + ", ".join(
+            "[" + ", ".join(f"{entry + 0:.6g}" for entry in row) + "]"
+            for row in np.round(matrix, 4)
+        )
+        + "]"
     )
 
 
 def cpp_line(chain):
-    """The same in C++ with Eigen, for matrices ``first`` and ``second`` of type ``Eigen::Matrix3d``."""
+    """The same in C++ with Eigen, for matrices ``first`` and ``second`` of type
+    ``Eigen::Matrix3d``.
+    """
     relation = chain.relation
     code = "second"
     if chain.second["kind"] == "quaternion":
@@ -167,12 +196,19 @@ def cpp_line(chain):
         code = _eigen_angles(chain.second["choices"])
     elif chain.second["kind"] == "rotation vector":
         scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
-        code = f"Eigen::AngleAxisd(second.norm(){scale}, second.normalized()).toRotationMatrix().transpose()"
+        code = (
+            f"Eigen::AngleAxisd(second.norm(){scale}, "
+            "second.normalized()).toRotationMatrix().transpose()"
+        )
     elif chain.second["kind"] == "axis and angle":
         scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
         last = chain.second["choices"]["place of the angle"] == "last"
-        angle, axis = ("second[3]", "second.head<3>()") if last else ("second[0]", "second.tail<3>()")
-        code = f"Eigen::AngleAxisd({angle}{scale}, {axis}.normalized()).toRotationMatrix().transpose()"
+        angle, axis = (
+            ("second[3]", "second.head<3>()") if last else ("second[0]", "second.tail<3>()")
+        )
+        code = (
+            f"Eigen::AngleAxisd({angle}{scale}, {axis}.normalized()).toRotationMatrix().transpose()"
+        )
     for whose in ("body", "world"):
         turn = relation.get(f"{whose} turn")
         if turn is not None:

@@ -14,8 +14,9 @@ ON_ONE_SIDE, ON_BOTH_SIDES = 3, 4
 def mountings(first, second, noise):
     """All chains with a constant turn on one side or on both that fit every pose, cheapest first.
 
-    From :math:`\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}` at three poses or more follow the constant
-    turns :math:`\\mathbf{L}` and :math:`\\mathbf{R}`. What is found from some poses must hold at all of them.
+    From :math:`\\mathbf{M}_2 = \\mathbf{L}\\,\\mathbf{M}_1\\,\\mathbf{R}` at three poses or more
+    follow the constant turns :math:`\\mathbf{L}` and :math:`\\mathbf{R}`. What is found from some
+    poses must hold at all of them.
     """
     if first.dcms.shape[1] < ON_ONE_SIDE:
         return []
@@ -31,8 +32,13 @@ def mountings(first, second, noise):
                 tolerance = 3 * (max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise)
                 for body, world in _constant_turns(start, second.dcms[j]):
                     both = faults + (body is not None) + (world is not None)
-                    gap = np.abs((np.eye(3) if body is None else body) @ start
-                                 @ (np.eye(3) if world is None else world) - second.dcms[j]).max()  # fmt: skip
+                    gap = np.abs(
+                        (np.eye(3) if body is None else body)
+                        @ start
+                        # fmt: skip
+                        @ (np.eye(3) if world is None else world)
+                        - second.dcms[j]
+                    ).max()
                     if gap <= tolerance and both <= MOST_FAULTS:
                         relation = {"inverse": inverse, "hand": False, "body": SAME_AXES, "world": SAME_AXES,
                                     "body turn": body, "world turn": world}  # fmt: skip
@@ -48,8 +54,11 @@ def _constant_turns(start, end):
     yield None, (across @ end)[0]
     if len(start) < ON_BOTH_SIDES:
         return
-    # Turns since the first pose have the same angle on both sides; their axes differ by the constant turn.
-    moved = [rotation_vector_from_dcm(nearest_dcm(dcms[1:] @ dcms[0].T).dcm) for dcms in (start, end)]
+    # Turns since the first pose have the same angle on both sides; their axes differ by the
+    # constant turn.
+    moved = [
+        rotation_vector_from_dcm(nearest_dcm(dcms[1:] @ dcms[0].T).dcm) for dcms in (start, end)
+    ]
     largest = int(np.argmax(np.linalg.norm(moved[0], axis=1)))
     apart = np.linalg.norm(np.cross(moved[0], moved[0][largest]), axis=1)
     second = int(np.argmax(apart))

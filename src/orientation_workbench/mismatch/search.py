@@ -29,7 +29,9 @@ class Chain(NamedTuple):
 
     @property
     def cost(self):
-        """One for each fault, and how rare they are. Tenths: what addition leaves besides decides nothing."""
+        """One for each fault, and how rare they are. Tenths: what addition leaves besides decides
+        nothing.
+        """
         return round(self.faults + self.rarity, 6)
 
     def words(self):
@@ -40,7 +42,9 @@ class Chain(NamedTuple):
 
 @functools.cache
 def _relations(mirrored, expected):
-    """The relations, by how far each is from the expected one, and their two signed permutations as stacks."""
+    """The relations, by how far each is from the expected one, and their two signed permutations as
+    stacks.
+    """
     aside = table.left_handed(expected[1]) != table.left_handed(expected[2])
     entries = [table.beyond(entry, expected) for entry in table.relations(mirrored != aside)]
     left = np.array([table.axes_matrix(entry["body"]) for entry in entries], float)
@@ -51,7 +55,9 @@ def _relations(mirrored, expected):
 
 
 class Side(NamedTuple):
-    """One side as the search needs it: its readings, their matrices at each pose, and their doubt."""
+    """One side as the search needs it: its readings, their matrices at each pose, and their
+    doubt.
+    """
 
     readings: list
     dcms: np.ndarray
@@ -113,7 +119,8 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
     noise : float
         Radians by which the orientations may differ besides the rounding of what is printed.
     expected : tuple
-        What the programs differ by in any case: :func:`orientation_workbench.mismatch.table.expected_relation`.
+        What the programs differ by in any case:
+        :func:`orientation_workbench.mismatch.table.expected_relation`.
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
     relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
@@ -122,13 +129,23 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
         [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
         for what in ("faults", "shared")
     )
-    # Signed permutations and the transpose leave the sum of fourth powers alone: most pairs fall here.
+    # Signed permutations and the transpose leave the sum of fourth powers alone: most pairs fall
+    # here.
     fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
     for i, reading in enumerate(first.readings):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise
-        left_over = table.MOST_FAULTS - faults[0][i] - faults[1] + 2 * np.bitwise_count(shared[0][i] & shared[1])
-        tried += int(sum((relation_faults <= allowed).sum() for allowed in left_over[left_over >= 0]))
-        near = (np.abs(fourth[0][i] - fourth[1]) <= 12 * tolerance[:, None]).all(axis=1) & (left_over >= 0)
+        left_over = (
+            table.MOST_FAULTS
+            - faults[0][i]
+            - faults[1]
+            + 2 * np.bitwise_count(shared[0][i] & shared[1])
+        )
+        tried += int(
+            sum((relation_faults <= allowed).sum() for allowed in left_over[left_over >= 0])
+        )
+        near = (np.abs(fourth[0][i] - fourth[1]) <= 12 * tolerance[:, None]).all(axis=1) & (
+            left_over >= 0
+        )
         for budget in set(left_over[near].tolist()):
             allowed = np.flatnonzero(relation_faults <= budget)
             turned = np.where(inverse[allowed, None, None], left_first[i, 0], first.dcms[i, 0])

@@ -10,10 +10,11 @@ A *reading* says what the numbers of one side mean: it is one choice from each g
    \\mathbf{M}_2 = \\mathbf{P}\\,\\mathbf{M}_1^T\\,\\mathbf{Q},
 
 with signed permutations :math:`\\mathbf{P}` (axes of the body, which are the rows) and
-:math:`\\mathbf{Q}` (axes of the world, the columns). Each departure from what was to be expected is a
-*fault*. What both sides do alike, such as to write the scalar last, is none. A chain costs one for each fault and its
-``rarity`` besides, which is 0 for what many programs do and above 1 for what none is known to do; the cheapest chain
-comes first. Page, command and Python read this table; nothing of it is said twice.
+:math:`\\mathbf{Q}` (axes of the world, the columns). Each departure from what was to be expected is
+a *fault*. What both sides do alike, such as to write the scalar last, is none. A chain costs one
+for each fault and its ``rarity`` besides, which is 0 for what many programs do and above 1 for what
+none is known to do; the cheapest chain comes first. Page, command and Python read this table;
+nothing of it is said twice.
 """
 
 import functools
@@ -28,7 +29,13 @@ from .spelling import whole_spelling
 #: The most faults that one chain may have.
 MOST_FAULTS = 3
 
-COUNTS = {"matrix": 9, "quaternion": 4, "Euler angles": 3, "rotation vector": 3, "axis and angle": 4}
+COUNTS = {
+    "matrix": 9,
+    "quaternion": 4,
+    "Euler angles": 3,
+    "rotation vector": 3,
+    "axis and angle": 4,
+}
 
 
 def choice(value, words, rarity, faults=1):
@@ -44,7 +51,9 @@ def _orders():
     for letters in itertools.permutations("wxyz"):
         order = "".join(letters)
         yield choice(
-            order, words.get(order, f"the four numbers are stored as {', '.join(order)}"), known.get(order, 1.2)
+            order,
+            words.get(order, f"the four numbers are stored as {', '.join(order)}"),
+            known.get(order, 1.2),
         )
 
 
@@ -64,7 +73,8 @@ def _places():
     for digits in itertools.permutations("123"):
         places = "".join(digits)
         order = ", ".join(ordinal[digit] for digit in places)
-        yield choice(places, words.get(places, f"the angles are printed in another order: {order} turn"),
+        yield choice(places, words.get(places, "the angles are printed in another order: "
+            f"{order} turn"),
                      {"123": 0.0, "321": 0.1}.get(places, 0.5))  # fmt: skip
 
 
@@ -84,8 +94,8 @@ _UNIT = {
     ],
 }
 
-#: What the numbers of one side may mean: for each kind its groups, for each group its choices. The first
-#: choice that a side declares, or this book's, is no fault.
+#: What the numbers of one side may mean: for each kind its groups, for each group its choices. The
+#: first choice that a side declares, or this book's, is no fault.
 KINDS = {
     "matrix": [],
     "quaternion": [{"group": "order", "choices": list(_orders())}],
@@ -94,7 +104,9 @@ KINDS = {
         {
             "group": "axes of the turns",
             "choices": [
-                choice("body fixed", "each turn is about an axis of the turned frame (body fixed)", 0.0),
+                choice(
+                    "body fixed", "each turn is about an axis of the turned frame (body fixed)", 0.0
+                ),
                 choice("space fixed", "each turn is about an axis that stays (space fixed)", 0.0),
             ],
         },
@@ -115,7 +127,8 @@ KINDS = {
     ],
 }
 
-#: This book's choice in each group. No sequence is anybody's by default: which one it is, is a finding.
+#: This book's choice in each group. No sequence is anybody's by default: which one it is, is a
+#: finding.
 BOOK = {
     "order": "wxyz",
     "axes of the turns": "body fixed",
@@ -126,7 +139,12 @@ BOOK = {
 }
 
 #: Departures that are no mix-up between two programs if both make them.
-SHARED = (("order", "xyzw"), ("axes of the turns", "space fixed"), ("unit", "degrees"), ("place of the angle", "first"))
+SHARED = (
+    ("order", "xyzw"),
+    ("axes of the turns", "space fixed"),
+    ("unit", "degrees"),
+    ("place of the angle", "first"),
+)
 
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
@@ -140,7 +158,9 @@ INVERSE = {
 
 @functools.cache
 def axes_matrix(names):
-    """Signed permutation whose rows are the axes named: ``('y', 'x', '-z')`` is NED of ENU, and ENU of NED."""
+    """Signed permutation whose rows are the axes named: ``('y', 'x', '-z')`` is NED of ENU, and ENU
+    of NED.
+    """
     rows = []
     for name in names:
         row = [0, 0, 0]
@@ -154,8 +174,16 @@ BODY_AXES = {
     ("x", "-y", "-z"): "y and z of the body reversed (FRD and FLU; OpenCV's camera and OpenGL's)",
     ("-x", "-y", "z"): "x and y of the body reversed (OpenCV's camera and PyTorch3D's)",
     ("-x", "y", "-z"): "x and z of the body reversed",
-    ("-y", "-z", "x"): "the body's axes forward, left, up against those of a camera, right, down, forward",
-    ("z", "-x", "-y"): "the camera's axes right, down, forward against those of a body, forward, left, up",
+    (
+        "-y",
+        "-z",
+        "x",
+    ): "the body's axes forward, left, up against those of a camera, right, down, forward",
+    (
+        "z",
+        "-x",
+        "-y",
+    ): "the camera's axes right, down, forward against those of a body, forward, left, up",
     ("x", "z", "-y"): "the body's y up against z up",
     ("x", "-z", "y"): "the body's z up against y up",
     ("y", "z", "x"): "the body's axes moved on by one place",
@@ -199,17 +227,24 @@ def axes_choice(names, body):
     if tuple(name[-1] for name in names) == SAME_AXES:
         those = " and ".join(reversed_ones) if len(reversed_ones) < 3 else "all axes"
         return choice(names, f"{those} of the {whose} reversed", 0.3)
-    # Which hand the axes make does not matter to how likely a program is: nobody does either by accident.
-    return choice(names, f"the {whose}'s axes x, y, z are called {', '.join(names)} by the other program", 0.6)
+    # Which hand the axes make does not matter to how likely a program is: nobody does either by
+    # accident.
+    return choice(
+        names, f"the {whose}'s axes x, y, z are called {', '.join(names)} by the other program", 0.6
+    )
 
 
 def relations(mirrored=False):
-    """All relations of two orientations by signed axes, the cheapest description of each, cheapest first.
+    """All relations of two orientations by signed axes, the cheapest description of each, cheapest
+    first.
 
-    With ``mirrored`` those in which exactly one side has a left-handed triad, so that the determinants differ.
+    With ``mirrored`` those in which exactly one side has a left-handed triad, so that the
+    determinants differ.
     """
     best = {}
-    all_axes = [(names, axes_choice(names, True), axes_choice(names, False)) for names, _ in signed_axes()]
+    all_axes = [
+        (names, axes_choice(names, True), axes_choice(names, False)) for names, _ in signed_axes()
+    ]
     hand = {names: left_handed(names) for names, *_ in all_axes}
     for inverse in (False, True):
         for body, of_body, of_world in all_axes:
@@ -233,7 +268,9 @@ def relations(mirrored=False):
                     best[key] = entry
     return [
         {"faults": f, "rarity": r, "inverse": inverse, "body": body, "world": world, "hand": both}
-        for f, r, inverse, body, world, both in sorted(best.values(), key=lambda entry: (entry[:2], entry[2:5]))
+        for f, r, inverse, body, world, both in sorted(
+            best.values(), key=lambda entry: (entry[:2], entry[2:5])
+        )
     ]
 
 
@@ -245,11 +282,16 @@ def left_handed(names):
 
 
 def _reverses_one(names):
-    return tuple(name[-1] for name in names) == SAME_AXES and sum(name.startswith("-") for name in names) == 1
+    return (
+        tuple(name[-1] for name in names) == SAME_AXES
+        and sum(name.startswith("-") for name in names) == 1
+    )
 
 
 def _canonical(body, world):
-    """Of a pair of axes and the same pair with all signs reversed, which do the same to a matrix, always one."""
+    """Of a pair of axes and the same pair with all signs reversed, which do the same to a matrix,
+    always one.
+    """
     if body[0].startswith("-"):
         return tuple(map(_opposite, body)), tuple(map(_opposite, world))
     return body, world
@@ -260,27 +302,39 @@ def _opposite(name):
 
 
 #: Directions and their opposites.
-OPPOSITES = {"forward": "back", "left": "right", "up": "down", "back": "forward", "right": "left", "down": "up"}
+OPPOSITES = {
+    "forward": "back",
+    "left": "right",
+    "up": "down",
+    "back": "forward",
+    "right": "left",
+    "down": "up",
+}
 
 
 def _axes_of(second, first):
-    """How one names its axes in the words of the other: ``('x', '-y', '-z')`` for FRD out of FLU."""
+    """How one names its axes in the words of the other: ``('x', '-y', '-z')`` for FRD out of
+    FLU.
+    """
     if not (first and second):
         return SAME_AXES
     return tuple(
-        "xyz"[first.index(way)] if way in first else "-" + "xyz"[first.index(OPPOSITES[way])] for way in second
+        "xyz"[first.index(way)] if way in first else "-" + "xyz"[first.index(OPPOSITES[way])]
+        for way in second
     )
 
 
 def expected_relation(first, second, kinds):
     """What two programs differ by as their manuals have it.
 
-    A relation, as inverse and the axes of both sides, and whether the second program's rows are the world's axes.
+    A relation, as inverse and the axes of both sides, and whether the second program's rows are the
+    world's axes.
 
     Parameters
     ----------
     first, second : dict or None
-        As :func:`orientation_workbench.programs.expected_of` gives them; without both nothing is expected.
+        As :func:`orientation_workbench.programs.expected_of` gives them; without both nothing is
+        expected.
     kinds : tuple of two str
         What the numbers of each side are.
     """
@@ -288,12 +342,15 @@ def expected_relation(first, second, kinds):
         return False, SAME_AXES, SAME_AXES, False
     axes = _axes_of(second["body"], first["body"]), _axes_of(second["world"], first["world"])
     turned = [kind in side["inverse"] for kind, side in zip(kinds, (first, second))]
-    # The second program's matrix is the transpose of what is meant: then world and body change places.
+    # The second program's matrix is the transpose of what is meant: then world and body change
+    # places.
     return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes), turned[1]
 
 
 def beyond(relation, expected):
-    """A relation that departs from the expected one as ``relation`` departs from none; its words are kept."""
+    """A relation that departs from the expected one as ``relation`` departs from none; its words
+    are kept.
+    """
     inverse, body, world, rows_are_the_worlds = expected
     if relation["inverse"]:
         body, world = world, body
@@ -321,7 +378,9 @@ def words_of(relation, kinds):
         said.append(f"one is {INVERSE[kinds[1]]}")
     for whose in ("body", "world"):
         if relation.get(f"{whose} turn") is not None:
-            said.append(f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew")
+            said.append(
+                f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew"
+            )
     if relation["hand"]:
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
         return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
@@ -336,7 +395,8 @@ def words_of(relation, kinds):
 
 
 def readings(kind, declared, degrees_likely=False):
-    """All readings of one kind of at most three faults, each with its choices, faults, rarity and words.
+    """All readings of one kind of at most three faults, each with its choices, faults, rarity and
+    words.
 
     Parameters
     ----------
@@ -389,15 +449,21 @@ def of_both(first, second):
 
 
 def _choices(group):
-    return next(one["choices"] for groups in KINDS.values() for one in groups if one["group"] == group)
+    return next(
+        one["choices"] for groups in KINDS.values() for one in groups if one["group"] == group
+    )
 
 
-#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the body's own axes.
+#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the
+#: body's own axes.
 FURTHER_POSES = (
     ("turn it by about 40 degrees about its x axis", (("x", 40),)),
     ("turn it by about 30 degrees about its y axis", (("y", 30),)),
     ("turn it by about 50 degrees about its z axis", (("z", 50),)),
-    ("turn it by about 40 degrees about its x axis, then by about 25 about its own y axis", (("x", 40), ("y", 25))),
+    (
+        "turn it by about 40 degrees about its x axis, then by about 25 about its own y axis",
+        (("x", 40), ("y", 25)),
+    ),
     (
         "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
         "then by about 20 about its own x axis",
@@ -410,15 +476,21 @@ _CARD = "chapters/convention-card.html"
 _FOUR_QUESTIONS = (f"{_CARD}#four-questions", "The convention card")
 _THE_WAY_BACK = ("chapters/simple-orientations.html#the-way-back", "The way back")
 _A_KNEE = ("exercises/cases-from-practice.html#a-knee-from-two-boxes", "A knee, from two boxes")
-_A_SHAFT = ("exercises/unit-quaternions.html#a-shaft-turning-clockwise", "A shaft turning clockwise")
+_A_SHAFT = (
+    "exercises/unit-quaternions.html#a-shaft-turning-clockwise",
+    "A shaft turning clockwise",
+)
 
-#: Where the book teaches what was mixed up, by the group of a reading, or the part of a relation: the section, and
-#: checked questions of which that very fault is one of the mistakes. An inverse goes by what was pasted.
+#: Where the book teaches what was mixed up, by the group of a reading, or the part of a relation:
+#: the section, and checked questions of which that very fault is one of the mistakes. An inverse
+#: goes by what was pasted.
 TAUGHT = {
     "order": (_FOUR_QUESTIONS, ("exercises/convention-card.html#two-messages", "Two messages")),
     "sequence": (
         ("chapters/euler-angles.html#the-twelve-sequences", "The twelve sequences"),
-        ("exercises/back-from-a-matrix.html#three-machines-one-set-of-angles", "Three machines, one set of angles"),
+        ("exercises/back-from-a-matrix.html#three-machines-one-set-of-angles", "Three machines, "
+            "one "
+            "set of angles"),
     ),
     "axes of the turns": (
         ("chapters/euler-angles.html#body-fixed", "Body fixed"),
@@ -429,7 +501,9 @@ TAUGHT = {
         ("exercises/convention-card.html#eight-lines-of-code", "Eight lines of code"),
     ),
     "signs": (
-        ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, you or the vector?"),
+        ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, "
+            "you "
+            "or the vector?"),
         _A_KNEE,
     ),
     "unit": (_FOUR_QUESTIONS, ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing",
@@ -461,7 +535,8 @@ TAUGHT = {
          "Where is the north? A phone finds out"),
     ),
     "hand": (
-        ("chapters/reference-frames.html#can-numbers-tell-left-from-right", "Can numbers tell left from right?"),
+        ("chapters/reference-frames.html#can-numbers-tell-left-from-right", "Can numbers tell "
+            "left from right?"),
         ("exercises/convention-card.html#a-game-engine", "A game engine"),
     ),
     "turn": ((f"{_CARD}#exercises", "Hand and eye"), _A_KNEE),
@@ -481,7 +556,9 @@ def whole_table():
         "spelling": whole_spelling(),
         "inverse": INVERSE,
         "taught": TAUGHT,
-        "further poses": [[words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES],
+        "further poses": [
+            [words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES
+        ],
         "body axes": [[list(names), words] for names, words in BODY_AXES.items()],
         "world axes": [[list(names), words] for names, words in WORLD_AXES.items()],
     }

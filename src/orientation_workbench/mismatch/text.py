@@ -1,4 +1,6 @@
-"""What a reader pastes: text in any brackets, or arrays, read as poses. Nothing is repaired; what was read is said."""
+"""What a reader pastes: text in any brackets, or arrays, read as poses. Nothing is repaired; what
+was read is said.
+"""
 
 import math
 import re
@@ -18,12 +20,18 @@ def _pattern(text):
 
 
 def _replacing(entries):
-    return [(_pattern(pattern), _IN_PYTHON.sub(r"\\\1", replacement)) for pattern, replacement in entries]
+    return [
+        (_pattern(pattern), _IN_PYTHON.sub(r"\\\1", replacement))
+        for pattern, replacement in entries
+    ]
 
 
 NUMBER = _pattern(spelling.NUMBER_IN_TEXT)
 _NAMED, _COMMENT = _pattern(spelling.NAMED), _pattern(spelling.COMMENT)
-_NOT_TURNS, _VALUE_OF_NO_TURN = _pattern(spelling.NOT_TURNS), _pattern(spelling.NOT_TURNS + spelling.VALUE)
+_NOT_TURNS, _VALUE_OF_NO_TURN = (
+    _pattern(spelling.NOT_TURNS),
+    _pattern(spelling.NOT_TURNS + spelling.VALUE),
+)
 _INNERMOST = _pattern(spelling.INNERMOST)
 _NOT_A_NUMBER, _ARITHMETIC = _pattern(spelling.NOT_A_NUMBER), _pattern(spelling.ARITHMETIC)
 _DEGREES, _RADIANS = _pattern(spelling.DEGREES), _pattern(spelling.RADIANS)
@@ -34,7 +42,9 @@ _PARTING, _AROUND, _UNIT, _OF_A_QUATERNION, _ENTRY, _NO_ROW = map(_pattern, (
     spelling.ENTRY_OF_A_MATRIX, spelling.NO_ROW))  # fmt: skip
 _PART_OF_A_QUATERNION = _pattern(spelling.PART_OF_A_QUATERNION)
 _WHOLE_NUMBER = _pattern(rf"^{spelling.NUMBER}$")
-_SUM, _PART, _SCALAR = map(_pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM))
+_SUM, _PART, _SCALAR = map(
+    _pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM)
+)
 _SIGNS, _CLEANING = _replacing(spelling.SIGNS_OF_A_SUM), _replacing(spelling.CLEANING)
 #: Names that numbers come with, in the order in which they are read, and what those names say.
 _NAMES = (
@@ -47,12 +57,15 @@ _NAMES = (
     (dict(zip("xyz", range(3))), {}),
 )
 
-#: How far the length of a quaternion, or of a row, may be from 1 besides rounding: more is another mistake.
+#: How far the length of a quaternion, or of a row, may be from 1 besides rounding: more is another
+#: mistake.
 SLACK = 1e-4
 
 
 class Poses(NamedTuple):
-    """Numbers of one side: what kinds they may be, an array ``(poses, count)``, and how far each may be off."""
+    """Numbers of one side: what kinds they may be, an array ``(poses, count)``, and how far each
+    may be off.
+    """
 
     kinds: tuple[str, ...]
     numbers: np.ndarray
@@ -67,8 +80,8 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
     Parameters
     ----------
     given : str, or array
-        One pose a line, or matrices of three or four lines; ``name: number`` as ROS and YAML print it; arrays of
-        shape ``(3,)``, ``(4,)``, ``(9,)``, ``(3, 3)``, ``(4, 4)`` or a stack of them.
+        One pose a line, or matrices of three or four lines; ``name: number`` as ROS and YAML print
+        it; arrays of shape ``(3,)``, ``(4,)``, ``(9,)``, ``(3, 3)``, ``(4, 4)`` or a stack of them.
     name : str
         What the side is called in a message.
     kind : str, optional
@@ -100,7 +113,9 @@ def _rows_of_array(given, name):
     try:
         array = np.asarray(given, float)
     except (TypeError, ValueError) as error:
-        raise ValueError(f"the {name} side is neither text nor an array of numbers: {error}") from None
+        raise ValueError(
+            f"the {name} side is neither text nor an array of numbers: {error}"
+        ) from None
     if array.ndim == 0:
         raise ValueError(f"the {name} side is the one number {array}; a pose takes at least three")
     return array.reshape(-1, array.shape[-1]).tolist()
@@ -119,22 +134,36 @@ def _rows_of_text(text, name):
     if found := _NOT_A_NUMBER.search(text):
         raise ValueError(f"the {name} side holds '{found.group().strip()}', which is no number")
     if found := _ARITHMETIC.search(text):
-        raise ValueError(f"the {name} side holds '{found.group().strip()}': paste the numbers that it comes to")
+        raise ValueError(
+            f"the {name} side holds '{found.group().strip()}': paste the numbers that it comes to"
+        )
     text = _sums(text)
     if not NUMBER.search(text):
         shown = " ".join(text.split())[:40]
         raise ValueError(
-            f"the {name} side holds no numbers: '{shown}'" if shown else f"the {name} side is empty: paste its numbers"
+            f"the {name} side holds no numbers: '{shown}'"
+            if shown
+            else f"the {name} side is empty: paste its numbers"
         )
-    declared = {"unit": "degrees"} if _DEGREES.search(text) else {"unit": "radians"} if _RADIANS.search(text) else {}
+    declared = (
+        {"unit": "degrees"}
+        if _DEGREES.search(text)
+        else {"unit": "radians"}
+        if _RADIANS.search(text)
+        else {}
+    )
     if labelled := _labelled(text):
         rows, half, more = labelled
         return rows, half, declared | more
     half = _half(NUMBER.findall(text))
-    rows = [[float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)]
+    rows = [
+        [float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)
+    ]
     rows = [row for row in rows if row]
     in_brackets = {len(row) for row in rows}
-    if in_brackets not in ({3}, {4}, {9}, {12}, {16}) or sum(map(len, rows)) != len(NUMBER.findall(text)):
+    if in_brackets not in ({3}, {4}, {9}, {12}, {16}) or sum(map(len, rows)) != len(
+        NUMBER.findall(text)
+    ):
         rows = _rows_of_lines(text)
     if all(len(row) == 3 for row in rows):
         declared |= next((more for pattern, more in _ORDERS if pattern.search(text)), {})
@@ -152,35 +181,59 @@ def _fields(line):
 
 
 def _columns(text):
-    """Rows, half a unit and what is said, of a table under a line that names its columns; None where none does."""
+    """Rows, half a unit and what is said, of a table under a line that names its columns; None
+    where none does.
+    """
     for pattern, replacement in _CLEANING[:2]:
         text = pattern.sub(replacement, text)
     lines = text.split("\n")
     for place, line in enumerate(lines):
-        names = [] if NUMBER.search(line) else [field.lower() for field in _fields(_AROUND.sub("", line))]
+        names = (
+            []
+            if NUMBER.search(line)
+            else [field.lower() for field in _fields(_AROUND.sub("", line))]
+        )
         if len(names) < 3:
             continue
         table = [_fields(below) for below in lines[place + 1 :] if not _NO_ROW.search(below)]
-        if not table or any(len(row) != len(names) for row in table) or not (found := _named_columns(names)):
+        if (
+            not table
+            or any(len(row) != len(names) for row in table)
+            or not (found := _named_columns(names))
+        ):
             continue
         which, more = found
         kept = [[row[column] for column in which] for row in table]
         if all(_WHOLE_NUMBER.search(field) for row in kept for field in row):
             said = line.replace("_", " ")
-            unit = "degrees" if _DEGREES.search(said) else "radians" if _RADIANS.search(said) else None
+            unit = (
+                "degrees" if _DEGREES.search(said) else "radians" if _RADIANS.search(said) else None
+            )
             half = _half([field for row in kept for field in row])
-            return [list(map(float, row)) for row in kept], half, more | ({"unit": unit} if unit else {})
+            return (
+                [list(map(float, row)) for row in kept],
+                half,
+                more | ({"unit": unit} if unit else {}),
+            )
     return None
 
 
 def _named_columns(names):
-    """Which columns hold an orientation, in the order in which they are read, and what their names say of them."""
+    """Which columns hold an orientation, in the order in which they are read, and what their names
+    say of them.
+    """
     bare = [_UNIT.sub("", name) for name in names]
-    entries = [(found[1], found[2], column) for column, name in enumerate(bare) if (found := _ENTRY.search(name))]
+    entries = [
+        (found[1], found[2], column)
+        for column, name in enumerate(bare)
+        if (found := _ENTRY.search(name))
+    ]
     if len(entries) == 9:
         return [column for *_, column in sorted(entries)], {}
     for own in ([bool(_OF_A_QUATERNION.search(name)) for name in bare], [True] * len(bare)):
-        keys = [re.sub(r"^(.*[_.])?q?_*", "", name) if mine else "" for name, mine in zip(bare, own)]
+        keys = [
+            re.sub(r"^(.*[_.])?q?_*", "", name) if mine else "" for name, mine in zip(bare, own)
+        ]
         for place, more in _NAMES[:2]:
             which = [[column for column, key in enumerate(keys) if place.get(key) == each]
                      for each in range(max(place.values()) + 1)]  # fmt: skip
@@ -188,7 +241,9 @@ def _named_columns(names):
                 # As they stand, so that what is said of the numbers holds for the reader's own.
                 order = sorted(range(len(which)), key=lambda each: which[each])
                 name, letters = ("order", "wxyz") if "order" in more else ("places", "123")
-                return [which[each][0] for each in order], more | {name: "".join(letters[each] for each in order)}
+                return [which[each][0] for each in order], more | {
+                    name: "".join(letters[each] for each in order)
+                }
     return None
 
 
@@ -202,10 +257,16 @@ def _rows_of_lines(text):
 
 
 def _decimal_points(text):
-    """The text with points where it has decimal commas: one in each of three numbers or more, and no point."""
+    """The text with points where it has decimal commas: one in each of three numbers or more, and
+    no point.
+    """
     groups = re.findall(r"\d[\d,]*\d|\d", text)
     with_comma = [group for group in groups if "," in group]
-    if re.search(r"\d\.|\.\d", text) or len(with_comma) < 3 or any(group.count(",") > 1 for group in with_comma):
+    if (
+        re.search(r"\d\.|\.\d", text)
+        or len(with_comma) < 3
+        or any(group.count(",") > 1 for group in with_comma)
+    ):
         return text
     return re.sub(r"(?<=\d),(?=\d)", ".", text)
 
@@ -221,26 +282,40 @@ def _sums(text):
 
 
 def _without_places(text):
-    """The text without what says where or when: of a key that stands alone, also the lines set in below it."""
+    """The text without what says where or when: of a key that stands alone, also the lines set in
+    below it.
+    """
     kept, below = [], None
     for line in _VALUE_OF_NO_TURN.sub(" ", text).split("\n"):
         inset = len(line) - len(line.lstrip())
         if below is not None and line.strip() and inset > below:
             continue
-        below = inset if (found := _NOT_TURNS.search(line)) and not line[found.end() :].strip() else None
+        below = (
+            inset
+            if (found := _NOT_TURNS.search(line)) and not line[found.end() :].strip()
+            else None
+        )
         kept.append(_NOT_TURNS.sub(" ", line))
     return "\n".join(kept)
 
 
 def _labelled(text):
-    """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do not."""
+    """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do
+    not.
+    """
     pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
     parts = [(key, found) for key, found in pairs if found and _PART_OF_A_QUATERNION.search(key)]
-    pairs = [(re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found]
+    pairs = [
+        (re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found
+    ]
     for place, more in _NAMES:
         size = max(place.values()) + 1
         kept = [(place[key], value) for key, value in pairs if key in place]
-        if not kept or len(kept) % size or (size == 3 and "x" in place and any(key == "w" for key, _ in pairs)):
+        if (
+            not kept
+            or len(kept) % size
+            or (size == 3 and "x" in place and any(key == "w" for key, _ in pairs))
+        ):
             continue
         rows = [[None] * size for _ in range(len(kept) // size)]
         for which, (where, value) in enumerate(kept):
@@ -251,7 +326,9 @@ def _labelled(text):
 
 
 def _half(found):
-    """Half a unit of the last digit printed: of the numbers that are not small, the one with the most digits."""
+    """Half a unit of the last digit printed: of the numbers that are not small, the one with the
+    most digits.
+    """
     sizes = [abs(float(number)) for number in found]
     largest = max(sizes)
     decimals = 0
@@ -267,7 +344,12 @@ def _poses(rows, name, kind, half):
     widths = {len(row) for row in rows}
     total = sum(map(len, rows))
     width = widths.pop() if len(widths) == 1 else None
-    if width == 3 and kind in (None, "matrix") and len(rows) % 3 == 0 and (kind or _orthogonal(rows)):
+    if (
+        width == 3
+        and kind in (None, "matrix")
+        and len(rows) % 3 == 0
+        and (kind or _orthogonal(rows))
+    ):
         return np.array(rows, float).reshape(-1, 9)
     if width == 4 and kind in (None, "matrix"):
         if len(rows) % 4 == 0 and all(row == [0, 0, 0, 1] for row in rows[3::4]):
@@ -276,7 +358,12 @@ def _poses(rows, name, kind, half):
             return np.array(rows, float).reshape(-1, 3, 4)[:, :, :3].reshape(-1, 9)
     if width in (3, 4) and kind != "matrix":
         return np.array(rows)
-    if width and width > 4 and kind in (None, "quaternion") and (which := _quaternion_among(rows, half)) is not None:
+    if (
+        width
+        and width > 4
+        and kind in (None, "quaternion")
+        and (which := _quaternion_among(rows, half)) is not None
+    ):
         return np.array(rows)[:, which : which + 4]
     if width in (9, 12, 16):
         return np.array([_nine(row) for row in rows])
@@ -287,12 +374,18 @@ def _poses(rows, name, kind, half):
             if size > 4 and total != size and not _orthogonal(np.reshape(poses, (-1, 3))):
                 continue
             return np.array(poses)
-    if total > 4 and kind in (None, "quaternion") and (which := _quaternion_among([flat], half)) is not None:
+    if (
+        total > 4
+        and kind in (None, "quaternion")
+        and (which := _quaternion_among([flat], half)) is not None
+    ):
         return np.array([flat[which : which + 4]])
     where = "one line" if len(rows) == 1 else f"{len(rows)} lines"
     raise ValueError(
-        f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 (angles, or a rotation "
-        f"vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); "
+        f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
+        "(angles, or a rotation "
+        "vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a "
+        "translation); "
         f"beside a place, four that stand together and make length 1"
     )
 
@@ -304,7 +397,9 @@ def _nine(row):
 
 
 def _quaternion_among(rows, half):
-    """Where in each row four numbers of length 1 stand together: last, first, or in one place only."""
+    """Where in each row four numbers of length 1 stand together: last, first, or in one place
+    only.
+    """
     array = np.array(rows, float)
     width = array.shape[1]
     if width in (9, 12, 16) and _orthogonal(np.reshape([_nine(row) for row in rows], (-1, 3))):
@@ -327,7 +422,9 @@ def _kinds(numbers, kind, doubt, name):
     count = numbers.shape[1]
     if kind is not None:
         if COUNTS[kind] != count:
-            raise ValueError(f"the {name} side holds {count} numbers a pose; a {kind} takes {COUNTS[kind]}")
+            raise ValueError(
+                f"the {name} side holds {count} numbers a pose; a {kind} takes {COUNTS[kind]}"
+            )
         kinds = (kind,)
     elif count == 4:
         kinds = ("quaternion",) if _all_unit(numbers, doubt) else ("axis and angle",)
@@ -342,7 +439,8 @@ def _kinds(numbers, kind, doubt, name):
         if not any(_all_unit(axes, doubt) for axes in (numbers[:, :3], numbers[:, 1:])):
             size = np.linalg.norm(numbers[0])
             raise ValueError(
-                f"the four numbers of the {name} side are neither a quaternion (their length is {size:.6g}, not 1) nor "
+                f"the four numbers of the {name} side are neither a quaternion (their length is "
+                f"{size:.6g}, not 1) nor "
                 f"an axis and its angle (neither the first three nor the last three make length 1)"
             )
     return kinds
@@ -362,6 +460,7 @@ def _demand_orthogonal(numbers, doubt, name):
         what = (
             f"row {row + 1} has length {math.sqrt(products[row, row]):.6g}, not 1"
             if row == other
-            else f"rows {row + 1} and {other + 1} have the product {products[row, other]:.6g}, not 0"
+            else f"rows {row + 1} and {other + 1} have the product "
+            f"{products[row, other]:.6g}, not 0"
         )
         raise ValueError(f"matrix {which} of the {name} side is no rotation: {what}")

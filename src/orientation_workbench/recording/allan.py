@@ -11,8 +11,8 @@ class StillNoise(NamedTuple):
     Attributes
     ----------
     angle_random_walk : array of shape ``(k,)``
-        What the part that falls with the slope -1/2 says at one second: the rates' unit times the square root of a
-        second.
+        What the part that falls with the slope -1/2 says at one second: the rates' unit times the
+        square root of a second.
     bias_instability : array of shape ``(k,)``
         The lowest point, in the rates' unit; NaN if the deviation still falls at its end.
     time : array of shape ``(k,)``
@@ -27,8 +27,8 @@ class StillNoise(NamedTuple):
 def allan_deviation(rates, step):
     """Allan deviation of an instrument that lies still, from all stretches of each length.
 
-    ``sigma(tau)**2`` is half the mean square of the difference between the means of neighbouring stretches
-    (El-Sheimy, Hou and Niu 2008; in the book :eq:`equation-allan`).
+    ``sigma(tau)**2`` is half the mean square of the difference between the means of neighbouring
+    stretches (El-Sheimy, Hou and Niu 2008; in the book :eq:`equation-allan`).
 
     Parameters
     ----------
@@ -47,7 +47,9 @@ def allan_deviation(rates, step):
     >>> noise_of(times, deviations).angle_random_walk.round(2)
     array([0.1])
     """
-    path = np.concatenate([np.zeros((1, rates.shape[1])), np.cumsum(rates - rates.mean(axis=0), axis=0)])
+    path = np.concatenate(
+        [np.zeros((1, rates.shape[1])), np.cumsum(rates - rates.mean(axis=0), axis=0)]
+    )
     sizes = np.unique(np.geomspace(1, max(1, (len(path) - 1) // 9), 30).astype(int))
     deviations = []
     for size in sizes:
@@ -80,7 +82,9 @@ def noise_of(times, deviations):
             falling = slice(0, max(3, turned // 2))
             # Another slope is another thing: a hand, an engine, rounding.
             white = abs(np.median(slopes[falling]) + 0.5) < 0.15
-            walks.append(np.exp(np.mean(np.log(values * np.sqrt(times))[falling])) if white else np.nan)
+            walks.append(
+                np.exp(np.mean(np.log(values * np.sqrt(times))[falling])) if white else np.nan
+            )
         # By chance the last points may lie a little above the one before.
         told = bottom < len(times) - 2 and values[-1] > 1.1 * values[bottom]
         lowest.append(values[bottom] if told else np.nan)

@@ -1,4 +1,6 @@
-"""The bench: what a recording holds, one question after another, each answered with its evidence."""
+"""The bench: what a recording holds, one question after another, each answered with its
+evidence.
+"""
 
 from typing import NamedTuple
 
@@ -58,8 +60,8 @@ class Examined(NamedTuple):
     verdicts : list of Verdict
     time : array of shape ``(n,)``
     rates, forces, field : arrays of shape ``(n, 3)`` or None
-        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity, and multiples of
-        the field's own length.
+        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity,
+        and multiples of the field's own length.
     orientation : tuple or None
         Times, and the file's orientations as ``B_C_N``.
     judgements : list of Judgement
@@ -115,7 +117,9 @@ def examine(source, name=None, rate=None, judged=True, progress=None):
         If the file cannot be read, or holds no instrument.
     """
     content = read_content(source, name, rate)
-    bench = _Bench(content, name or (str(source) if not isinstance(source, (bytes, list)) else "recording"))
+    bench = _Bench(
+        content, name or (str(source) if not isinstance(source, (bytes, list)) else "recording")
+    )
     bench.clock()
     bench.gyroscope()
     bench.accelerometer()
@@ -133,7 +137,11 @@ class _Bench:
         self.content, self.name = content, name.splitlines()[0][:80] if "\n" in name else name
         self.verdicts, self.facts, self.judgements, self.still = [], {}, [], []
         groups = content.groups
-        first = next(groups[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in groups)
+        first = next(
+            groups[kind]
+            for kind in ("gyroscope", "accelerometer", "magnetometer")
+            if kind in groups
+        )
         self.time = first.time
         self.raw = {
             kind: _at(self.time, groups[kind].time, groups[kind].values)
@@ -156,43 +164,88 @@ class _Bench:
         unused = f". Not used: {', '.join(self.content.unused)}" if self.content.unused else ""
         self.say("content", GREEN, held + unused)
         for kind, group in groups.items():
-            if group.called and group.called != kind and not (group.called == "angles" and kind == "quaternion"):
+            if (
+                group.called
+                and group.called != kind
+                and not (group.called == "angles" and kind == "quaternion")
+            ):
                 self.say(
-                    "headings", RED, f"{', '.join(group.names)} is called {group.called} and behaves like {kind}", {}
+                    "headings",
+                    RED,
+                    f"{', '.join(group.names)} is called {group.called} and behaves like {kind}",
+                    {},
                 )
         if self.content.counted:
-            self.say("time", UNKNOWN, f"{self.content.clock}: the rate is not known", {}, "Name it: --rate 100.")
+            self.say(
+                "time",
+                UNKNOWN,
+                f"{self.content.clock}: the rate is not known",
+                {},
+                "Name it: --rate 100.",
+            )
             return
         steps = np.diff(time)
         step = float(np.median(steps))
-        evidence = {"samples": len(time), "seconds": round(float(time[-1]), 3), "rate": round(1 / step, 2)}
+        evidence = {
+            "samples": len(time),
+            "seconds": round(float(time[-1]), 3),
+            "rate": round(1 / step, 2),
+        }
         self.say(
             "time",
             GREEN,
-            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, {1 / step:.4g} a second",
+            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, "
+            f"{1 / step:.4g} a second",
             evidence,
         )
         back = int((steps <= 0).sum())
         long = steps > 2.5 * step
         lost = float(steps[long].sum() / time[-1]) if time[-1] > 0 else 0.0
-        evidence = {"gaps": int(long.sum()), "longest (s)": round(float(steps.max()), 4), "share lost": round(lost, 4)}
+        evidence = {
+            "gaps": int(long.sum()),
+            "longest (s)": round(float(steps.max()), 4),
+            "share lost": round(lost, 4),
+        }
         if back:
-            self.say("order of time", RED, f"time stands still or goes back {back} times", {"times": back})
-        light = RED if lost > 0.02 or steps.max() > max(0.25, 8 * step) else YELLOW if long.any() else GREEN
+            self.say(
+                "order of time",
+                RED,
+                f"time stands still or goes back {back} times",
+                {"times": back},
+            )
+        light = (
+            RED
+            if lost > 0.02 or steps.max() > max(0.25, 8 * step)
+            else YELLOW
+            if long.any()
+            else GREEN
+        )
         words = (
             f"{int(long.sum())} gaps, the longest of {steps.max():.3g} s, {lost:.1%} of the time"
             if long.any()
             else "none"
         )
-        self.say("gaps", light, words, evidence, "" if light == GREEN else "What happened in a gap, no filter knows.")
+        self.say(
+            "gaps",
+            light,
+            words,
+            evidence,
+            "" if light == GREEN else "What happened in a gap, no filter knows.",
+        )
         every = np.concatenate(list(self.raw.values()), axis=1)
         same = float((np.diff(every, axis=0) == 0).all(axis=1).mean())
         light = RED if same > 0.05 else YELLOW if same > 0.005 else GREEN
         advice = (
-            "" if light == GREEN else "The instrument measures less often than the file says, or rows were filled up."
+            ""
+            if light == GREEN
+            else "The instrument measures less often than the file says, or rows were filled up."
         )
         self.say(
-            "repeated rows", light, f"{same:.1%} of the rows repeat the one before", {"share": round(same, 4)}, advice
+            "repeated rows",
+            light,
+            f"{same:.1%} of the rows repeat the one before",
+            {"share": round(same, 4)},
+            advice,
         )
 
     # --- the gyroscope --------------------------------------------------------------------------
@@ -207,11 +260,15 @@ class _Bench:
         for kind in ("accelerometer", "magnetometer"):
             if kind in self.raw:
                 vectors[kind] = self.raw[kind]
-                if kind == "magnetometer":  # a constant part belongs to the instrument, not to the Earth
+                if (
+                    kind == "magnetometer"
+                ):  # a constant part belongs to the instrument, not to the Earth
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
         units = DEGREES | ({"rad a sample": self.rate} if self.rate > 20 else {})
         counts = not said and bool((raw == raw.round()).all())
-        grid = np.unique(np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units.values()]))
+        grid = np.unique(
+            np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units.values()])
+        )
         if counts:  # as a chip has them
             grid = np.radians(np.geomspace(0.002, 0.2, 24))
         if self.content.counted:
@@ -221,7 +278,10 @@ class _Bench:
         for kind, vector in vectors.items():
             rough = fit_axes(self.time, raw - usual, vector, grid, longest=12.0)
             grid_here = rough.scale * np.geomspace(0.8, 1.25, 9)
-            choices = [fit_axes(self.time, raw - usual, vector, grid_here, seconds) for seconds in (0.3, 0.6, 1.2)]
+            choices = [
+                fit_axes(self.time, raw - usual, vector, grid_here, seconds)
+                for seconds in (0.3, 0.6, 1.2)
+            ]
             fits[kind] = max(choices, key=lambda fit: fit.margin)
         fit = max(fits.values(), key=lambda one: one.margin, default=None)
         gravity = fits.get("accelerometer")
@@ -236,21 +296,31 @@ class _Bench:
             ratio = fit.scale / unit
             if counts and abs(ratio - 1) > 0.04 or not 0.4 < ratio < 2.5:
                 unit, ratio = fit.scale, 1.0
-                self.say("unit of the gyroscope", YELLOW, f"counts: one is {np.degrees(unit):.4g} °/s", {"rad/s": unit})
+                self.say(
+                    "unit of the gyroscope",
+                    YELLOW,
+                    f"counts: one is {np.degrees(unit):.4g} °/s",
+                    {"rad/s": unit},
+                )
             elif said and DEGREES[said] != unit:
                 self.say(
                     "unit of the gyroscope",
                     RED,
-                    f"its turns carry the other sensors only if it is in {names[unit]}; its heading says {said}",
+                    f"its turns carry the other sensors only if it is in {names[unit]}; its "
+                    f"heading says {said}",
                     {"scale": round(fit.scale, 5)},
                     f"Read it as {names[unit]}.",
                 )
             else:
-                self.say("unit of the gyroscope", GREEN, names[unit], {"scale": round(fit.scale, 5)})
+                self.say(
+                    "unit of the gyroscope", GREEN, names[unit], {"scale": round(fit.scale, 5)}
+                )
         else:
             fast = np.percentile(np.linalg.norm(raw, axis=1), 95)
             unit = DEGREES[said] if said else (1.0 if fast < 40 else DEGREES["°/s"])
-            why = "by its heading" if said else f"by its size: 95 in 100 values are below {fast:.3g}"
+            why = (
+                "by its heading" if said else f"by its size: 95 in 100 values are below {fast:.3g}"
+            )
             self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
@@ -262,13 +332,22 @@ class _Bench:
         self.facts["unit of the gyroscope"] = unit
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
         if most > 10_000:
-            words = f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown turns so fast"
-            self.say("size of the gyroscope", RED, words, {}, "Is it another column, or another unit?")
+            words = (
+                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown "
+                "turns so fast"
+            )
+            self.say(
+                "size of the gyroscope", RED, words, {}, "Is it another column, or another unit?"
+            )
         self._axes(fits, raw * unit, usual * unit)
 
     def _quiet(self, raw):
         """Samples in which the numbers of a gyroscope vary least, whatever their unit."""
-        size = max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6))) if not self.content.counted else 50
+        size = (
+            max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6)))
+            if not self.content.counted
+            else 50
+        )
         count = len(raw) // size
         if count < 4:
             return None
@@ -283,12 +362,22 @@ class _Bench:
             self.say("rate", UNKNOWN, "the turns do not tell it", {}, "Name it: --rate 100.")
             return
         rate = DEGREES[said] / fit.scale
-        words = f"some {rate:.0f} samples a second, if the gyroscope is in {said} as its heading says"
-        self.say("rate", YELLOW, words, {"rate": round(float(rate), 1)}, f"Run it again with --rate {rate:.0f}.")
+        words = (
+            f"some {rate:.0f} samples a second, if the gyroscope is in {said} as its heading says"
+        )
+        self.say(
+            "rate",
+            YELLOW,
+            words,
+            {"rate": round(float(rate), 1)},
+            f"Run it again with --rate {rate:.0f}.",
+        )
         self.facts["rate"] = float(rate)
 
     def _axes(self, fits, rates, usual):
-        """Bring the gyroscope into the axes of the accelerometer, if they differ, and find its scale and bias."""
+        """Bring the gyroscope into the axes of the accelerometer, if they differ, and find its
+        scale and bias.
+        """
         reference = "accelerometer" if fits.get("accelerometer") is not None else None
         fit = fits.get("accelerometer")
         plain = np.eye(3)
@@ -330,29 +419,45 @@ class _Bench:
         lying = [one for one in self.still if one.still]
         held = [one for one in self.still if not one.still]
         seconds = sum(self.time[one.last - 1] - self.time[one.first] for one in lying)
-        told = ", ".join(f"{self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s" for one in lying[:6])
+        told = ", ".join(
+            f"{self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s" for one in lying[:6]
+        )
         evidence = {
             "stretches": len(lying),
             "seconds": round(float(seconds), 2),
-            "deviation (°/s)": round(float(np.degrees(np.median([one.deviation for one in lying]))), 3)
+            "deviation (°/s)": round(
+                float(np.degrees(np.median([one.deviation for one in lying]))), 3
+            )
             if lying
             else None,
             "likeness": round(max((one.likeness for one in lying), default=0.0), 2),
         }
         if lying:
-            self.say("stillness", GREEN, f"it lies still from {told}: what its gyroscope says there is white", evidence)
+            self.say(
+                "stillness",
+                GREEN,
+                f"it lies still from {told}: what its gyroscope says there is white",
+                evidence,
+            )
         elif held:
             one = min(held, key=lambda stretch: stretch.deviation)
             self.say(
                 "stillness",
                 YELLOW,
-                f"it is never still. From {self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s it is held: "
-                f"{np.degrees(one.deviation):.1f} °/s, each value like the one before ({one.likeness:.2f})",
-                {"deviation (°/s)": round(float(np.degrees(one.deviation)), 2), "likeness": round(one.likeness, 2)},
+                f"it is never still. From {self.time[one.first]:.1f} to "
+                f"{self.time[one.last - 1]:.1f} s it is held: "
+                f"{np.degrees(one.deviation):.1f} °/s, each value like the one before "
+                f"({one.likeness:.2f})",
+                {
+                    "deviation (°/s)": round(float(np.degrees(one.deviation)), 2),
+                    "likeness": round(one.likeness, 2),
+                },
                 "A mean over that is motion and no bias. Lay it down for some seconds.",
             )
         else:
-            self.say("stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for some seconds.")
+            self.say(
+                "stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for some seconds."
+            )
         bias, spread = None, None
         if lying:
             parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
@@ -383,7 +488,9 @@ class _Bench:
                 if off > max(0.02, 3 * uncertain)
                 else GREEN
             )
-            words = f"{found:.3f} ± {uncertain:.3f}: its turns carry gravity through {len(poses)} poses"
+            words = (
+                f"{found:.3f} ± {uncertain:.3f}: its turns carry gravity through {len(poses)} poses"
+            )
             words += f" to {np.degrees(left):.1f}°"
             advice = f"Multiply what it says by {found:.3f}." if light in (RED, YELLOW) else ""
             self.say("scale of the gyroscope", light, words, evidence, advice)
@@ -410,10 +517,18 @@ class _Bench:
         else:
             most = float(np.degrees(np.abs(bias).max()))
             sure = np.degrees(spread.max()) < 0.3
-            light = RED if most > 1 and sure else YELLOW if most > 0.3 else GREEN if sure else UNKNOWN
+            light = (
+                RED if most > 1 and sure else YELLOW if most > 0.3 else GREEN if sure else UNKNOWN
+            )
             words = f"{np.degrees(bias).round(3).tolist()} ± {np.degrees(spread.max()):.2g} °/s"
             advice = "Subtract it." if light in (RED, YELLOW) else ""
-            self.say("bias of the gyroscope", light, words, {"°/s": np.degrees(bias).round(4).tolist()}, advice)
+            self.say(
+                "bias of the gyroscope",
+                light,
+                words,
+                {"°/s": np.degrees(bias).round(4).tolist()},
+                advice,
+            )
             self.facts["bias of the gyroscope"] = bias
             self.rates = self.rates - bias
         self.rates = self.rates * scale
@@ -429,7 +544,9 @@ class _Bench:
         self.facts["Allan deviation"] = times, deviations
         seconds = (one.last - one.first) * step
         if np.isnan(noise.angle_random_walk).any():
-            words = f"the {seconds:.0f} s in which it lies still do not tell white noise from the rest"
+            words = (
+                f"the {seconds:.0f} s in which it lies still do not tell white noise from the rest"
+            )
             self.say("noise of the gyroscope", UNKNOWN, words, {}, "Let it lie for some minutes.")
             return
         walk = float(noise.angle_random_walk.max())
@@ -439,7 +556,10 @@ class _Bench:
             words += f"; how steady its bias is, {seconds:.0f} s do not tell"
         else:
             worst = int(np.nanargmax(noise.bias_instability))
-            words += f"; bias instability {noise.bias_instability[worst]:.2g} °/s, at {noise.time[worst]:.2g} s"
+            words += (
+                f"; bias instability {noise.bias_instability[worst]:.2g} °/s, at "
+                f"{noise.time[worst]:.2g} s"
+            )
             evidence["bias instability (°/s)"] = noise.bias_instability.round(5).tolist()
         self.facts["angle random walk"] = noise.angle_random_walk
         self.say("noise of the gyroscope", GREEN, words, evidence)
@@ -451,7 +571,9 @@ class _Bench:
             self.say("accelerometer", UNKNOWN, "there is none in the file")
             return
         raw = self.raw["accelerometer"]
-        quiet = np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
+        quiet = (
+            np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
+        )
         unit, gravity, off = unit_of_gravity(quiet, self.rate)
         self.forces = raw / gravity
         self.facts["gravity"] = gravity
@@ -475,13 +597,22 @@ class _Bench:
         lengths = np.linalg.norm(means, axis=1)
         centre, _ = _sphere(means)
         off = float(np.linalg.norm(centre))
-        evidence = {"lengths": lengths.round(3).tolist()[:12], "offset (g)": centre.round(3).tolist()}
+        evidence = {
+            "lengths": lengths.round(3).tolist()[:12],
+            "offset (g)": centre.round(3).tolist(),
+        }
         uneven = float(np.ptp(lengths))
         light = RED if uneven > 0.04 else YELLOW if uneven > 0.015 else GREEN
         words = f"gravity is {lengths.min():.3f} to {lengths.max():.3f} long in {len(means)} poses"
         if light != GREEN:
-            words += f"; an offset of {off:.3f} would explain {_explained(means, centre):.0%} of that"
-        advice = "" if light == GREEN else f"Subtract {(centre * gravity).round(3).tolist()}, and look at its scales."
+            words += (
+                f"; an offset of {off:.3f} would explain {_explained(means, centre):.0%} of that"
+            )
+        advice = (
+            ""
+            if light == GREEN
+            else f"Subtract {(centre * gravity).round(3).tolist()}, and look at its scales."
+        )
         self.say("accelerometer", light, words, evidence, advice)
         if light != GREEN and off < 0.3:
             self.forces = self.forces - centre
@@ -496,7 +627,9 @@ class _Bench:
         fit = fit_field(self.time, self.rates, raw) if self.rates is not None else None
         known = ""
         if fit is not None and not fit.uncertainty < 0.3:
-            known = f": a direction would be uncertain by {np.degrees(min(fit.uncertainty, 3)):.0f}°"
+            known = (
+                f": a direction would be uncertain by {np.degrees(min(fit.uncertainty, 3)):.0f}°"
+            )
             fit = None
         by_lengths = fit is None
         if by_lengths:
@@ -512,22 +645,46 @@ class _Bench:
             self.facts["strength of the field"] = length
             uneven, dips = self._unevenness(self.field), self._dips(raw)
             if uneven > 0.12 or (dips and dips[1] > 8):
-                words = f"its length varies by {uneven:.0%}" + (f", its dip by {dips[1]:.0f}°" if dips else "")
-                words += ": by iron that turns with it, or by iron that it passed; the turns do not tell which"
-                self.say("field", YELLOW, words, {}, "Leave the field out, or record a figure of eight far from iron.")
+                words = f"its length varies by {uneven:.0%}" + (
+                    f", its dip by {dips[1]:.0f}°" if dips else ""
+                )
+                words += (
+                    ": by iron that turns with it, or by iron that it passed; the turns do not "
+                    "tell which"
+                )
+                self.say(
+                    "field",
+                    YELLOW,
+                    words,
+                    {},
+                    "Leave the field out, or record a figure of eight far from iron.",
+                )
             return
         unit, length = unit_of_field(fit.strength * np.array([[1.0, 0, 0]]))
         self.say(
-            "unit of the magnetometer", GREEN, f"{unit}: the field is {length:.3g} long", {"length": round(length, 3)}
+            "unit of the magnetometer",
+            GREEN,
+            f"{unit}: the field is {length:.3g} long",
+            {"length": round(length, 3)},
         )
         corrected = (raw - fit.offset) @ fit.shape.T
         self.field = corrected / fit.strength
         plain = ASSIGNMENTS[np.argmax(np.einsum("kij,ij->k", ASSIGNMENTS, fit.axes))]
         aside = np.degrees(np.arccos(np.clip((np.trace(plain.T @ fit.axes) - 1) / 2, -1, 1)))
-        reference = np.eye(3) if "accelerometer" in self.raw else self.facts.get("axes of the gyroscope", np.eye(3))
+        reference = (
+            np.eye(3)
+            if "accelerometer" in self.raw
+            else self.facts.get("axes of the gyroscope", np.eye(3))
+        )
         if by_lengths:
             words = "lengths alone fit; whether its axes are those of the others they do not tell"
-            self.say("axes of the magnetometer", UNKNOWN, words, {}, "Turn it slowly about all three axes.")
+            self.say(
+                "axes of the magnetometer",
+                UNKNOWN,
+                words,
+                {},
+                "Turn it slowly about all three axes.",
+            )
         elif np.allclose(plain, reference) or np.allclose(plain, -reference):
             self.say(
                 "axes of the magnetometer",
@@ -558,7 +715,10 @@ class _Bench:
         }
         light = RED if hard > 0.1 + 2 * fit.uncertainty else YELLOW if hard > 0.05 else GREEN
         aside = np.degrees(np.arcsin(min(1, hard)))
-        words = f"{fit.offset.round(2).tolist()}, {hard:.0%} of the field: up to {aside:.0f}° of direction"
+        words = (
+            f"{fit.offset.round(2).tolist()}, {hard:.0%} of the field: up to {aside:.0f}° of "
+            "direction"
+        )
         self.say(
             "offset of the magnetometer",
             light if sure or light == RED else UNKNOWN,
@@ -566,7 +726,13 @@ class _Bench:
             evidence,
             "" if light == GREEN else "Subtract it.",
         )
-        light = RED if fit.stretch > 1.12 + 2 * fit.uncertainty else YELLOW if fit.stretch > 1.06 else GREEN
+        light = (
+            RED
+            if fit.stretch > 1.12 + 2 * fit.uncertainty
+            else YELLOW
+            if fit.stretch > 1.06
+            else GREEN
+        )
         words = f"longest and shortest axis are as {fit.stretch:.2f} to 1"
         self.say(
             "shape of the magnetometer",
@@ -576,12 +742,16 @@ class _Bench:
             "" if light == GREEN else "Multiply by the matrix.",
         )
         before, uneven = (
-            self._unevenness(values) for values in (raw / np.median(np.linalg.norm(raw, axis=1)), self.field)
+            self._unevenness(values)
+            for values in (raw / np.median(np.linalg.norm(raw, axis=1)), self.field)
         )
         dips, dips_before = self._dips(self.field), self._dips(raw)
         evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
         if dips:
-            evidence |= {"dip (°)": round(dips[0], 1), "dip varied by (°)": round(dips_before[1], 1)}
+            evidence |= {
+                "dip (°)": round(dips[0], 1),
+                "dip varied by (°)": round(dips_before[1], 1),
+            }
             evidence["corrected by (°)"] = round(dips[1], 1)
         light = (
             RED
@@ -591,18 +761,24 @@ class _Bench:
             else GREEN
         )
         words = f"as it came its length varies by {before:.0%}, corrected by {uneven:.0%}" + (
-            f"; its dip by {dips_before[1]:.0f}°, corrected by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
+            f"; its dip by {dips_before[1]:.0f}°, corrected by {dips[1]:.0f}° about {dips[0]:.0f}°"
+            if dips
+            else ""
         )
         self.say(
             "field",
             light,
             words,
             evidence,
-            "" if light == GREEN else "Something of iron was near for a while: leave the field out then.",
+            ""
+            if light == GREEN
+            else "Something of iron was near for a while: leave the field out then.",
         )
 
     def _unevenness(self, field):
-        """By how much the length of a field varies, second by second, but for its wildest moments."""
+        """By how much the length of a field varies, second by second, but for its wildest
+        moments.
+        """
         own = np.linalg.norm(field, axis=1)
         per_second = max(10, round(1 / np.median(np.diff(self.time))))
         smooth = [np.median(part) for part in np.array_split(own, max(4, len(own) // per_second))]
@@ -631,7 +807,8 @@ class _Bench:
             group = groups[kind]
             if kind == "quaternion":
                 candidates = {
-                    order: dcm_of_quaternions(group.values, order) for order in ("scalar first", "scalar last")
+                    order: dcm_of_quaternions(group.values, order)
+                    for order in ("scalar first", "scalar last")
                 }
             else:
                 candidates = _angle_readings(group)
@@ -678,7 +855,9 @@ class _Bench:
             "equal readings": len(upwards),
         }
         if level is not None:
-            evidence["up along the ground's axes"] = f"{called}, to {np.degrees(np.arccos(min(1, level))):.1f}°"
+            evidence["up along the ground's axes"] = (
+                f"{called}, to {np.degrees(np.arccos(min(1, level))):.1f}°"
+            )
         self.facts[f"convention of the {kind}"] = reading
         wrong = ""
         if kind == "quaternion":
@@ -706,7 +885,8 @@ class _Bench:
             advice = "" if lean < 3 else "Was it tared while it was not level?"
             if against:
                 advice += (
-                    " Either the ground's axis points down, or the accelerometer does, as in iPhones: then change "
+                    " Either the ground's axis points down, or the accelerometer does, as in "
+                    "iPhones: then change "
                 )
                 advice += "the signs of the latter."
             light = YELLOW if advice else GREEN
@@ -737,24 +917,34 @@ class _Bench:
             self.say("filter", UNKNOWN, "it needs a gyroscope and an accelerometer, and a clock")
             return
         if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
-            self.say("filter", UNKNOWN, f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it")
+            self.say(
+                "filter",
+                UNKNOWN,
+                f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it",
+            )
             return
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         field = None if "field" in trouble else self.field
         lying = [one for one in self.still if one.still]
         parts = _parts_to_judge(self.time, self.rates)
-        self.judgements = judge(filter_inputs(self.time, self.rates, self.forces, field, lying, parts), progress)
+        self.judgements = judge(
+            filter_inputs(self.time, self.rates, self.forces, field, lying, parts), progress
+        )
         where = ", ".join(f"{one.first:.0f} to {one.last:.0f} s" for one in self.judgements)
         claimed = float(np.sqrt(np.mean([one.claimed**2 for one in self.judgements])))
         found = float(np.sqrt(np.mean([one.found**2 for one in self.judgements])))
         words = (
-            f"from {where}: it claims its tilt to {claimed:.2f}°, forwards and backwards differ as if by {found:.2f}°"
+            f"from {where}: it claims its tilt to {claimed:.2f}°, forwards and backwards differ as "
+            f"if by {found:.2f}°"
         )
         if self.judgements[0].heading:
             heading = np.sqrt(np.mean([np.square(one.heading) for one in self.judgements], axis=0))
             words += f"; its heading to {heading[0]:.2f}°, and {heading[1]:.2f}°"
         else:
-            words += "; of the heading it can say nothing, for gravity is the same whichever way one faces"
+            words += (
+                "; of the heading it can say nothing, for gravity is the same whichever "
+                "way one faces"
+            )
         squares = {
             name: round(float(np.mean([one.squares[name] for one in self.judgements])), 2)
             for name in self.judgements[0].squares
@@ -765,20 +955,29 @@ class _Bench:
         }
         worst, high = too_sure(self.judgements)
         light = (
-            RED if worst > 5 or high > 5 else YELLOW if worst > 2 or high > 2 or max(alike.values()) > 0.5 else GREEN
+            RED
+            if worst > 5 or high > 5
+            else YELLOW
+            if worst > 2 or high > 2 or max(alike.values()) > 0.5
+            else GREEN
         )
         advice = ""
         if light == RED:
             advice = f"It is too sure of itself by {max(worst, np.sqrt(high)):.0f} times: "
             advice += "tell it of larger deviations, and use fewer samples as evidence."
         elif light == YELLOW:
-            advice = "Successive surprises are alike: what the sensors do wrong lasts for more than one sample."
+            advice = (
+                "Successive surprises are alike: what the sensors do wrong lasts for more "
+                "than one sample."
+            )
         evidence = {
             "claimed (°)": round(claimed, 3),
             "found (°)": round(found, 3),
             "innovations": squares,
             "likeness": alike,
-            "held out (°)": {name: round(off, 1) for name, off in self.judgements[0].held_out.items()},
+            "held out (°)": {
+                name: round(off, 1) for name, off in self.judgements[0].held_out.items()
+            },
         }
         self.say("filter", light, words, evidence, advice)
 
@@ -798,16 +997,26 @@ class _Bench:
 
 
 def _by_lengths(raw):
-    """A magnetometer's offset and shape from the lengths alone, if they are much the better for it."""
+    """A magnetometer's offset and shape from the lengths alone, if they are much the better for
+    it.
+    """
     fit = fit_ellipsoid(raw[:: max(1, len(raw) // 4000)], most=0.05)
     if fit is None:
         return None
-    before, after = (np.linalg.norm(values, axis=1) for values in (raw, (raw - fit.offset) @ fit.shape.T))
+    before, after = (
+        np.linalg.norm(values, axis=1) for values in (raw, (raw - fit.offset) @ fit.shape.T)
+    )
     if after.std() / after.mean() > 0.7 * before.std() / before.mean() + 0.01:
         return None
     sizes = np.linalg.eigvalsh(fit.shape)
     return FieldFit(
-        fit.shape, fit.offset, fit.strength, fit.uncertainty, np.empty((0, 3)), np.eye(3), float(sizes[-1] / sizes[0])
+        fit.shape,
+        fit.offset,
+        fit.strength,
+        fit.uncertainty,
+        np.empty((0, 3)),
+        np.eye(3),
+        float(sizes[-1] / sizes[0]),
     )
 
 
@@ -828,7 +1037,9 @@ def _said_unit(names):
 
 
 def _centre(field):
-    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values, or zero."""
+    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values, or
+    zero.
+    """
     centre, radius = _sphere(field)
     spread = np.linalg.norm(field - centre, axis=1)
     ways = np.linalg.eigvalsh(np.cov(((field - centre) / np.maximum(spread, 1e-12)[:, None]).T))
@@ -864,10 +1075,13 @@ def _angle_readings(group):
     found = {}
     unit = "degrees" if degrees else "radians"
     for sequence in ("zyx", "zxy", "xyz", "xzy", "yxz", "yzx"):
-        for places in [order] if order else [(2, 1, 0), (0, 1, 2), (1, 0, 2), (0, 2, 1), (1, 2, 0), (2, 0, 1)]:
+        for places in (
+            [order] if order else [(2, 1, 0), (0, 1, 2), (1, 0, 2), (0, 2, 1), (1, 2, 0), (2, 0, 1)]
+        ):
             for signs in ((1, 1, 1), (1, -1, 1), (-1, 1, 1), (1, 1, -1)):
                 called = ", ".join(
-                    ("-" if sign < 0 else "") + group.names[place] for sign, place in zip(signs, places, strict=True)
+                    ("-" if sign < 0 else "") + group.names[place]
+                    for sign, place in zip(signs, places, strict=True)
                 )
                 found[f"body fixed {sequence} ({called}), {unit}"] = dcm_from_body_fixed(
                     values[:, places] * signs, sequence
@@ -876,11 +1090,15 @@ def _angle_readings(group):
 
 
 def _parts_to_judge(time, rates, longest=60.0, count=3):
-    """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle parts."""
+    """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle
+    parts.
+    """
     if time[-1] - time[0] <= longest * 1.5:
         return [(0, len(time))]
     size = int(longest / 2 / np.median(np.diff(time)))
     starts = np.arange(0, len(time) - size, size)
-    lively = np.array([np.linalg.norm(rates[start : start + size], axis=1).mean() for start in starts])
+    lively = np.array(
+        [np.linalg.norm(rates[start : start + size], axis=1).mean() for start in starts]
+    )
     chosen = np.argsort(lively)[[0, len(starts) // 2, -1]][:count]
     return [(int(starts[k]), int(starts[k]) + size) for k in sorted(set(chosen.tolist()))]

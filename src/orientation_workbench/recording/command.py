@@ -14,7 +14,12 @@ def run(chosen):
     shown = sys.stderr.isatty() and not chosen.quick
 
     def progress(share):
-        print(f"\rfilter {'#' * round(30 * share):30} {share:4.0%}", end="", file=sys.stderr, flush=True)
+        print(
+            f"\rfilter {'#' * round(30 * share):30} {share:4.0%}",
+            end="",
+            file=sys.stderr,
+            flush=True,
+        )
 
     try:
         source = chosen.files if len(chosen.files) > 1 else chosen.files[0]

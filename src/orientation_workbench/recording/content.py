@@ -1,4 +1,6 @@
-"""What the columns of a recording are: by how they behave, with their headings heard as witnesses only."""
+"""What the columns of a recording are: by how they behave, with their headings heard as witnesses
+only.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ HEADINGS = {
     "magnetometer": r"mag(?!nitude)|field|compass|^[mbh]$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
     "accelerometer": r"acc|force|^a\b|^fib|^f$",
-    "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis [pid]",
+    "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis "
+    r"[pid]",
 }
 #: What a unit says of a sensor, where the heading says nothing else.
 UNITS = {
@@ -35,7 +38,8 @@ COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tic
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
-#: Lengths of what points one way only, in the units that are in use: standard gravity, and the Earth's field.
+#: Lengths of what points one way only, in the units that are in use: standard gravity, and the
+#: Earth's field.
 GRAVITY = {"g": 1.0, "m/s²": 9.80665, "mg": 1000.0, "cm/s²": 980.665}
 FIELD = {
     "µT": (20, 70),
@@ -118,7 +122,9 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     unused: list[str] = []
     remarks: list[str] = []
     for table in tables:
-        remarks += [f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks]
+        remarks += [
+            f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks
+        ]
         column, time, clock, counted = _time(table)
         clocks.append((clock, counted))
         found, left = _groups(table, column, time)
@@ -126,20 +132,29 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
         unused += left
     chosen = _roles(groups)
     for group in groups:
-        if group.called in ("gyroscope", "accelerometer", "magnetometer") and not np.ptp(group.values, axis=0).any():
+        if (
+            group.called in ("gyroscope", "accelerometer", "magnetometer")
+            and not np.ptp(group.values, axis=0).any()
+        ):
             remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
     remarks += _with_gravity(chosen, groups)
     # Three columns without a name can look like anything: a table of stars like the Earth's field.
-    alone = set(chosen) in ({"gyroscope"}, {"magnetometer"}) and not any(group.called for group in chosen.values())
+    alone = set(chosen) in ({"gyroscope"}, {"magnetometer"}) and not any(
+        group.called for group in chosen.values()
+    )
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
         raise RecordingError(
-            "no instrument is in this file: three columns that belong together and behave like a gyroscope, an "
-            f"accelerometer or a magnetometer were sought among {', '.join(c for t in tables for c in t.columns)}"[:400]
+            "no instrument is in this file: three columns that belong together and behave like a "
+            "gyroscope, an "
+            "accelerometer or a magnetometer were sought among "
+            f"{', '.join(c for t in tables for c in t.columns)}"[:400]
         )
     used = {tuple(group.names) for group in chosen.values()}
     unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
-    first = next(kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds)
+    first = next(
+        kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds
+    )
     clock, counted, said = next(
         (*clock, re.search(RATE, table.head, re.IGNORECASE))
         for table, clock in zip(tables, clocks, strict=True)
@@ -151,7 +166,9 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     if counted:  # the samples of the first instrument are the clock, one by one
         ticks = first.time
         kinds = {
-            kind: group._replace(time=np.interp(group.time, ticks, np.arange(len(ticks))) / (rate or 1.0))
+            kind: group._replace(
+                time=np.interp(group.time, ticks, np.arange(len(ticks))) / (rate or 1.0)
+            )
             for kind, group in kinds.items()
         }
     start = min(group.time[0] for group in kinds.values())
@@ -166,10 +183,18 @@ def _unit(heading: str) -> str:
 
 
 def _time(table: Table) -> tuple[int | None, Array, str, bool]:
-    """The column of the time, the time in seconds, in what words, and whether it is only counted."""
+    """The column of the time, the time in seconds, in what words, and whether it is only
+    counted.
+    """
     candidates: list[tuple[float, int]] = []
-    for k, column in enumerate(table.columns):  # whole seconds, and beside them what is left of each
-        rest = [c for c, other in enumerate(table.columns) if re.search(r"n(?:ano)?secs?$", other.lower()) and c != k]
+    for k, column in enumerate(
+        table.columns
+    ):  # whole seconds, and beside them what is left of each
+        rest = [
+            c
+            for c, other in enumerate(table.columns)
+            if re.search(r"n(?:ano)?secs?$", other.lower()) and c != k
+        ]
         if (
             rest
             and re.search(r"(?<!n)(?<!nano)secs?$", column.lower())
@@ -192,7 +217,12 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
                 candidates.append((float(called + precise + 0.5 * even - counts - 0.01 * k), k))
     for k in range(len(table.columns) - 1) if not candidates else ():  # the same without headings
         whole, part = table.values[:, k], table.values[:, k + 1]
-        if np.ptp(whole) > 0 and (whole == whole.round()).all() and 0 <= part.min() and 1e8 < part.max() < 1e9:
+        if (
+            np.ptp(whole) > 0
+            and (whole == whole.round()).all()
+            and 0 <= part.min()
+            and 1e8 < part.max() < 1e9
+        ):
             time = whole - whole[0] + 1e-9 * part
             if np.mean(np.diff(time) > 0) > 0.97:
                 return k, time, f"{table.columns[k]} with {table.columns[k + 1]}, in s", False
@@ -212,7 +242,10 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     by_size = next((scale for scale in (1.0, 1e-3, 1e-6, 1e-9) if 2e-4 < step * scale <= 0.5), None)
     scale = named if named and 1e-5 < step * named < 5 else _by_rate(table, step) or by_size
     if scale is None:
-        raise RecordingError(f"{table.name}: column {column} looks like a time, but its steps of {step:g} fit no unit")
+        raise RecordingError(
+            f"{table.name}: column {column} looks like a time, but its steps of "
+            f"{step:g} fit no unit"
+        )
     words = f"{column}, in {next((unit for unit, size in UNITS_OF_TIME.items() if size == scale), f'{scale:g} s')}"
     if named and named != scale:
         words += f" (its heading says {_unit(column)})"
@@ -220,7 +253,9 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
 
 
 def _by_rate(table: Table, step: float) -> float | None:
-    """The unit of a clock, some power of ten of a second, that gives the rate in the lines above the numbers."""
+    """The unit of a clock, some power of ten of a second, that gives the rate in the lines above
+    the numbers.
+    """
     said = re.search(RATE, table.head, re.IGNORECASE)
     if not said or not float(said[1]):
         return None
@@ -232,7 +267,9 @@ def _parts(heading: str) -> tuple[str, str]:
     """A heading without its unit, parted into what it is about and the letter of its axis."""
     heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
-    text = re.sub(r"(?<=[a-z])(?=\[)|[\[\]|:. _/-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)).strip()
+    text = re.sub(
+        r"(?<=[a-z])(?=\[)|[\[\]|:. _/-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
+    ).strip()
     words = [word for word in text.split() if word not in ("cal", "uncal", "raw")] or text.split()
     if not words:
         return "", ""
@@ -261,7 +298,10 @@ def _called_by_unit(heading: str) -> str:
 def _named(stem: str, table: Table, column: int) -> str:
     """What the heading of an axis, its unit or the name of its table say that it is."""
     unit, name = _called_by_unit(table.columns[column]), _called(table.name.lower())
-    if _unit(table.columns[column]) in ("g", "mg"):  # gauss or gravity: the name of the table knows better
+    if _unit(table.columns[column]) in (
+        "g",
+        "mg",
+    ):  # gauss or gravity: the name of the table knows better
         unit, name = name, unit
     # An alpha with axes is an acceleration: the angle has none.
     return ("" if stem == "alpha" else _called(stem)) or unit or name
@@ -272,21 +312,36 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
     groups: list[Group] = []
     taken = {time_column}
     parts = [_parts(column) for column in table.columns]
-    usable = [k for k in range(len(table.columns)) if k != time_column and np.isfinite(table.values[:, k]).sum() > 8]
+    usable = [
+        k
+        for k in range(len(table.columns))
+        if k != time_column and np.isfinite(table.values[:, k]).sum() > 8
+    ]
 
     def add(kind: str, columns: Sequence[int], called: str) -> None:
         rows = np.isfinite(table.values[:, columns]).all(axis=1)
         if rows.sum() > 8:
             names = [table.columns[k] for k in columns]
             groups.append(
-                Group(kind, called, names, time[rows], table.values[np.ix_(np.flatnonzero(rows), np.array(columns))])
+                Group(
+                    kind,
+                    called,
+                    names,
+                    time[rows],
+                    table.values[np.ix_(np.flatnonzero(rows), np.array(columns))],
+                )
             )
             taken.update(columns)
 
     rates = [k for k in usable if re.search("roll|pitch|yaw", (name := table.columns[k].lower()))
              and re.search(r"rate|gyr|omega|veloc|rad/s|deg/s|°/s|dps", name)]  # fmt: skip
-    around = [[k for k in rates if word in table.columns[k].lower()] for word in ("roll", "pitch", "yaw")]
-    letters = [[k for k in usable if re.fullmatch(rf"{one}\W*(?:[\[(].*)?", table.columns[k].lower())] for one in "pqr"]
+    around = [
+        [k for k in rates if word in table.columns[k].lower()] for word in ("roll", "pitch", "yaw")
+    ]
+    letters = [
+        [k for k in usable if re.fullmatch(rf"{one}\W*(?:[\[(].*)?", table.columns[k].lower())]
+        for one in "pqr"
+    ]
     for three in (around, letters):
         if all(three):
             add("vector", [places[0] for places in three], "gyroscope")
@@ -327,19 +382,30 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
                 runs.append([k])
     for run in runs:
         spare = len(run) % 3
-        sizes = np.log(np.nanstd(table.values[:, run], axis=0) + np.abs(np.nanmedian(table.values[:, run], axis=0)))
+        sizes = np.log(
+            np.nanstd(table.values[:, run], axis=0)
+            + np.abs(np.nanmedian(table.values[:, run], axis=0))
+        )
 
         def unlike(first: int) -> float:
-            return sum(float(np.std(sizes[k : k + 3])) for k in range(first, len(run) - spare + first, 3))
+            return sum(
+                float(np.std(sizes[k : k + 3])) for k in range(first, len(run) - spare + first, 3)
+            )
 
         first = min(range(spare + 1), key=unlike)
         for k in range(first, len(run) - spare + first, 3):
-            add("vector", run[k : k + 3], _called(" ".join(table.columns[c].lower() for c in run[k : k + 3])))
+            add(
+                "vector",
+                run[k : k + 3],
+                _called(" ".join(table.columns[c].lower() for c in run[k : k + 3])),
+            )
     return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
 
 
 def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
-    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings; None where there is doubt."""
+    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings; None where
+    there is doubt.
+    """
     text = [name.lower() for name in names]
     for words in (
         ("yaw", "pitch", "roll"),
@@ -360,23 +426,41 @@ def _is_unit(values: Array) -> bool:
     values = values[np.isfinite(values).all(axis=1)]
     squares = (values**2).sum(axis=1)
     off = np.median(np.abs(squares - 1))
-    if any(np.median(np.abs((part**2).sum(axis=1) - 1)) < 0.5 * off for part in (values[:, 1:], values[:, :-1])):
+    if any(
+        np.median(np.abs((part**2).sum(axis=1) - 1)) < 0.5 * off
+        for part in (values[:, 1:], values[:, :-1])
+    ):
         return False  # three of the four are a direction, and the other belongs elsewhere
-    return len(values) > 8 and abs(np.median(squares) - 1) < 0.02 and np.mean(np.abs(squares - 1) < 0.05) > 0.98
+    return (
+        len(values) > 8
+        and abs(np.median(squares) - 1) < 0.02
+        and np.mean(np.abs(squares - 1) < 0.05) > 0.98
+    )
 
 
 def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
-    """Name what no heading names and its length alone does not tell: gravity by itself, and what turns it."""
+    """Name what no heading names and its length alone does not tell: gravity by itself, and what
+    turns it.
+    """
     unnamed = [k for k, group in enumerate(groups) if group.kind == "vector" and not group.called]
     alone = [k for k in unnamed if _has_length_one(groups[k].values)]
     changing = [
-        k for k in unnamed if not points_one_way(groups[k].values) and np.ptp(groups[k].values, axis=0).max() > 0
+        k
+        for k in unnamed
+        if not points_one_way(groups[k].values) and np.ptp(groups[k].values, axis=0).max() > 0
     ]
     steady = alone or [k for k in unnamed if points_one_way(groups[k].values)]
-    if len(changing) < 2 or not steady or len(alone) > 2 or any(group.called == "gyroscope" for group in groups):
+    if (
+        len(changing) < 2
+        or not steady
+        or len(alone) > 2
+        or any(group.called == "gyroscope" for group in groups)
+    ):
         return groups
     groups, fixed, units = list(groups), groups[steady[0]].values, np.array([1.0, np.pi / 180])
-    fits = {k: fit_axes(groups[k].time, groups[k].values, fixed, units, longest=20.0) for k in changing}
+    fits = {
+        k: fit_axes(groups[k].time, groups[k].values, fixed, units, longest=20.0) for k in changing
+    }
     turns = min(fits, key=lambda k: fits[k].shares.min())
     groups[turns] = groups[turns]._replace(called="gyroscope")
     if alone and alone[0] + 1 in changing:
@@ -390,19 +474,29 @@ def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
 
 
 def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
-    """Where acceleration and gravity stand in columns of their own, their sum is what an accelerometer feels."""
+    """Where acceleration and gravity stand in columns of their own, their sum is what an
+    accelerometer feels.
+    """
     felt = chosen.get("accelerometer")
-    apart = [group for group in groups if group.called == "gravity" and points_one_way(group.values)]
+    apart = [
+        group for group in groups if group.called == "gravity" and points_one_way(group.values)
+    ]
     if felt is not None and points_one_way(felt.values) or not apart:
         return []
     if felt is None:
-        moved = [group for group in groups if group.called in ("linear acceleration", "accelerometer")]
+        moved = [
+            group for group in groups if group.called in ("linear acceleration", "accelerometer")
+        ]
         if not moved:
             return []
         felt = moved[0]
-    gravity = np.stack([np.interp(felt.time, apart[0].time, column) for column in apart[0].values.T], axis=-1)
+    gravity = np.stack(
+        [np.interp(felt.time, apart[0].time, column) for column in apart[0].values.T], axis=-1
+    )
     chosen["accelerometer"] = felt._replace(values=felt.values + gravity, called="accelerometer")
-    return [f"{', '.join(felt.names)} holds no gravity; {', '.join(apart[0].names)} was added to it"]
+    return [
+        f"{', '.join(felt.names)} holds no gravity; {', '.join(apart[0].names)} was added to it"
+    ]
 
 
 def _has_length_one(values: Array) -> bool:
@@ -411,7 +505,9 @@ def _has_length_one(values: Array) -> bool:
 
 
 def points_one_way(values: Array) -> bool:
-    """Whether vectors have nearly one length, as gravity and the Earth's field have, and a gyroscope's have not."""
+    """Whether vectors have nearly one length, as gravity and the Earth's field have, and a
+    gyroscope's have not.
+    """
     low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
     return bool(middle > 0 and low / middle > 0.6 and high / middle < 2.2)
 
@@ -423,11 +519,17 @@ def _roughness(values: Array) -> float:
 
 
 def _roles(groups: Sequence[Group]) -> dict[str, Group]:
-    """The group that plays each part: by behaviour where that decides, by its heading where it does not."""
+    """The group that plays each part: by behaviour where that decides, by its heading where it does
+    not.
+    """
     chosen: dict[str, Group] = {}
     quaternions = [group for group in groups if group.kind == "quaternion"]
     angles = [group for group in groups if group.kind == "angles"]
-    vectors = [group for group in groups if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0]
+    vectors = [
+        group
+        for group in groups
+        if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0
+    ]
     # What some call linear holds gravity nevertheless: its length tells.
     vectors = [
         group._replace(called="accelerometer")
@@ -446,7 +548,9 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
             vectors.remove(group)
     steady = [group for group in vectors if points_one_way(group.values)]
     changing = [group for group in vectors if not any(group is one for one in steady)]
-    if not changing and len(steady) > 1:  # of an instrument that does nothing but lie, only the headings can tell
+    if (
+        not changing and len(steady) > 1
+    ):  # of an instrument that does nothing but lie, only the headings can tell
         changing = [group for group in steady if group.called == "gyroscope"][:1]
         steady = [group for group in steady if not any(group is one for one in changing)]
 
@@ -464,16 +568,23 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
         return 2 * named + (alone and bool(off < 0.06))
 
     if steady:
-        best = max(steady, key=lambda group: (as_gravity(group), not group.called and _roughness(group.values)))
+        best = max(
+            steady,
+            key=lambda group: (as_gravity(group), not group.called and _roughness(group.values)),
+        )
         others = [group for group in steady if group is not best]
-        like_a_field = best.called == "magnetometer" or any(low < length(best) < high for low, high in FIELD.values())
+        like_a_field = best.called == "magnetometer" or any(
+            low < length(best) < high for low, high in FIELD.values()
+        )
         if as_gravity(best) > 0 or len(steady) > 1 or not like_a_field:
             chosen["accelerometer"] = best
         else:
             chosen["magnetometer"] = best
         field = [group for group in others if group.called in ("magnetometer", "")]
         if field:
-            chosen["magnetometer"] = max(field, key=lambda group: (group.called == "magnetometer", -uneven(group)))
+            chosen["magnetometer"] = max(
+                field, key=lambda group: (group.called == "magnetometer", -uneven(group))
+            )
     if "accelerometer" not in chosen:
         shaken = [group for group in changing if group.called == "accelerometer"]
         if shaken:
@@ -485,7 +596,9 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
             chosen["magnetometer"] = disturbed[0]
             changing = [group for group in changing if group is not disturbed[0]]
     if changing:
-        chosen["gyroscope"] = max(changing, key=lambda group: (group.called == "gyroscope", group.called == ""))
+        chosen["gyroscope"] = max(
+            changing, key=lambda group: (group.called == "gyroscope", group.called == "")
+        )
     if quaternions:
         chosen["quaternion"] = quaternions[0]
     if angles:
@@ -494,7 +607,9 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
 
 
 def unit_of_gravity(values: Array, rate: float = 0.0) -> tuple[str, float, float]:
-    """The unit in which vectors have gravity's length, how many of it make one, and by how much it is off."""
+    """The unit in which vectors have gravity's length, how many of it make one, and by how much it
+    is off.
+    """
     middle = float(np.median(np.linalg.norm(values, axis=1)))
     units = GRAVITY | ({"m/s a sample": GRAVITY["m/s²"] / rate} if rate > 20 else {})
     unit = min(units, key=lambda one: abs(np.log(middle / units[one])))

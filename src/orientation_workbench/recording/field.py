@@ -1,4 +1,6 @@
-"""A magnetometer's offset, shape and axes: the field keeps its length, and stays while the gyroscope says it turns."""
+"""A magnetometer's offset, shape and axes: the field keeps its length, and stays while the
+gyroscope says it turns.
+"""
 
 from typing import NamedTuple
 
@@ -8,12 +10,14 @@ from .motion import pieces, steps_of, turned
 
 
 class FieldFit(NamedTuple):
-    """What makes a magnetometer see one field, however it is turned: ``shape @ (measured - offset)``.
+    """What makes a magnetometer see one field, however it is turned: ``shape @ (measured -
+    offset)``.
 
     Attributes
     ----------
     shape : array of shape ``(3, 3)``
-        Of determinant 1; the axes of the gyroscope from those of the magnetometer, and what soft iron did.
+        Of determinant 1; the axes of the gyroscope from those of the magnetometer, and what soft
+        iron did.
     offset : array of shape ``(3,)``
         Of hard iron, in the magnetometer's unit.
     strength : float
@@ -48,7 +52,8 @@ class EllipsoidFit(NamedTuple):
     strength : float
         Length of the field that is left.
     uncertainty : float
-        Standard deviation of a direction that is computed with it, radians, where it is known worst.
+        Standard deviation of a direction that is computed with it, radians, where it is known
+        worst.
     """
 
     shape: np.ndarray
@@ -60,8 +65,8 @@ class EllipsoidFit(NamedTuple):
 def fit_ellipsoid(values, most=0.1):
     """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
 
-    First the ten coefficients of the quadric nearest to the values (in the book :eq:`equation-ellipsoid`), then the
-    lengths themselves by least squares.
+    First the ten coefficients of the quadric nearest to the values (in the book
+    :eq:`equation-ellipsoid`), then the lengths themselves by least squares.
 
     Parameters
     ----------
@@ -83,11 +88,25 @@ def fit_ellipsoid(values, most=0.1):
     """
     if len(values) < 12:
         return None
-    middle, scale = np.median(values, axis=0), np.linalg.norm(values - np.median(values, axis=0), axis=1).max()
+    middle, scale = (
+        np.median(values, axis=0),
+        np.linalg.norm(values - np.median(values, axis=0), axis=1).max(),
+    )
     if scale == 0:
         return None
     x, y, z = scaled = (values - middle).T / scale
-    columns = [x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y, 2 * x, 2 * y, 2 * z, np.ones_like(x)]
+    columns = [
+        x * x,
+        y * y,
+        z * z,
+        2 * y * z,
+        2 * x * z,
+        2 * x * y,
+        2 * x,
+        2 * y,
+        2 * z,
+        np.ones_like(x),
+    ]
     v = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)[2][-1]
     quadric, linear = np.array([[v[0], v[5], v[4]], [v[5], v[1], v[3]], [v[4], v[3], v[2]]]), v[6:9]
     sizes, axes = np.linalg.eigh(quadric)
@@ -116,7 +135,9 @@ def fit_ellipsoid(values, most=0.1):
         if np.abs(change).max() < 1e-10:
             break
     left = 1 - lengths
-    alike = 0.0 if left.std() == 0 else float(np.clip(np.corrcoef(left[1:], left[:-1])[0, 1], 0, 0.99))
+    alike = (
+        0.0 if left.std() == 0 else float(np.clip(np.corrcoef(left[1:], left[:-1])[0, 1], 0, 0.99))
+    )
     # What neighbours say together counts once.
     noise = left.std() * np.sqrt(len(left) / (len(left) - 9) * (1 + alike) / (1 - alike))
     covariance = noise**2 * np.linalg.inv(slopes.T @ slopes)
@@ -147,10 +168,9 @@ def fit_field(time, rates, field, seconds=0.25):
     FieldFit or None
         None where the turns do not decide, or nothing is better for the correction.
 
-    Notes
-    -----
-    Carried back by the gyroscope to the beginning of a run of some seconds, the corrected field is one vector:
-    ``D.T @ (A m - c) = f``. That is linear in ``A``, ``c`` and the field ``f`` of each run.
+    Notes ----- Carried back by the gyroscope to the beginning of a run of some seconds, the
+    corrected field is one vector: ``D.T @ (A m - c) = f``. That is linear in ``A``, ``c`` and the
+    field ``f`` of each run.
     """
     parts, size = pieces(time, rates, longest=80.0, seconds=seconds)
     outer, plain, runs = [], [], []
@@ -193,7 +213,9 @@ def fit_field(time, rates, field, seconds=0.25):
         return None
     shape = shape / size_of_shape
     offset = -onto @ solution / size_of_shape
-    if np.linalg.det(shape) < 0:  # a field and its opposite fit alike: taken is what needs no mirror
+    if (
+        np.linalg.det(shape) < 0
+    ):  # a field and its opposite fit alike: taken is what needs no mirror
         shape, offset = -shape, -offset
     left_side, stretches, right_side = np.linalg.svd(shape)
     axes = left_side @ right_side
@@ -202,11 +224,27 @@ def fit_field(time, rates, field, seconds=0.25):
     carried = np.einsum("bijk,jk->bi", means, shape) - np.concatenate(plain) @ offset
     fields = np.array([carried[runs[::3] == run].mean(axis=0) for run in np.unique(runs)]) * scale
     strength = float(np.median(np.linalg.norm(fields, axis=1)))
-    # The way in which A is known least, and the noise of a block, give how far a direction can be off.
+    # The way in which A is known least, and the noise of a block, give how far a direction can be
+    # off.
     spread_a = noise / max(sizes[-2], 1e-12) * np.sqrt(3)
     spread_c = noise / max(np.linalg.svd(both[:, 9:], compute_uv=False)[-1], 1e-12)
-    uncertainty = (spread_a + spread_c * scale / max(strength, 1e-12) / size_of_shape) if strength else np.inf
-    lengths, before = (np.linalg.norm(values, axis=1) for values in ((field - centre) @ shape.T, field))
-    if stretches[0] > 3 * stretches[-1] or lengths.std() / lengths.mean() > before.std() / before.mean() + 0.02:
+    uncertainty = (
+        (spread_a + spread_c * scale / max(strength, 1e-12) / size_of_shape) if strength else np.inf
+    )
+    lengths, before = (
+        np.linalg.norm(values, axis=1) for values in ((field - centre) @ shape.T, field)
+    )
+    if (
+        stretches[0] > 3 * stretches[-1]
+        or lengths.std() / lengths.mean() > before.std() / before.mean() + 0.02
+    ):
         return None  # a correction that makes things worse is none
-    return FieldFit(shape, centre, strength, float(uncertainty), fields, axes, float(stretches[0] / stretches[-1]))
+    return FieldFit(
+        shape,
+        centre,
+        strength,
+        float(uncertainty),
+        fields,
+        axes,
+        float(stretches[0] / stretches[-1]),
+    )

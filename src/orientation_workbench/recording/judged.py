@@ -1,4 +1,6 @@
-"""A filter judged without knowing the truth: by what it expected to see, and by itself run backwards."""
+"""A filter judged without knowing the truth: by what it expected to see, and by itself run
+backwards.
+"""
 
 from typing import NamedTuple
 
@@ -12,7 +14,8 @@ UP = np.array([0.0, 0, 1])
 
 
 def chi_square_bounds(freedom, share=0.95):
-    """Bounds between which the mean of ``freedom`` squares of standard normal numbers lies (Wilson and Hilferty).
+    """Bounds between which the mean of ``freedom`` squares of standard normal numbers lies (Wilson
+    and Hilferty).
 
     >>> chi_square_bounds(100).round(3).tolist()
     [0.742, 1.296]
@@ -90,7 +93,8 @@ class Judgement(NamedTuple):
 
 
 def too_sure(judgements):
-    """How many times as large as claimed the doubt is that the data give, and the innovations' squares; above 5 is red.
+    """How many times as large as claimed the doubt is that the data give, and the innovations'
+    squares; above 5 is red.
 
     Parameters
     ----------
@@ -123,7 +127,8 @@ def _start(forces, field):
 
 
 def in_blocks(time, rates, vectors, seconds=0.05):
-    """Fewer and longer steps: each of the same turn, its vectors carried to its end by the gyroscope and averaged.
+    """Fewer and longer steps: each of the same turn, its vectors carried to its end by the
+    gyroscope and averaged.
 
     Parameters
     ----------
@@ -145,7 +150,8 @@ def in_blocks(time, rates, vectors, seconds=0.05):
     at_end = dcms[ends]
     turns = to_rotation_vectors(at_end[1:] @ at_end[:-1].swapaxes(-1, -2))
     means = turns / np.diff(time[ends])[:, None]
-    # A step is turned by the mean of the rates at its two ends: here by the mean over it, which is put at its end.
+    # A step is turned by the mean of the rates at its two ends: here by the mean over it, which is
+    # put at its end.
     means = np.concatenate([means[:1], means])
     found = []
     for values in vectors:
@@ -155,8 +161,14 @@ def in_blocks(time, rates, vectors, seconds=0.05):
 
 
 def _earth(forces, field):
-    """The field along a ground with x to magnetic north and z up, by its usual dip against gravity."""
-    sines = (forces * field).sum(axis=1) / np.linalg.norm(forces, axis=1) / np.linalg.norm(field, axis=1)
+    """The field along a ground with x to magnetic north and z up, by its usual dip against
+    gravity.
+    """
+    sines = (
+        (forces * field).sum(axis=1)
+        / np.linalg.norm(forces, axis=1)
+        / np.linalg.norm(field, axis=1)
+    )
     sine = float(np.clip(np.median(sines), -0.999, 0.999))
     return np.array([np.sqrt(1 - sine**2), 0, sine])
 
@@ -186,7 +198,8 @@ class FilterInput(NamedTuple):
 
 
 def filter_inputs(time, rates, forces, field, lying, parts=None):
-    """Make a recording ready for a filter: what its instruments are worth, and how far each force is to be believed.
+    """Make a recording ready for a filter: what its instruments are worth, and how far each force
+    is to be believed.
 
     Parameters
     ----------
@@ -213,7 +226,9 @@ def filter_inputs(time, rates, forces, field, lying, parts=None):
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
         by_field = max(spread(field), 1e-3) if field is not None else ASSUMED.field
-        noise = Noise(spread(rates) * np.sqrt(step), ASSUMED.bias, max(spread(forces), 1e-3), by_field)
+        noise = Noise(
+            spread(rates) * np.sqrt(step), ASSUMED.bias, max(spread(forces), 1e-3), by_field
+        )
     # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
     push = np.linalg.norm(forces, axis=1) - 1
     moving = np.ones(len(push), dtype=bool)
@@ -223,7 +238,9 @@ def filter_inputs(time, rates, forces, field, lying, parts=None):
     doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
     if field is not None:  # iron shows in the field's length, and lasts as well
         uneven = np.linalg.norm(field, axis=1) - 1
-        noise = noise._replace(field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven)))
+        noise = noise._replace(
+            field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven))
+        )
     found = []
     for first, last in parts or [(0, len(time))]:
         part = slice(first, last)
@@ -245,7 +262,9 @@ def filter_inputs(time, rates, forces, field, lying, parts=None):
 
 
 def _lasting(values):
-    """By how much less the samples of something that lasts tell than as many that know nothing of each other."""
+    """By how much less the samples of something that lasts tell than as many that know nothing of
+    each other.
+    """
     if values.std() == 0:
         return 1.0
     alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
@@ -258,8 +277,8 @@ def judge(inputs, progress=None):
     Parameters
     ----------
     inputs : list of FilterInput
-        All with the field, or all without. Those as long as the first are run side by side, which takes hardly longer
-        than one alone.
+        All with the field, or all without. Those as long as the first are run side by side, which
+        takes hardly longer than one alone.
     progress : callable, optional
         Called with the share that is done.
 
@@ -271,7 +290,9 @@ def judge(inputs, progress=None):
     if any(len(one.time) != count for one in inputs):
         return [found for one in inputs for found in judge([one], progress)]
     runs = 2 + 2 * magnetic  # forwards, backwards; without the field, without the force
-    time, rates, forces = (np.array([getattr(one, name) for one in inputs]) for name in ("time", "rates", "forces"))
+    time, rates, forces = (
+        np.array([getattr(one, name) for one in inputs]) for name in ("time", "rates", "forces")
+    )
     field = np.array([one.field for one in inputs]) if magnetic else None
     noise = Noise(*np.array([one.noise for one in inputs]).T[..., None])
     steps = np.diff(time)
@@ -279,16 +300,24 @@ def judge(inputs, progress=None):
     ends = slice(None, lead), slice(-lead, None)
     starts = np.array(
         [
-            [_start(forces[k, end], field[k, end] if magnetic else None) for end in (ends * 2)[:runs]]
+            [
+                _start(forces[k, end], field[k, end] if magnetic else None)
+                for end in (ends * 2)[:runs]
+            ]
             for k in range(len(inputs))
         ]
     )
     starts[:, 2:] = starts[:, :1]
     doubt = np.hypot(noise.force, [one.doubt for one in inputs])
-    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by more of heading.
+    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by
+    # more of heading.
     outset = 0.03 + noise.field * magnetic + np.minimum(0.4, 8 * doubt[:, [0, -1, 0, 0][:runs]])
-    variances = np.stack([outset**2] * 3 + [np.full_like(outset, np.radians(0.5) ** 2)] * 3, axis=-1)
-    estimate = MultiplicativeKalmanFilter(starts, variances[..., None] * np.eye(6), noise.gyroscope, noise.bias)
+    variances = np.stack(
+        [outset**2] * 3 + [np.full_like(outset, np.radians(0.5) ** 2)] * 3, axis=-1
+    )
+    estimate = MultiplicativeKalmanFilter(
+        starts, variances[..., None] * np.eye(6), noise.gyroscope, noise.bias
+    )
     forwards, backwards = np.arange(count), np.arange(count)[::-1]
     order = np.stack([forwards, backwards, forwards, forwards][:runs])
     sign = np.array([1.0, -1, 1, 1])[:runs, None]
@@ -316,9 +345,18 @@ def judge(inputs, progress=None):
         covariances[:, np.arange(runs), at] = estimate.covariance[..., :3, :3]
         if progress and k % 100 == 0:
             progress(k / count)
-    told = {name: [np.array(part)[lead:] for part in zip(*each, strict=True)] for name, each in said.items() if each}
+    told = {
+        name: [np.array(part)[lead:] for part in zip(*each, strict=True)]
+        for name, each in said.items()
+        if each
+    }
     return [
-        _compared(one, dcms[k], covariances[k], {name: [part[:, k] for part in each] for name, each in told.items()})
+        _compared(
+            one,
+            dcms[k],
+            covariances[k],
+            {name: [part[:, k] for part in each] for name, each in told.items()},
+        )
         for k, one in enumerate(inputs)
     ]
 

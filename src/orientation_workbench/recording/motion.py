@@ -1,4 +1,6 @@
-"""What a gyroscope, and vectors that stay where they are while the instrument turns, say of each other."""
+"""What a gyroscope, and vectors that stay where they are while the instrument turns, say of each
+other.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ from orientation import dcm_from_rotation_vector
 if TYPE_CHECKING:
     from .table import Array
 
-#: The 48 matrices that take axes for each other and change signs; the proper ones, which turn, first.
+#: The 48 matrices that take axes for each other and change signs; the proper ones, which turn,
+#: first.
 ASSIGNMENTS = np.array(
     [
         np.diag(signs) @ np.eye(3)[list(order)]
@@ -24,7 +27,9 @@ ASSIGNMENTS = np.array(
 ASSIGNMENTS = ASSIGNMENTS[np.argsort(-np.linalg.det(ASSIGNMENTS), kind="stable")].round()
 PROPER = ASSIGNMENTS[:24]
 #: Where the opposite of each proper one stands.
-OPPOSITE = np.array([24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER])
+OPPOSITE = np.array(
+    [24 + int(np.abs(ASSIGNMENTS[24:] + one).sum(axis=(1, 2)).argmin()) for one in PROPER]
+)
 
 
 def written(assignment: Array, letters: str = "xyz") -> str:
@@ -34,7 +39,8 @@ def written(assignment: Array, letters: str = "xyz") -> str:
     'y, -x, z'
     """
     return ", ".join(
-        ("-" if row.sum() < 0 else "") + letters[int(np.abs(row).argmax())] for row in np.asarray(assignment)
+        ("-" if row.sum() < 0 else "") + letters[int(np.abs(row).argmax())]
+        for row in np.asarray(assignment)
     )
 
 
@@ -55,9 +61,13 @@ def turned(rates: Array, steps: Array) -> Array:
     """
     vectors = (rates[..., 1:, :] + rates[..., :-1, :]) / 2 * steps[1:, None]
     count = rates.shape[-2]
-    size = int(np.ceil(np.sqrt(count)))  # runs of so many: their products side by side, then one after another
+    size = int(
+        np.ceil(np.sqrt(count))
+    )  # runs of so many: their products side by side, then one after another
     padding = [(0, 0)] * (rates.ndim - 2) + [(1, size * size - count), (0, 0)]
-    dcms = dcm_from_rotation_vector(np.pad(vectors, padding)).reshape(*rates.shape[:-2], size, size, 3, 3)
+    dcms = dcm_from_rotation_vector(np.pad(vectors, padding)).reshape(
+        *rates.shape[:-2], size, size, 3, 3
+    )
     for k in range(1, size):
         dcms[..., k, :, :] = dcms[..., k, :, :] @ dcms[..., k - 1, :, :]
     for k in range(1, size):
@@ -68,7 +78,11 @@ def turned(rates: Array, steps: Array) -> Array:
 def to_rotation_vectors(dcms: Array) -> Array:
     """Rotation vectors of many direction cosine matrices, for turns of less than half a turn."""
     axis = np.stack(
-        [dcms[..., 1, 2] - dcms[..., 2, 1], dcms[..., 2, 0] - dcms[..., 0, 2], dcms[..., 0, 1] - dcms[..., 1, 0]],
+        [
+            dcms[..., 1, 2] - dcms[..., 2, 1],
+            dcms[..., 2, 0] - dcms[..., 0, 2],
+            dcms[..., 0, 1] - dcms[..., 1, 0],
+        ],
         axis=-1,
     )
     sine = np.linalg.norm(axis, axis=-1) / 2
@@ -81,7 +95,7 @@ def steps_of(time: Array) -> Array:
     return np.diff(time, prepend=time[0])
 
 
-# --- stillness --------------------------------------------------------------------------------------
+# --- stillness ------------------------------------------------------------------------------------
 
 
 class Stretch(NamedTuple):
@@ -96,7 +110,8 @@ class Stretch(NamedTuple):
     deviation : float
         Of the angular velocity, root mean square over the axes, radians per second.
     likeness : float
-        Root mean square of the correlations of neighbours, one to five samples apart, less what chance gives.
+        Root mean square of the correlations of neighbours, one to five samples apart, less what
+        chance gives.
     """
 
     first: int
@@ -106,7 +121,8 @@ class Stretch(NamedTuple):
     likeness: float
 
 
-#: Radians per second: a hand trembles more than that, and an instrument that is held still by it moves less than that.
+#: Radians per second: a hand trembles more than that, and an instrument that is held still by it
+#: moves less than that.
 TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
 
 
@@ -117,7 +133,9 @@ def likeness(rates: Array, lags: int = 5) -> float:
     power = (rates**2).sum(axis=0)
     if (power == 0).any():
         return 0.0
-    squares = [((rates[lag:] * rates[:-lag]).sum(axis=0) / power) ** 2 for lag in range(1, lags + 1)]
+    squares = [
+        ((rates[lag:] * rates[:-lag]).sum(axis=0) / power) ** 2 for lag in range(1, lags + 1)
+    ]
     return float(np.sqrt(max(0.0, np.mean(squares) - 1 / count)))
 
 
@@ -145,7 +163,9 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     if not calm.any():
         return []
     usual = np.median(blocks.mean(axis=1)[calm], axis=0)
-    calm &= np.linalg.norm(blocks.mean(axis=1) - usual, axis=1) < np.maximum(3 * spread, np.radians(1.0))
+    calm &= np.linalg.norm(blocks.mean(axis=1) - usual, axis=1) < np.maximum(
+        3 * spread, np.radians(1.0)
+    )
     found, first = [], None
     for k in range(count + 1):
         inside = k < count and calm[k]
@@ -162,11 +182,19 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         part = rates[first * size : last * size]
         deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
         alike = likeness(part)
-        result.append(Stretch(first * size, last * size, bool(alike < 0.2 or deviation < TREMBLE), deviation, alike))
+        result.append(
+            Stretch(
+                first * size,
+                last * size,
+                bool(alike < 0.2 or deviation < TREMBLE),
+                deviation,
+                alike,
+            )
+        )
     return result
 
 
-# --- axes, signs, unit and scale of a gyroscope -----------------------------------------------------
+# --- axes, signs, unit and scale of a gyroscope ---------------------------------------------------
 
 
 #: Matrices that are held at one time, some 100 MB with all that is made of them.
@@ -179,7 +207,8 @@ class Fit(NamedTuple):
     Attributes
     ----------
     shares : array of shape ``(48,)``
-        What is left of the changes of a vector, as a share of them, by the assignments of ``ASSIGNMENTS``.
+        What is left of the changes of a vector, as a share of them, by the assignments of
+        ``ASSIGNMENTS``.
     scale : float
         By which the gyroscope's numbers are multiplied in the best one.
     """
@@ -202,7 +231,9 @@ class Fit(NamedTuple):
 def pieces(
     time: Array, rates: Array, longest: float = 40.0, seconds: float = 0.5
 ) -> tuple[list[slice[int, int, None]], int]:
-    """Samples, cut into runs of blocks, in which there is most turning: a slice for each run, and the block's size."""
+    """Samples, cut into runs of blocks, in which there is most turning: a slice for each run, and
+    the block's size.
+    """
     step = np.median(np.diff(time))
     size = max(2, round(seconds / step))
     run = 8 * size
@@ -213,12 +244,18 @@ def pieces(
 
 
 def fit_axes(
-    time: Array, rates: Array, vectors: Array, scales: Array, seconds: float = 0.5, longest: float = 40.0
+    time: Array,
+    rates: Array,
+    vectors: Array,
+    scales: Array,
+    seconds: float = 0.5,
+    longest: float = 40.0,
 ) -> Fit:
     """Try all 48 assignments of a gyroscope's axes to those of a vector that stays where it is.
 
-    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in it. Carried back by
-    the gyroscope, its means over short blocks must agree with those of the next block.
+    While the instrument turns, a vector that stays (gravity, the Earth's field) turns backwards in
+    it. Carried back by the gyroscope, its means over short blocks must agree with those of the next
+    block.
 
     Parameters
     ----------
@@ -248,10 +285,16 @@ def fit_axes(
             continue
         those = vectors[part][: count * size].reshape(count, size, 3)
         moved += (np.diff(those.mean(axis=1), axis=0) ** 2).sum()
-        for some in np.array_split(np.arange(len(signed)), 1 + len(signed) * len(step) // MOST_AT_ONCE):
-            dcms = turned(signed[some] * rates[part], step)[:, : count * size].reshape(-1, count, size, 9)
+        for some in np.array_split(
+            np.arange(len(signed)), 1 + len(signed) * len(step) // MOST_AT_ONCE
+        ):
+            dcms = turned(signed[some] * rates[part], step)[:, : count * size].reshape(
+                -1, count, size, 9
+            )
             # The mean over a block of D^T P v is linear in P.
-            change = np.diff(dcms.swapaxes(-1, -2) @ those, axis=1).reshape(-1, 3, 3, 3).swapaxes(1, 2)
+            change = (
+                np.diff(dcms.swapaxes(-1, -2) @ those, axis=1).reshape(-1, 3, 3, 3).swapaxes(1, 2)
+            )
             differences = change.reshape(-1, 9) @ PROPER.swapaxes(-1, -2).reshape(24, 9).T / size
             left[some] += (differences**2).reshape(len(some), -1, 24).sum(axis=1)
     # The gyroscope's axes, taken so, are those of the vector: G, and -G of the mirror images.
@@ -262,7 +305,9 @@ def fit_axes(
 
 
 def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
-    """Turns from the middle of each pose to that of the next, by a gyroscope; shape ``(..., m - 1, 3, 3)``."""
+    """Turns from the middle of each pose to that of the next, by a gyroscope; shape ``(..., m - 1,
+    3, 3)``.
+    """
     found = []
     for one, other in zip(poses, poses[1:], strict=False):
         part = slice((one.first + one.last) // 2, (other.first + other.last) // 2 + 1)
@@ -284,10 +329,10 @@ def fit_scale(
     bias : array of shape ``(3,)``, optional
         Radians per second, where it is known.
 
-    Returns
-    -------
-    scale, its standard deviation, bias of shape ``(3,)``, its standard deviations, and what is left in radians
-        The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not suffice.
+    Returns ------- scale, its standard deviation, bias of shape ``(3,)``, its standard deviations,
+    and what is left in radians
+        The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not
+        suffice.
     """
     ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
     ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
@@ -311,7 +356,9 @@ def fit_scale(
     tried = np.column_stack([grid, np.tile(middle, (len(grid), 1))])
     parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
     free = 1 if known else 4
-    prior = np.array([1e3, *[np.radians(1.0)] * 3])[:free]  # a bias is some degrees per second at most
+    prior = np.array([1e3, *[np.radians(1.0)] * 3])[
+        :free
+    ]  # a bias is some degrees per second at most
     for _ in range(12):
         at, *moved = residuals(parameters + 1e-5 * np.eye(5, 4, -1)[: 1 + free])
         slopes = (np.array(moved) - at).T / 1e-5
@@ -326,12 +373,20 @@ def fit_scale(
         if np.abs(change).max() < 1e-8:
             break
     freedom = max(1.0, len(at) * 2 / 3 - free)
-    spread = np.sqrt(np.diag(np.linalg.inv(information)) * max(1.0, (at**2 * weights).sum() / freedom))
+    spread = np.sqrt(
+        np.diag(np.linalg.inv(information)) * max(1.0, (at**2 * weights).sum() / freedom)
+    )
     wide = np.concatenate([spread, np.zeros(4 - free)])
-    return float(parameters[0]), float(wide[0]), parameters[1:], wide[1:], float(np.sqrt((at**2).mean() * 3))
+    return (
+        float(parameters[0]),
+        float(wide[0]),
+        parameters[1:],
+        wide[1:],
+        float(np.sqrt((at**2).mean() * 3)),
+    )
 
 
-# --- the convention of an orientation ---------------------------------------------------------------
+# --- the convention of an orientation -------------------------------------------------------------
 
 
 class Reading(NamedTuple):
@@ -342,7 +397,8 @@ class Reading(NamedTuple):
     disagreement : float
         Between the turns of the orientation and those of the gyroscope, as a share of the latter.
     order : str
-        ``scalar first`` or ``scalar last``; of angles the sequence, as in ``zyx (yaw, pitch, roll)``.
+        ``scalar first`` or ``scalar last``; of angles the sequence, as in ``zyx (yaw, pitch,
+        roll)``.
     conjugate : bool
         Whether what stands there is the other way round than in the book: the ground from the body.
     mounting : array of shape ``(3, 3)``
@@ -367,7 +423,9 @@ def dcm_of_quaternions(values: Array, order: str) -> Array:
     return np.moveaxis(np.array(rows), -1, 0)
 
 
-def readings(time: Array, rates: Array, orientation_time: Array, candidates: Mapping[str, Array]) -> list[Reading]:
+def readings(
+    time: Array, rates: Array, orientation_time: Array, candidates: Mapping[str, Array]
+) -> list[Reading]:
     """Read an orientation in every way there is, and compare its turns with those of the gyroscope.
 
     Parameters
@@ -388,10 +446,13 @@ def readings(time: Array, rates: Array, orientation_time: Array, candidates: Map
     vectors = np.concatenate([np.zeros((1, 3)), (rates[1:] + rates[:-1]) / 2 * steps[1:, None]])
     path = np.cumsum(vectors, axis=0)
     inside = (orientation_time >= time[0] - 1e-9) & (orientation_time <= time[-1] + 1e-9)
-    # An orientation may be printed for each sample or now and then: a turn over a tenth of a second is compared.
+    # An orientation may be printed for each sample or now and then: a turn over a tenth of a second
+    # is compared.
     stride = max(1, round(0.05 / np.median(np.diff(orientation_time))))
     places = np.flatnonzero(inside)[::stride]
-    at = np.stack([np.interp(orientation_time[places], time, path[:, k]) for k in range(3)], axis=-1)
+    at = np.stack(
+        [np.interp(orientation_time[places], time, path[:, k]) for k in range(3)], axis=-1
+    )
     measured = np.diff(at, axis=0)
     turns = np.linalg.norm(measured, axis=1)
     use = turns < 1.0
@@ -407,7 +468,9 @@ def readings(time: Array, rates: Array, orientation_time: Array, candidates: Map
             turn = forth.swapaxes(-1, -2) @ dcms[:-1] if conjugate else forth @ back
             turn = to_rotation_vectors(turn)[use]
             likeness_of_axes = turn.T @ measured[use]
-            squares = (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, likeness_of_axes)
+            squares = (
+                (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, likeness_of_axes)
+            )
             found += [
                 Reading(float(np.sqrt(max(0.0, square) / whole)), name, conjugate, mounting)
                 for square, mounting in zip(squares, ASSIGNMENTS, strict=True)

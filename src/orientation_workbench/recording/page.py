@@ -15,7 +15,8 @@ LONGEST = 30_000
 
 
 class Judged:
-    """A report that a notebook shows as a table with plots, and links under which it and what it corrects are saved.
+    """A report that a notebook shows as a table with plots, and links under which it and what it
+    corrects are saved.
 
     Attributes
     ----------
@@ -36,11 +37,23 @@ class Judged:
         if self.examined is None:
             return f"<p>{escape(self.words)}</p>"
         fragment = as_fragment(self.examined)
-        links = [_link("report.html", "text/html", as_html(self.examined, fragment), "Save this report as one page")]
+        links = [
+            _link(
+                "report.html",
+                "text/html",
+                as_html(self.examined, fragment),
+                "Save this report as one page",
+            )
+        ]
         if len(self.examined.time) <= LONGEST:
             corrected = as_csv(self.examined, self.convention)
             links.append(
-                _link("corrected.csv", "text/csv", corrected, f"Save the corrected recording ({self.convention})")
+                _link(
+                    "corrected.csv",
+                    "text/csv",
+                    corrected,
+                    f"Save the corrected recording ({self.convention})",
+                )
             )
         return f"<p>{' · '.join(links)}</p>{fragment}"
 

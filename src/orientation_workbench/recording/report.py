@@ -20,12 +20,18 @@ def as_text(examined):
     lines = [f"{examined.name}"]
 
     def add(words, first, rest):
-        lines.extend(wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False))
+        lines.extend(
+            wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False)
+        )
 
     for verdict in examined.verdicts:
         add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
         if verdict.evidence and verdict.light != "as it should be":
-            add(", ".join(f"{name} {value}" for name, value in verdict.evidence.items()), "       ", "       ")
+            add(
+                ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()),
+                "       ",
+                "       ",
+            )
         if verdict.advice:
             add(verdict.advice, "  -> ", "     ")
     return "\n".join(lines)
@@ -38,14 +44,15 @@ def as_csv(examined, convention="wxyz"):
     ----------
     examined : Examined
     convention : str
-        Of the filter's orientation, the body's with respect to a ground with z up: ``wxyz`` and ``xyzw`` for a
-        quaternion with its scalar first or last, ``yaw-pitch-roll`` for degrees, body fixed z-y-x.
+        Of the filter's orientation, the body's with respect to a ground with z up: ``wxyz`` and
+        ``xyzw`` for a quaternion with its scalar first or last, ``yaw-pitch-roll`` for degrees,
+        body fixed z-y-x.
 
     Returns
     -------
     str
-        Angular velocity in radians per second, specific force in multiples of gravity, the field in multiples of its
-        length, and the filter's orientation where it ran: elsewhere it is missing.
+        Angular velocity in radians per second, specific force in multiples of gravity, the field in
+        multiples of its length, and the filter's orientation where it ran: elsewhere it is missing.
 
     Raises
     ------
@@ -70,14 +77,20 @@ def as_csv(examined, convention="wxyz"):
             names += ["yaw (deg)", "pitch (deg)", "roll (deg)"]
         else:
             names += [f"q{letter}" for letter in convention]
-        found = np.full((len(examined.time), len(names) - sum(part.shape[1] for part in columns)), np.nan)
+        found = np.full(
+            (len(examined.time), len(names) - sum(part.shape[1] for part in columns)), np.nan
+        )
         for one in examined.judgements:
-            inside = np.flatnonzero((examined.time >= one.times[0]) & (examined.time <= one.times[-1]))
+            inside = np.flatnonzero(
+                (examined.time >= one.times[0]) & (examined.time <= one.times[-1])
+            )
             dcms = one.dcms[np.searchsorted(one.times, examined.time[inside])]
             if convention == "yaw-pitch-roll":
                 found[inside] = np.degrees(body_fixed_from_dcm(dcms, "zyx"))
             else:
-                found[inside] = np.roll(quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1)
+                found[inside] = np.roll(
+                    quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1
+                )
         columns.append(found)
     lines = [",".join(f"{value:.9g}" for value in row) for row in np.concatenate(columns, axis=1)]
     return "\n".join([",".join(names), *lines]) + "\n"
@@ -86,9 +99,9 @@ def as_csv(examined, convention="wxyz"):
 def as_code(examined):
     """Lines of NumPy that correct a recording of the same instrument as this one was.
 
-    They take ``gyroscope``, ``accelerometer`` and ``magnetometer``, arrays of shape ``(n, 3)`` as the file has them,
-    and give ``rates`` in radians per second, ``forces`` in multiples of gravity and ``field`` in multiples of its
-    length.
+    They take ``gyroscope``, ``accelerometer`` and ``magnetometer``, arrays of shape ``(n, 3)`` as
+    the file has them, and give ``rates`` in radians per second, ``forces`` in multiples of gravity
+    and ``field`` in multiples of its length.
     """
     facts, lines = examined.facts, ["import numpy as np", ""]
 
@@ -105,7 +118,10 @@ def as_code(examined):
     if examined.forces is not None:
         lines.append(f"forces = accelerometer / {float(facts['gravity'])!r}")
         if "offset of the accelerometer" in facts:
-            lines.append(f"forces = forces - {array(facts['offset of the accelerometer'] / facts['gravity'])}")
+            lines.append(
+                "forces = forces - "
+                f"{array(facts['offset of the accelerometer'] / facts['gravity'])}"
+            )
     if examined.field is not None:
         lines.append("field = magnetometer")
         if "offset of the magnetometer" in facts:
@@ -124,7 +140,10 @@ def as_fragment(examined):
         + (f"<p><b>{escape(verdict.advice)}</b></p>" if verdict.advice else "")
         + (
             "<details><summary>evidence</summary>"
-            + "<br>".join(f"{escape(str(name))}: {escape(str(value))}" for name, value in verdict.evidence.items())
+            + "<br>".join(
+                f"{escape(str(name))}: {escape(str(value))}"
+                for name, value in verdict.evidence.items()
+            )
             + "</details>"
             if verdict.evidence
             else ""
@@ -133,11 +152,13 @@ def as_fragment(examined):
         for verdict in examined.verdicts
     )
     pictures = "".join(
-        f"<figure>{picture}<figcaption>{escape(words)}</figcaption></figure>" for picture, words in plots(examined)
+        f"<figure>{picture}<figcaption>{escape(words)}</figcaption></figure>"
+        for picture, words in plots(examined)
     )
     return (
         f'<div class="on-the-bench"><style>{STYLE}</style><p>{_in_short(examined)}</p><table>{rows}</table>{pictures}'
-        f"<details><summary>The code that corrects it</summary><pre>{escape(as_code(examined))}</pre></details></div>"
+        "<details><summary>The code that corrects "
+        f"it</summary><pre>{escape(as_code(examined))}</pre></details></div>"
     )
 
 
@@ -145,17 +166,22 @@ def _in_short(examined):
     """Which lights are not green, the worst first."""
     found = []
     for light in ("wrong", "look", "cannot tell"):
-        about = list(dict.fromkeys(verdict.about for verdict in examined.verdicts if verdict.light == light))
+        about = list(
+            dict.fromkeys(verdict.about for verdict in examined.verdicts if verdict.light == light)
+        )
         if about:
             found.append(f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}.")
     return " ".join(found) or "All is as it should be."
 
 
 def as_html(examined, fragment=None):
-    """The report as one page that needs nothing else, and can be kept; ``fragment`` is its body where it is made."""
+    """The report as one page that needs nothing else, and can be kept; ``fragment`` is its body
+    where it is made.
+    """
     name = escape(examined.name)
     return (
-        '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">'
+        '<!doctype html><html lang="en"><meta charset="utf-8"><meta name="viewport" '
+        'content="width=device-width">'
         f"<title>{name} on the bench</title><style>{PAGE}</style><h1>{name}</h1>"
         f"{fragment or as_fragment(examined)}</html>\n"
     )
@@ -197,7 +223,9 @@ def plots(examined):
     few = slice(None, None, max(1, len(examined.time) // 1500))
 
     def drawing(height):
-        figure = Figure(figsize=(6.2, height), layout="constrained")  # its words can be read on a telephone
+        figure = Figure(
+            figsize=(6.2, height), layout="constrained"
+        )  # its words can be read on a telephone
         return figure, figure.subplots()
 
     def kept(figure, words):
@@ -211,7 +239,10 @@ def plots(examined):
     if examined.rates is not None:
         figure, axes = drawing(2.6)
         axes.plot(
-            examined.time[few], np.degrees(np.linalg.norm(examined.rates[few], axis=1)), linewidth=0.8, color="#1f5fbf"
+            examined.time[few],
+            np.degrees(np.linalg.norm(examined.rates[few], axis=1)),
+            linewidth=0.8,
+            color="#1f5fbf",
         )
         for one in examined.still:
             axes.axvspan(
@@ -237,18 +268,27 @@ def plots(examined):
         if np.isfinite(walk):
             axes.loglog(times, walk / np.sqrt(times), linewidth=0.6, color="#777")
             axes.plot(1, walk, "o", color="#c62828")
-            axes.annotate(f"angle random walk {walk:.2g} °/√s", (1, walk), (6, 6), textcoords="offset points")
+            axes.annotate(
+                f"angle random walk {walk:.2g} °/√s", (1, walk), (6, 6), textcoords="offset points"
+            )
         if np.isfinite(lowest).any():
             worst = int(np.nanargmax(lowest))
             place = (noise.time[worst], lowest[worst])
             axes.plot(*place, "s", color="#c62828")
-            axes.annotate(f"bias instability {lowest[worst]:.2g} °/s", place, (6, -12), textcoords="offset points")
+            axes.annotate(
+                f"bias instability {lowest[worst]:.2g} °/s",
+                place,
+                (6, -12),
+                textcoords="offset points",
+            )
         axes.set(xlabel="averaged over (s)", ylabel="Allan deviation (°/s)")
         axes.legend()
         kept(
             figure,
-            "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half for four times the "
-            "time, it is noise; what that line says at one second is the angle random walk, and the lowest point is "
+            "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half "
+            "for four times the "
+            "time, it is noise; what that line says at one second is the angle random walk, and "
+            "the lowest point is "
             "the instability of the bias, if the stretch is long enough to have one.",
         )
     if examined.field is not None and "offset of the magnetometer" in examined.facts:
@@ -257,21 +297,41 @@ def plots(examined):
         strength = facts["strength of the field"]
         before = examined.field[few] * strength @ inverse.T + facts["offset of the magnetometer"]
         figure, axes = drawing(2.4)
-        axes.plot(examined.time[few], np.linalg.norm(before, axis=1) / strength, "--", linewidth=0.8, color="#c62828")
-        axes.plot(examined.time[few], np.linalg.norm(examined.field[few], axis=1), linewidth=0.8, color="#1f5fbf")
+        axes.plot(
+            examined.time[few],
+            np.linalg.norm(before, axis=1) / strength,
+            "--",
+            linewidth=0.8,
+            color="#c62828",
+        )
+        axes.plot(
+            examined.time[few],
+            np.linalg.norm(examined.field[few], axis=1),
+            linewidth=0.8,
+            color="#1f5fbf",
+        )
         axes.set(xlabel="time (s)", ylabel="length of the field", ylim=(0, None))
-        kept(figure, "Length of the magnetic field, as a share of its usual one. Dashed: as it came; solid: corrected.")
+        kept(
+            figure,
+            "Length of the magnetic field, as a share of its usual one. Dashed: as it came; solid: "
+            "corrected.",
+        )
     if examined.judgements:
         figure, axes = drawing(2.6)
         for one in examined.judgements:
             axes.plot(one.times, one.apart, linewidth=0.8, color="#1f5fbf")
             axes.plot(one.times, one.claims, "--", linewidth=1, color="#c62828")
         # At either end a run has seen little, and claims little: that would dwarf the rest.
-        usual = np.concatenate([each for one in examined.judgements for each in (one.apart, one.claims)])
-        axes.set(xlabel="time (s)", ylabel="tilt (°)", ylim=(0, 1.5 * np.percentile(usual, 98) + 1e-3))
+        usual = np.concatenate(
+            [each for one in examined.judgements for each in (one.apart, one.claims)]
+        )
+        axes.set(
+            xlabel="time (s)", ylabel="tilt (°)", ylim=(0, 1.5 * np.percentile(usual, 98) + 1e-3)
+        )
         kept(
             figure,
-            "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how much they should by "
+            "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how "
+            "much they should by "
             "their own claims.",
         )
     return found

@@ -1,7 +1,8 @@
-"""Tables of numbers out of whatever a recording came in: text, JSON, a folder, a zip, or zips in a folder.
+"""Tables of numbers out of whatever a recording came in: text, JSON, a folder, a zip, or zips in a
+folder.
 
-Nothing is repaired: a row that does not fit is left out, counted and named by its line and column; where many do not
-fit, the file is refused in the same words.
+Nothing is repaired: a row that does not fit is left out, counted and named by its line and column;
+where many do not fit, the file is refused in the same words.
 """
 
 from __future__ import annotations
@@ -48,11 +49,15 @@ MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refuse
 
 
 class RecordingError(ValueError):
-    """What keeps a file from being read as a recording, with its line and column where there is one."""
+    """What keeps a file from being read as a recording, with its line and column where there is
+    one.
+    """
 
 
 class BrokenTable(RecordingError):
-    """A table too many of whose rows do not fit: not a remark that stands beside the measurements."""
+    """A table too many of whose rows do not fit: not a remark that stands beside the
+    measurements.
+    """
 
 
 class Table(NamedTuple):
@@ -85,7 +90,8 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     Parameters
     ----------
     source : path, list of paths, bytes or str
-        A file, a folder, or several of them; or what a file holds: bytes, or a text of more than one line.
+        A file, a folder, or several of them; or what a file holds: bytes, or a text of more than
+        one line.
     name : str, optional
         What to call it, where it comes without a name.
 
@@ -115,10 +121,16 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
         if not path.exists():
             raise RecordingError(f"there is no file {path}")
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
-        files |= {one: None for one in inside if one == path or one.is_file() and one.suffix.lower() in TEXTS}
+        files |= {
+            one: None
+            for one in inside
+            if one == path or one.is_file() and one.suffix.lower() in TEXTS
+        }
     if [*files] == paths and len(paths) == 1:
         return _from_bytes(paths[0].read_bytes(), name or paths[0].name)
-    return _from_several(((one.name, one.read_bytes()) for one in files), name or ", ".join(map(str, paths)))
+    return _from_several(
+        ((one.name, one.read_bytes()) for one in files), name or ", ".join(map(str, paths))
+    )
 
 
 def _from_bytes(content: bytes, name: str) -> list[Table]:
@@ -129,7 +141,11 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
             names = archive.namelist()
             if "xl/workbook.xml" in names:
                 raise RecordingError(f"{name} is {EXCEL}")
-            files = [(Path(one).name, archive.read(one)) for one in names if Path(one).suffix.lower() in TEXTS]
+            files = [
+                (Path(one).name, archive.read(one))
+                for one in names
+                if Path(one).suffix.lower() in TEXTS
+            ]
         return _from_several(files, name)
     if not content.strip():
         raise RecordingError(f"{name} is empty")
@@ -140,7 +156,8 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
         text = content.decode("utf-16")
     elif b"\0" in content[:4096]:
         raise RecordingError(
-            f"{name} is no text: byte {content.index(0) + 1} is zero. Many loggers write a format of their own; export "
+            f"{name} is no text: byte {content.index(0) + 1} is zero. Many loggers write a format "
+            "of their own; export "
             "it as CSV with the maker's program first."
         )
     else:
@@ -158,10 +175,14 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
     reasons: list[str] = []
     for one, content in files:
         try:
-            tables += _from_bytes(content, one if Path(one).suffix in (".gz", ".zip") else Path(one).stem)
+            tables += _from_bytes(
+                content, one if Path(one).suffix in (".gz", ".zip") else Path(one).stem
+            )
         except BrokenTable as error:
             broken.append(str(error))
-        except RecordingError as error:  # beside the measurements there are often settings and remarks
+        except (
+            RecordingError
+        ) as error:  # beside the measurements there are often settings and remarks
             reasons.append(str(error))
     if not tables:
         told = "".join(f"; {reason}" for reason in broken + reasons)
@@ -173,7 +194,10 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
 def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
-    lines = [re.sub(r"\*[0-9A-Fa-f]{2}\s*$", "", line) if line[:1] == "$" else line for line in text.splitlines()]
+    lines = [
+        re.sub(r"\*[0-9A-Fa-f]{2}\s*$", "", line) if line[:1] == "$" else line
+        for line in text.splitlines()
+    ]
     if sum(line.startswith("---") for line in lines) > 8:
         return _from_blocks(lines, name)
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
@@ -186,33 +210,45 @@ def _from_text(text: str, name: str) -> list[Table]:
 
 
 def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
-    """The column that says what each row holds, where rows of several kinds or instruments take turns."""
+    """The column that says what each row holds, where rows of several kinds or instruments take
+    turns.
+    """
     rows = [row for row in rows if len(row) > 3]
     if len(rows) <= 20:
         return None
     sample = rows[len(rows) // 4 :][:400]
     head: Sequence[str] = next(
-        (row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2), ()
+        (row for row in rows if sum(_number(field, comma) is None for field in row) > len(row) / 2),
+        (),
     )
     for k in range(min(map(len, sample))):
         found = [row[k] for row in sample]
         keys = set(found)
-        words = sum(_number(field, comma) is None for field in found) > 0.9 * len(found) and len(keys) < 0.2 * len(
-            found
-        )
+        words = sum(_number(field, comma) is None for field in found) > 0.9 * len(found) and len(
+            keys
+        ) < 0.2 * len(found)
         if words and k == 0:
             return 0
         # Labels change now and then; what takes turns does so nearly always.
-        turns = sum(one != other for one, other in zip(found, found[1:], strict=False)) > 0.3 * len(found)
-        called = k < len(head) and re.fullmatch(r"i|id|(?:imu|sensor|device|instance)[ _]?(?:id)?", head[k].lower())
+        turns = sum(one != other for one, other in zip(found, found[1:], strict=False)) > 0.3 * len(
+            found
+        )
+        called = k < len(head) and re.fullmatch(
+            r"i|id|(?:imu|sensor|device|instance)[ _]?(?:id)?", head[k].lower()
+        )
         if turns and 1 < len(keys) < 16 and (words or called):
             return k
     return None
 
 
 def _scaled(table: Table) -> Table:
-    """Counts, where the lines above them name their scales, as cameras that steady a picture write them."""
-    scales = {letter: float(value) for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)}
+    """Counts, where the lines above them name their scales, as cameras that steady a picture write
+    them.
+    """
+    scales = {
+        letter: float(value)
+        for letter, value in re.findall(r"^([tgam])scale\W+([\d.eE+-]+)$", table.head, re.M)
+    }
     if not scales:
         return table
     units = {"t": "s", "g": "rad/s", "a": "g", "m": "gauss"}
@@ -246,12 +282,16 @@ def _number(field: str, comma: bool = False) -> float | None:
     if ":" in field:
         try:
             # Some write a colon before the milliseconds.
-            day = re.sub(r"(:\d\d:\d\d)[:_,](\d+)", r"\1.\2", field.replace("/", "-").replace("Z", "+00:00"))
+            day = re.sub(
+                r"(:\d\d:\d\d)[:_,](\d+)", r"\1.\2", field.replace("/", "-").replace("Z", "+00:00")
+            )
             return datetime.fromisoformat(day).timestamp()
         except ValueError:
             clock = re.fullmatch(r"(\d+):(\d\d):(\d\d(?:[.,:]\d+)?)", field)
             if clock:
-                hours, minutes, seconds = (float(part.replace(",", ".").replace(":", ".")) for part in clock.groups())
+                hours, minutes, seconds = (
+                    float(part.replace(",", ".").replace(":", ".")) for part in clock.groups()
+                )
                 return 3600 * hours + 60 * minutes + seconds
     return None
 
@@ -263,7 +303,11 @@ def _numbers_per_line(lines: Sequence[str], delimiter: str | None) -> float:
     for line in middle:
         fields = _split(line, delimiter)
         counts.append(
-            sum(_number(field) is not None or _is_comma(field) and delimiter != "," for field in fields if field)
+            sum(
+                _number(field) is not None or _is_comma(field) and delimiter != ","
+                for field in fields
+                if field
+            )
         )
     return float(np.median(counts)) if counts else 0
 
@@ -275,7 +319,9 @@ def _table(
     numbers: Iterable[int] | None = None,
     columns: Sequence[str] | None = None,
 ) -> Table:
-    """One table out of rows of fields; ``numbers`` are the lines' numbers, where they are not all there."""
+    """One table out of rows of fields; ``numbers`` are the lines' numbers, where they are not all
+    there.
+    """
     numbers = range(1, len(rows) + 1) if numbers is None else numbers
     there = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
     widths = Counter(len(row) for _, row in there)
@@ -288,20 +334,26 @@ def _table(
         k
         for k in range(width)
         if sum(_number(row[k], comma) is not None for _, row in sample) > 0.8 * len(sample)
-        and any(_number(row[k], comma) is not None and row[k].lower() not in MISSING for _, row in full)
+        and any(
+            _number(row[k], comma) is not None and row[k].lower() not in MISSING for _, row in full
+        )
     ]
     if len(numeric) < 3 or len(full) < 8:
         line, row = (sample or there)[0]
         raise RecordingError(
-            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} columns of numbers, "
-            f"where a recording has eight rows and three columns at least. Line {line} begins: {' '.join(row)[:60]!r}"
+            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} "
+            "columns of numbers, "
+            f"where a recording has eight rows and three columns at least. Line {line} begins: "
+            f"{' '.join(row)[:60]!r}"
         )
 
     def values(row: Sequence[str]) -> list[float | None]:
         return [_number(row[k], comma) for k in numeric]
 
     begin = next(
-        k for k, (_, row) in enumerate(there) if len(row) == width and all(value is not None for value in values(row))
+        k
+        for k, (_, row) in enumerate(there)
+        if len(row) == width and all(value is not None for value in values(row))
     )
     if columns is None:
         columns = _names([row for _, row in there[:begin]], width)
@@ -318,46 +370,65 @@ def _table(
             found = values(row)
         if None in found:
             column = numeric[found.index(None)]
-            broken.append(f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is no number")
+            broken.append(
+                f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} "
+                "is no number"
+            )
         elif inf in found or -inf in found:
             broken.append(f"line {line} holds an infinite number")
         else:
             kept.append(found)
     told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
     if len(broken) > max(2, MOST_BROKEN * (len(kept) + len(broken))):
-        raise BrokenTable(f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}")
+        raise BrokenTable(
+            f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}"
+        )
     remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
     head = "\n".join(",".join(row) for _, row in there[:begin])
     return Table(name, [columns[k] for k in numeric], np.array(kept, dtype=float), remarks, head)
 
 
 def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
-    """Names of the columns: of the last line above the numbers that has as many, with the units below it."""
+    """Names of the columns: of the last line above the numbers that has as many, with the units
+    below it.
+    """
     bare = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
-    bare = [row[1:] if len(row) == width + 1 and not row[0] else row for row in bare]  # a sign that stands alone
     bare = [
-        row for row in bare if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
+        row[1:] if len(row) == width + 1 and not row[0] else row for row in bare
+    ]  # a sign that stands alone
+    bare = [
+        row
+        for row in bare
+        if width - 1 <= len(row) <= width + 1 and any(re.search("[A-Za-z]", one) for one in row)
     ]
     if not bare:
         return [f"column {k + 1}" for k in range(width)]
-    # Above the numbers there may be lines of kinds and of units: they repeat themselves, names do not.
+    # Above the numbers there may be lines of kinds and of units: they repeat themselves, names do
+    # not.
     most = max(range(len(bare)), key=lambda k: (len(set(bare[k])), k))
     names = bare[most]
     below = bare[-1]
     if most < len(bare) - 1 and len(below) == len(names):
-        names = [f"{name} [{unit.strip('()[]')}]" if unit else name for name, unit in zip(names, below, strict=True)]
+        names = [
+            f"{name} [{unit.strip('()[]')}]" if unit else name
+            for name, unit in zip(names, below, strict=True)
+        ]
     names = [*names, *(f"column {k + 1}" for k in range(len(names), width))][:width]
     return [name or f"column {k + 1}" for k, name in enumerate(names)]
 
 
 def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> list[Table]:
-    """A log of lines of several kinds, as those of drones and phones: which, a word says, mostly the first."""
+    """A log of lines of several kinds, as those of drones and phones: which, a word says, mostly
+    the first.
+    """
     lines: dict[str, list[tuple[int, list[str]]]] = {}
     names: dict[str, list[str]] = {}
     for number, row in enumerate(rows, 1):
         if len(row) < max(3, key + 1):
             continue
-        if row[0] == "FMT" and len(row) > 5:  # of ArduPilot: type, length, name, formats, names of the columns
+        if (
+            row[0] == "FMT" and len(row) > 5
+        ):  # of ArduPilot: type, length, name, formats, names of the columns
             names[row[3]] = row[5:]
         else:
             # Of several instruments of one kind each is a table of its own.
@@ -387,7 +458,9 @@ def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> li
         except RecordingError:  # a kind of line that holds no measurements
             continue
     if not tables:
-        raise RecordingError(f"{name} looks like a log, but none of its kinds of lines is a table of numbers")
+        raise RecordingError(
+            f"{name} looks like a log, but none of its kinds of lines is a table of numbers"
+        )
     return tables
 
 
@@ -396,7 +469,8 @@ def _from_json(text: str, name: str) -> list[Table]:
         content = json.loads(text)
     except json.JSONDecodeError as error:
         raise RecordingError(
-            f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: {error.msg}"
+            f"{name} begins like JSON but is not: line {error.lineno}, column {error.colno}: "
+            f"{error.msg}"
         ) from None
     lists = content if isinstance(content, dict) else {name: content}
     kinds: dict[str, list[dict[str, object]]] = {}
@@ -407,7 +481,9 @@ def _from_json(text: str, name: str) -> list[Table]:
     return _from_entries(kinds, f"{name} is JSON without a list of measurements in it")
 
 
-def _from_entries(kinds: Mapping[str, Sequence[Mapping[str, object]]], otherwise: str) -> list[Table]:
+def _from_entries(
+    kinds: Mapping[str, Sequence[Mapping[str, object]]], otherwise: str
+) -> list[Table]:
     """Tables out of dictionaries, by what they hold."""
     tables = []
     for kind, entries in kinds.items():
@@ -423,7 +499,9 @@ def _from_entries(kinds: Mapping[str, Sequence[Mapping[str, object]]], otherwise
 
 
 def _from_blocks(lines: Sequence[str], name: str) -> list[Table]:
-    """Messages one after another, parted by hyphens, as robots print them; indented lines belong to the one above."""
+    """Messages one after another, parted by hyphens, as robots print them; indented lines belong to
+    the one above.
+    """
     entries: list[dict[str, str]] = []
     entry: dict[str, str] = {}
     path: list[tuple[int, str]] = []
@@ -435,10 +513,14 @@ def _from_blocks(lines: Sequence[str], name: str) -> list[Table]:
             continue
         found = re.fullmatch(r"(\s*)(\w+):\s*(\S*)\s*", line)
         if found:
-            path = [(indent, key) for indent, key in path if indent < len(found[1])] + [(len(found[1]), found[2])]
+            path = [(indent, key) for indent, key in path if indent < len(found[1])] + [
+                (len(found[1]), found[2])
+            ]
             if found[3]:
                 entry[".".join(key for _, key in path)] = found[3]
-    return _from_entries({name: entries}, f"{name} holds messages, but no table of numbers comes of them")
+    return _from_entries(
+        {name: entries}, f"{name} holds messages, but no table of numbers comes of them"
+    )
 
 
 def _flat(entry: Mapping[str, object], before: str = "") -> dict[str, object]:

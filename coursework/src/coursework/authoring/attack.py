@@ -1,17 +1,20 @@
 """An attack on the seal of a question, with what a student has: its public part and its lockers.
 
-What can be checked without a server can be tried without one; how often one must try is found here by trying.
-Candidates come in an order in which somebody would try them who knows the subject and wants no work: turns about
-the axes through the symbols, in every order and sign; special angles and the numbers of the question's text;
-monomials of sines and cosines and their sums; small fractions and roots; all words. A candidate that opens the
-locker of a mistake is looked at closer, since its message tells what to change: every candidate that differs from
-it in one choice is tried next. (So do those who climb by the replies.)
+What can be checked without a server can be tried without one; how often one must try is found here
+by trying. Candidates come in an order in which somebody would try them who knows the subject and
+wants no work: turns about the axes through the symbols, in every order and sign; special angles and
+the numbers of the question's text; monomials of sines and cosines and their sums; small fractions
+and roots; all words. A candidate that opens the locker of a mistake is looked at closer, since its
+message tells what to change: every candidate that differs from it in one choice is tried next. (So
+do those who climb by the replies.)
 
-Each distinct candidate costs one slow hash. The author knows the fingerprints, so here none is hashed, and the
-number of hashes is counted exactly all the same: :func:`really_attack` spends them, to prove the count.
+Each distinct candidate costs one slow hash. The author knows the fingerprints, so here none is
+hashed, and the number of hashes is counted exactly all the same: :func:`really_attack` spends them,
+to prove the count.
 
-"Not found" means not found within the budget by these candidates. Somebody may have a better idea: the count is
-an upper bound of what an attacker needs where an answer is found, and no proof of strength where it is not.
+"Not found" means not found within the budget by these candidates. Somebody may have a better idea:
+the count is an upper bound of what an attacker needs where an answer is found, and no proof of
+strength where it is not.
 """
 
 import importlib.util
@@ -35,22 +38,25 @@ from . import typed
 CODE = "\n\n```python\n"
 #: To be raised when the attack gets better: what an older one has measured is measured again then.
 VERSION = 2
-#: Slow hashes that the attack on one question may need; a question beyond it counts as not guessable.
+#: Slow hashes that the attack on one question may need; a question beyond it counts as not
+#: guessable.
 BUDGET = 2**16
-#: Candidates that are worked out together, and those that are tried before another idea has its turn.
+#: Candidates that are worked out together, and those that are tried before another idea has its
+#: turn.
 CHUNK, PORTION = 8192, 256
 #: Answers that are orientations: of what is built only that is tried which is one.
 ROTATIONS = ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle")
-#: Of so many values each part of an answer is taken, again and again while there are more; numbers that a vector is put
-#: together of one by one.
+#: Of so many values each part of an answer is taken, again and again while there are more; numbers
+#: that a vector is put together of one by one.
 PARTS_TRIED, MOST_PARTS = (6, 12, 24, 40, 150), 5
 
 
 class Found(NamedTuple):
     """What came of an attack.
 
-    ``tries`` is the number of slow hashes up to and with the one that opened the right answer, or, where it was
-    not found, the number of all candidates; ``way`` is the generator that found it, or empty.
+    ``tries`` is the number of slow hashes up to and with the one that opened the right answer, or,
+    where it was not found, the number of all candidates; ``way`` is the generator that found it, or
+    empty.
     """
 
     tries: int
@@ -67,7 +73,8 @@ class Found(NamedTuple):
 class Family(NamedTuple):
     """Candidates that are made by some choices: how many there are of each, and what they give.
 
-    ``evaluate`` takes choices, one row for each candidate, and gives its numbers as they are read of an answer.
+    ``evaluate`` takes choices, one row for each candidate, and gives its numbers as they are read
+    of an answer.
     """
 
     name: str
@@ -115,7 +122,8 @@ def _shells(sizes):
 
 
 def attack(question, text="", budget=BUDGET):
-    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that it takes.
+    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that
+    it takes.
 
     Parameters
     ----------
@@ -126,11 +134,18 @@ def attack(question, text="", budget=BUDGET):
     """
     right = {known for known, entry in question.entries.items() if entry.outcome == "correct"}
     mistaken = set(question.entries) - right
-    return _attack(question.public, text, budget, lambda known: 1 if known in right else 2 if known in mistaken else 0)
+    return _attack(
+        question.public,
+        text,
+        budget,
+        lambda known: 1 if known in right else 2 if known in mistaken else 0,
+    )
 
 
 def really_attack(sealed, text="", budget=100):
-    """The same attack with the slow hash on what a student has; only ``budget`` hashes are spent."""
+    """The same attack with the slow hash on what a student has; only ``budget`` hashes are
+    spent.
+    """
 
     def open_(known):
         found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, known))
@@ -140,7 +155,9 @@ def really_attack(sealed, text="", budget=100):
 
 
 def _attack(public, text, budget, open_):
-    """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0 neither."""
+    """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0
+    neither.
+    """
     tried = set()
     for family, choices in _in_turns(public, text) if budget else ():
         with np.errstate(all="ignore"):
@@ -155,13 +172,17 @@ def _attack(public, text, budget, open_):
 
 
 def _in_turns(public, text):
-    """Candidates from what the subject suggests, and from what the question gives, some of each in turn."""
+    """Candidates from what the subject suggests, and from what the question gives, some of each in
+    turn.
+    """
     words = text.partition(CODE)[0]
     streams = [_portions(families(public, words))]
     if not kinds()[public.kind_of_values].text and public.kind != "free text":
         pool, steps = _beginning(public, text), typed.priced(typed.public_functions(), words)
         values = _portions(_of_values(public, pool, (*steps, *typed.OPERATIONS)))
-        turns = _portions(_of_values(public, _beginning(public, text), (*steps, *typed.TURNS), typed.MOST // 2))
+        turns = _portions(
+            _of_values(public, _beginning(public, text), (*steps, *typed.TURNS), typed.MOST // 2)
+        )
         streams += [values, turns, values, _portions(_of_parts(public, pool))]
     while streams:
         for stream in list(streams):
@@ -214,7 +235,9 @@ def shape_of(public):
 
 
 def _of_values(public, pool, steps, most=typed.MOST):
-    """Candidates that some steps lead to from what is given: at each price those first that use all that is given."""
+    """Candidates that some steps lead to from what is given: at each price those first that use all
+    that is given.
+    """
     left_out = []
     with np.errstate(all="ignore"):
         for price in typed.by_price(pool, steps, most):
@@ -225,7 +248,9 @@ def _of_values(public, pool, steps, most=typed.MOST):
 
 
 def _of_table(public, table, shape):
-    """A family of candidates that stand in a table, a row for each; ``shape`` is that of an answer at one point."""
+    """A family of candidates that stand in a table, a row for each; ``shape`` is that of an answer
+    at one point.
+    """
 
     def near(choice):
         found = typed.near(table[choice[0]].reshape(-1, *shape))
@@ -240,42 +265,61 @@ def _of_table(public, table, shape):
 
 
 def _tables(public, pool, price, whole):
-    """The values of a pool that have a price as candidates: those that use all that is given, or the others."""
+    """The values of a pool that have a price as candidates: those that use all that is given, or
+    the others.
+    """
     values, shape = public.kind_of_values, shape_of(public)
     special = values in ROTATIONS or bool(public.unit_vector)
     found = np.array(pool.of_shape(shape, special, price, whole))
     if len(found) and values == "measurement":
         yield _of_table(public, _with_units(public, found), None)
     elif len(found):
-        yield _of_table(public, one_sign(public, found.reshape(len(found), -1), math.prod(shape)), shape)
+        yield _of_table(
+            public, one_sign(public, found.reshape(len(found), -1), math.prod(shape)), shape
+        )
 
 
 def _of_parts(public, pool):
-    """Answers that are put together of what a pool has by then: a list of its parts, a matrix of rows or of columns."""
+    """Answers that are put together of what a pool has by then: a list of its parts, a matrix of
+    rows or of columns.
+    """
     shape = shape_of(public)
     if public.kind_of_values not in ("vector", "matrix") or len(shape) not in (1, 2):
         return
     cuts = [(axis, sizes) for axis in range(len(shape)) for sizes in _compositions(shape[axis])]
     for most in PARTS_TRIED:
         for axis, sizes in cuts:
-            others = [shape[:axis] + ((size,) if size > 1 else ()) + shape[axis + 1 :] for size in sizes]
+            others = [
+                shape[:axis] + ((size,) if size > 1 else ()) + shape[axis + 1 :] for size in sizes
+            ]
             ones = [pool.of_shape(other)[:most] for other in others]
             if not all(ones) or math.prod(map(len, ones)) > 4 * BUDGET:
                 continue
             ones = [
-                np.array(one).reshape(len(one), pool.points, *shape[:axis], size, *shape[axis + 1 :])
+                np.array(one).reshape(
+                    len(one), pool.points, *shape[:axis], size, *shape[axis + 1 :]
+                )
                 for one, size in zip(ones, sizes, strict=True)
             ]
             places = np.indices([len(one) for one in ones]).reshape(len(ones), -1)
             places = places[:, np.argsort(places.sum(axis=0), kind="stable")]
-            whole = np.concatenate([one[of] for one, of in zip(ones, places, strict=True)], axis=2 + axis)
-            yield _of_table(public, one_sign(public, whole.reshape(len(whole), -1), math.prod(shape)), shape)
+            whole = np.concatenate(
+                [one[of] for one, of in zip(ones, places, strict=True)], axis=2 + axis
+            )
+            yield _of_table(
+                public, one_sign(public, whole.reshape(len(whole), -1), math.prod(shape)), shape
+            )
 
 
 def _compositions(size):
-    """All ways to make a size of at least two parts, those of few parts first: as large ones, or numbers alone."""
+    """All ways to make a size of at least two parts, those of few parts first: as large ones, or
+    numbers alone.
+    """
     found = [
-        sizes for count in (2, 3) for sizes in itertools.product(range(1, size), repeat=count) if sum(sizes) == size
+        sizes
+        for count in (2, 3)
+        for sizes in itertools.product(range(1, size), repeat=count)
+        if sum(sizes) == size
     ]
     return found + [(1,) * size] * (3 < size <= MOST_PARTS)
 
@@ -286,8 +330,14 @@ def _with_units(public, numbers):
     rows = []
     for value in numbers[:3000]:
         for one in found:
-            far = np.broadcast_to(np.array(one.exponents) * FAR * absolute, (len(value), len(one.exponents)))
-            rows.append(np.concatenate([(value * float(one.size) / float(public.scale))[:, None], far], axis=1).ravel())
+            far = np.broadcast_to(
+                np.array(one.exponents) * FAR * absolute, (len(value), len(one.exponents))
+            )
+            rows.append(
+                np.concatenate(
+                    [(value * float(one.size) / float(public.scale))[:, None], far], axis=1
+                ).ravel()
+            )
     return np.array(rows)
 
 
@@ -297,13 +347,16 @@ def _with_units(public, numbers):
 def fingerprints_of(public, numbers):
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
-    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the two.
+    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the
+    two.
     """
     return [key and _text_of(key) for key in _keys_of(public, numbers)]
 
 
 def _keys_of(public, numbers):
-    """The cells of each candidate as bytes, from which its fingerprint is written only where it is a new one."""
+    """The cells of each candidate as bytes, from which its fingerprint is written only where it is
+    a new one.
+    """
     if isinstance(numbers, list):
         return numbers
     absolute, relative = (float(part) for part in tolerances(public))
@@ -316,11 +369,16 @@ def _keys_of(public, numbers):
     cells = np.floor(scale / width + offsets)
     finite = np.isfinite(cells).all(axis=1).tolist()
     packed = np.where(np.isfinite(cells), cells, 0).astype(np.int64).tobytes()
-    return [packed[8 * count * row : 8 * count * (row + 1)] if good else None for row, good in enumerate(finite)]
+    return [
+        packed[8 * count * row : 8 * count * (row + 1)] if good else None
+        for row, good in enumerate(finite)
+    ]
 
 
 def _text_of(key):
-    return key if isinstance(key, str) else " ".join(map(str, np.frombuffer(key, np.int64).tolist()))
+    return (
+        key if isinstance(key, str) else " ".join(map(str, np.frombuffer(key, np.int64).tolist()))
+    )
 
 
 def one_sign(public, numbers, size):
@@ -332,7 +390,9 @@ def one_sign(public, numbers, size):
     large = np.abs(groups) > limit
     first = np.argmax(large, axis=2)[..., None]
     leading = np.take_along_axis(groups, first, axis=2)
-    return np.where((leading < 0) & large.any(axis=2, keepdims=True), -groups, groups).reshape(numbers.shape)
+    return np.where((leading < 0) & large.any(axis=2, keepdims=True), -groups, groups).reshape(
+        numbers.shape
+    )
 
 
 # --- what is tried for each kind ----------------------------------------------------------------
@@ -361,13 +421,19 @@ class At:
     def __init__(self, public, text=""):
         self.points = points(public)
         self.symbols = list(public.symbols)
-        self.values = {name: np.array([float(point[name]) for point in self.points]) for name in self.symbols}
+        self.values = {
+            name: np.array([float(point[name]) for point in self.points]) for name in self.symbols
+        }
         self.angular = [name for name, (low, high) in public.symbols.items() if low < 0 < high]
-        self.given = sorted({float(found) for found in re.findall(r"\d+(?:\.\d+)?", text)}, key=lambda x: (x, x))[:24]
+        self.given = sorted(
+            {float(found) for found in re.findall(r"\d+(?:\.\d+)?", text)}, key=lambda x: (x, x)
+        )[:24]
         self.ones = np.ones(len(self.points))
 
     def constants(self, step):
-        """Special angles, and those of the text, which is in degrees or in radians; one row for each."""
+        """Special angles, and those of the text, which is in degrees or in radians; one row for
+        each.
+        """
         degrees = [*self.given, *range(step, 360, step)]
         angles = [sign * math.radians(angle) for angle in degrees for sign in (1, -1) if angle]
         angles += [sign * angle for angle in self.given for sign in (1, -1) if 0 < angle < 7]
@@ -375,10 +441,16 @@ class At:
 
 
 WORDS = {
-    "choice": lambda public: [of_words("all options", [public.options], lambda word: word[0].lower())],
+    "choice": lambda public: [
+        of_words("all options", [public.options], lambda word: word[0].lower())
+    ],
     "truth values": lambda public: [of_words("all lists", ["TF"] * public.length, "".join)],
     "words": lambda public: [
-        of_words("all lists", [public.options] * public.length, lambda word: PARTS["words"].join(word).lower())
+        of_words(
+            "all lists",
+            [public.options] * public.length,
+            lambda word: PARTS["words"].join(word).lower(),
+        )
     ],
     "order": lambda public: [
         of_words(
@@ -393,7 +465,10 @@ WORDS = {
 
 def of_words(name, options, write, allowed=lambda word: True):
     def evaluate(choices):
-        words = ([part[place] for part, place in zip(options, row, strict=True)] for row in choices.tolist())
+        words = (
+            [part[place] for part, place in zip(options, row, strict=True)]
+            for row in choices.tolist()
+        )
         return [write(word) if allowed(word) else None for word in words]
 
     return Family(name, tuple(map(len, options)), evaluate)
@@ -428,7 +503,9 @@ def _of_measurements(public, at):
         yield Family(
             "every value in turn, in usual units",
             (*sweep.sizes, len(UNITS)),
-            lambda choices: beside_units(sweep.evaluate(choices[:, :2]) / sizes[choices[:, 2]][:, None], choices[:, 2]),
+            lambda choices: beside_units(
+                sweep.evaluate(choices[:, :2]) / sizes[choices[:, 2]][:, None], choices[:, 2]
+            ),
         )
 
 
@@ -444,7 +521,9 @@ def of_pools(public, at, size):
     if size > 1:
         if not at.symbols and public.unit_vector:
             yield _directions(public)
-        yield Family("small formulas for every component", (len(pool),) * size, evaluate, by_shells=True)
+        yield Family(
+            "small formulas for every component", (len(pool),) * size, evaluate, by_shells=True
+        )
         return
     yield Family("one small formula", (len(pool),), evaluate)
     if not at.symbols:
@@ -472,12 +551,24 @@ def of_pools(public, at, size):
         )
 
     yield Family("a function of a small formula", (len(functions), len(pool), 2), of_one)
-    yield Family("two small formulas together", (len(pool), len(pool), len(operations)), of_two, by_shells=True)
-    yield Family("three small formulas together", (len(pool), len(pool), len(pool), 4), of_three, by_shells=True)
+    yield Family(
+        "two small formulas together",
+        (len(pool), len(pool), len(operations)),
+        of_two,
+        by_shells=True,
+    )
+    yield Family(
+        "three small formulas together",
+        (len(pool), len(pool), len(pool), 4),
+        of_three,
+        by_shells=True,
+    )
 
 
 def _monomials(at):
-    """Small formulas of the symbols, one row each: products of up to three sines, cosines and symbols."""
+    """Small formulas of the symbols, one row each: products of up to three sines, cosines and
+    symbols.
+    """
     atoms = []
     for name in at.symbols:
         values = at.values[name]
@@ -495,7 +586,9 @@ def _monomials(at):
     signed = []
     for values in found:
         signed += [values, -values]
-    signed += [factor * values for factor in (2, 0.5, -2, -0.5) for values in found[1 : 2 + 3 * len(atoms)]]
+    signed += [
+        factor * values for factor in (2, 0.5, -2, -0.5) for values in found[1 : 2 + 3 * len(atoms)]
+    ]
     return np.array(signed)
 
 
@@ -504,7 +597,9 @@ def _numbers(public, at):
     found = [0, 1, *at.given]
     found += [math.sin(math.radians(angle)) for angle in (30, 45, 60)]
     found += [math.radians(angle) for angle in (30, 45, 60, 90, 120, 135, 150, 180, *at.given)]
-    found += [function(math.radians(angle)) for angle in at.given for function in (math.sin, math.cos)]
+    found += [
+        function(math.radians(angle)) for angle in at.given for function in (math.sin, math.cos)
+    ]
     found += [a / b for b in range(1, 13) for a in range(1, 13)]
     found += [math.sqrt(a / b) for b in range(1, 7) for a in range(1, 13)]
     found += [a * b for a, b in itertools.combinations(at.given, 2)]
@@ -525,11 +620,17 @@ def _sweep(public):
 
 
 def _directions(public):
-    whole = [axis for axis in itertools.product(range(-9, 10), repeat=3) if any(axis) and math.gcd(*axis) == 1]
+    whole = [
+        axis
+        for axis in itertools.product(range(-9, 10), repeat=3)
+        if any(axis) and math.gcd(*axis) == 1
+    ]
     whole.sort(key=lambda axis: (sum(map(abs, axis)), axis))
     whole = np.array([np.array(axis) / np.linalg.norm(axis) for axis in whole])
     return Family(
-        "directions of small whole numbers", (len(whole),), lambda choices: one_sign(public, whole[choices[:, 0]], 3)
+        "directions of small whole numbers",
+        (len(whole),),
+        lambda choices: one_sign(public, whole[choices[:, 0]], 3),
     )
 
 
@@ -548,12 +649,20 @@ def _of_functions(public):
 
     def of_two(choices):
         first, second = pool[choices[:, 0]], pool[choices[:, 1]]
-        values = [first + second, first - second, first / second, np.arctan2(first, second), np.arccos(first * second)]
+        values = [
+            first + second,
+            first - second,
+            first / second,
+            np.arctan2(first, second),
+            np.arccos(first * second),
+        ]
         return np.stack(values, axis=1)[np.arange(len(choices)), choices[:, 2]]
 
     yield Family("small formulas of the arguments", (len(pool),) * size, evaluate, by_shells=True)
     if size == 1:
-        yield Family("two small formulas together", (len(pool), len(pool), 5), of_two, by_shells=True)
+        yield Family(
+            "two small formulas together", (len(pool), len(pool), 5), of_two, by_shells=True
+        )
 
 
 def size_of(public):
@@ -571,7 +680,9 @@ def size_of(public):
 
 
 def _numbers_in(argument):
-    """All numbers of an argument of a call, in order; what else stands in it, the name of an axis say, is left out."""
+    """All numbers of an argument of a call, in order; what else stands in it, the name of an axis
+    say, is left out.
+    """
     if isinstance(argument, (list, tuple, np.ndarray)):
         return [number for part in argument for number in _numbers_in(part)]
     return [float(argument)] if isinstance(argument, (int, float, np.number)) else []
@@ -587,11 +698,21 @@ def _features(calls):
     with np.errstate(all="ignore"):
         found = [0 * entries[0], *entries, np.ones(len(calls))]
         found += [
-            function(values) for values in entries for function in (np.sin, np.cos, np.arcsin, np.arccos, np.sqrt)
+            function(values)
+            for values in entries
+            for function in (np.sin, np.cos, np.arcsin, np.arccos, np.sqrt)
         ]
-        found += [entries[a] * entries[b] for a, b in itertools.combinations_with_replacement(range(len(entries)), 2)]
-        found += [np.arctan2(entries[a], entries[b]) for a, b in itertools.permutations(range(len(entries)), 2)]
+        found += [
+            entries[a] * entries[b]
+            for a, b in itertools.combinations_with_replacement(range(len(entries)), 2)
+        ]
+        found += [
+            np.arctan2(entries[a], entries[b])
+            for a, b in itertools.permutations(range(len(entries)), 2)
+        ]
         for operation in (np.add, np.subtract, np.multiply, np.divide, np.arctan2, np.hypot):
-            found += [operation(first, second) for first, second in itertools.permutations(found[:60], 2)]
+            found += [
+                operation(first, second) for first, second in itertools.permutations(found[:60], 2)
+            ]
     found = [values for values in found if np.isfinite(values).all()]
     return np.array([sign * values for values in found for sign in (1, -1)])

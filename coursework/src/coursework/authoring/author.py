@@ -1,7 +1,7 @@
 """What an author writes of a question, and what is sealed of it.
 
-In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks for
-hidden tests, with a call of :func:`question`:
+In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks
+for hidden tests, with a call of :func:`question`:
 
 .. code-block:: python
 
@@ -54,16 +54,21 @@ from ..checking.reading import (
 from ..checking.reply import Reply
 from ..checking.units import UnknownUnit
 
-#: What answers without symbols may be off by, if the question says nothing: three decimals are enough.
+#: What answers without symbols may be off by, if the question says nothing: three decimals are
+#: enough.
 TOLERANCE = 5e-4
-#: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may cross.
+#: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may
+#: cross.
 REACH = 0.5
-#: What is known of an answer is rounded to this share of what it may be off by; no finer than its doubles hold, and
-#: never to more than the last share: a seal must not follow from the last bits, which other processors have otherwise.
+#: What is known of an answer is rounded to this share of what it may be off by; no finer than its
+#: doubles hold, and never to more than the last share: a seal must not follow from the last bits,
+#: which other processors have otherwise.
 ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-2")
-#: Where rounding tips from one number to the next: no number of few digits or small denominator lies there.
+#: Where rounding tips from one number to the next: no number of few digits or small denominator
+#: lies there.
 TIPS = MP.mpf("0.6371")
-#: Edges of cells that an answer may be near: beyond each there is another locker, and one for every combination.
+#: Edges of cells that an answer may be near: beyond each there is another locker, and one for every
+#: combination.
 MOST_EDGES = 6
 #: The same for those who have other numbers: each cell costs a slow hash at release.
 MOST_EDGES_FOR_OTHERS = 2
@@ -80,7 +85,8 @@ class AuthorError(ValueError):
 
 
 class Entry(NamedTuple):
-    """What one fingerprint stands for: as a rule one known answer; and one such answer as plain data.
+    """What one fingerprint stands for: as a rule one known answer; and one such answer as plain
+    data.
 
     Numbers are known where the fingerprint is shared by several or the answer is the right one.
     """
@@ -108,7 +114,9 @@ class _Known(NamedTuple):
 
 
 def far_from_last_bits(question: Question, reading: Reading) -> Reading:
-    """An answer with a tolerance, rounded so that what is sealed of it is the same on every processor."""
+    """An answer with a tolerance, rounded so that what is sealed of it is the same on every
+    processor.
+    """
     if question.tolerance is None or reading.text is not None:
         return reading
     absolute, relative = tolerances(question)
@@ -138,7 +146,8 @@ class AuthoredQuestion:
     credit : dict
         Share of the worth for a mistake, by its note.
     partial : bool
-        Whether an answer in several words earns the share of them that is right, beyond what a guess would earn.
+        Whether an answer in several words earns the share of them that is right, beyond what a
+        guess would earn.
     rubric : tuple of str, or dict
         What a person looks for who reads the answers; with the points that each line is worth.
     entries : dict
@@ -185,12 +194,18 @@ class AuthoredQuestion:
         self.plain = self.to_plain(answer)
         held = {node[1] for node in self.plain["nodes"] if node[0] == "symbol"}
         every_symbol = bool(public.symbols) and held >= set(public.symbols)
-        self.public = replace(public, exam=True if exam else None, every_symbol=every_symbol or None)
+        self.public = replace(
+            public, exam=True if exam else None, every_symbol=every_symbol or None
+        )
         self._settle_points()
         self._demand_turns()
-        # What the author says of a mistake is closer to the question than what the catalogue says of it.
+        # What the author says of a mistake is closer to the question than what the catalogue says
+        # of it.
         self.mistakes = [
-            *(Mistake("authored", {"text": text}, wrong) for text, wrong in (authored or {}).items()),
+            *(
+                Mistake("authored", {"text": text}, wrong)
+                for text, wrong in (authored or {}).items()
+            ),
             *self._catalogued(),
         ]
         self._demand_notes()
@@ -220,32 +235,40 @@ class AuthoredQuestion:
         return Locker() if text in self.near else None
 
     def reply_to(self, plain: Plain) -> Reply:
-        """The reply to an answer, as plain data: the one that a student gets, found without the slow hash."""
+        """The reply to an answer, as plain data: the one that a student gets, found without the
+        slow hash.
+        """
         return compare(self.name, self.public, plain, self.find)
 
     def _settle_points(self) -> None:
-        """Choose the salt, and with it the points: at them each entry takes every sign that it can take.
+        """Choose the salt, and with it the points: at them each entry takes every sign that it can
+        take.
 
-        What is asked of a salt is so weak that nearly every answer would be content with nearly every salt: the
-        choice tells nothing of the answer.
+        What is asked of a salt is so weak that nearly every answer would be content with nearly
+        every salt: the choice tells nothing of the answer.
         """
         # Each variant has a salt of its own, so that a guess is worth nothing for the others.
         number = self.number
         seed = f"{self.name} variant {number}" if number else self.name
         varying = None
         for attempt in range(50):
-            self.public = replace(self.public, salt=hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16])
+            self.public = replace(
+                self.public, salt=hashlib.sha256(f"{seed} {attempt}".encode()).hexdigest()[:16]
+            )
             try:
                 reading = self.read(self.plain)
                 numbers = canonical(self.public, reading) if reading.text is None else []
                 if varying is None:
                     varying = self._varying()
             except (Blank, Fault, Undecidable) as error:
-                raise AuthorError(f"{self.name}: the right answer cannot be read. {error}") from None
+                raise AuthorError(
+                    f"{self.name}: the right answer cannot be read. {error}"
+                ) from None
             if not varying <= _varying_in(reading.numbers):
                 continue
             if self.public.either_sign and any(
-                sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6 for number in numbers
+                sign_limit(self.public) * 0.4 < abs(number) < sign_limit(self.public) * 1.6
+                for number in numbers
             ):
                 continue
             if len(edges_near(self.public, numbers)) <= MOST_EDGES:
@@ -256,7 +279,10 @@ class AuthoredQuestion:
         """Which entries of the answer take both signs at some values of the symbols."""
         if not self.public.symbols:
             return set()
-        readings = (read(replace(self.public, salt=f"{self.name} {k}"), self.plain).numbers for k in range(8))
+        readings = (
+            read(replace(self.public, salt=f"{self.name} {k}"), self.plain).numbers
+            for k in range(8)
+        )
         return _varying_in([numbers for reading in readings for numbers in reading])
 
     def _demand_turns(self) -> None:
@@ -264,13 +290,17 @@ class AuthoredQuestion:
             return
         build = kinds()[self.public.kind].build
         if build is None:
-            raise AuthorError(f"{self.name}: an answer of the kind {self.public.kind!r} is not made of turns.")
+            raise AuthorError(
+                f"{self.name}: an answer of the kind {self.public.kind!r} is not made of turns."
+            )
         built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
     def _demand_notes(self) -> None:
-        """Hints and credit belong to mistakes that the question knows: for another one they would never be given."""
+        """Hints and credit belong to mistakes that the question knows: for another one they would
+        never be given.
+        """
         notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
         texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
         for argument, keys, known in (
@@ -280,7 +310,8 @@ class AuthoredQuestion:
             for key in keys:
                 if key not in known:
                     raise AuthorError(
-                        f"{self.name}: `{argument}` names {key!r}, and this question knows no such mistake. It knows "
+                        f"{self.name}: `{argument}` names {key!r}, and this question knows no such "
+                        "mistake. It knows "
                         f"{', '.join(repr(one) for one in known)}."
                     )
 
@@ -290,12 +321,17 @@ class AuthoredQuestion:
         inner = replace(self.public, kind=self.public.kind_of_values)
         results = [self.answer(*arguments) for arguments in calls_for(self.public) or ()]
         columns = [
-            {(found.note, json.dumps(found.details)): found.answer for found in catalogued_mistakes(inner, result)}
+            {
+                (found.note, json.dumps(found.details)): found.answer
+                for found in catalogued_mistakes(inner, result)
+            }
             for result in results
         ]
         shared = [known for known in columns[0] if all(known in column for column in columns)]
         return [
-            Mistake(note, json.loads(details), _replay([column[note, details] for column in columns]))
+            Mistake(
+                note, json.loads(details), _replay([column[note, details] for column in columns])
+            )
             for note, details in shared
         ]
 
@@ -306,13 +342,17 @@ class AuthoredQuestion:
         for one in known:
             exact = self.public.tolerance is None
             reach = REACH if one is not right else 1 if exact else NEARLY
-            for text in fingerprints(self.public, one.reading, reach, most=MOST_EDGES if one is right else 3):
+            for text in fingerprints(
+                self.public, one.reading, reach, most=MOST_EDGES if one is right else 3
+            ):
                 by_text.setdefault(text, []).append(one)
         self.near = []
         if right.numbers and self.public.tolerance is None:
             self.near = fingerprints(self.public, right.reading, near=True)
         return {
-            text: Entry([self._known_answer(one, alone=len(ones) == 1) for one in ones], ones[0].plain)
+            text: Entry(
+                [self._known_answer(one, alone=len(ones) == 1) for one in ones], ones[0].plain
+            )
             for text, ones in by_text.items()
         }
 
@@ -321,13 +361,19 @@ class AuthoredQuestion:
         known, self.no_mistakes = [self._one("correct", [], self.plain)], []
         for mistake in self.mistakes:
             try:
-                one = self._one("mistake", [Note(mistake.note, mistake.details)], self.to_plain(mistake.answer))
+                one = self._one(
+                    "mistake", [Note(mistake.note, mistake.details)], self.to_plain(mistake.answer)
+                )
             except (Fault, Undecidable, NotPlain):
                 continue  # such an answer is refused for its form, which is a message of its own
             same = next((other for other in known if self._same(one, other)), None)
             if same is None:
                 known.append(one)
-            elif same is not known[0] and one.notes[0] not in same.notes and mistake.note not in GENERAL:
+            elif (
+                same is not known[0]
+                and one.notes[0] not in same.notes
+                and mistake.note not in GENERAL
+            ):
                 same.notes.append(one.notes[0])
             elif same is known[0] and mistake.note == "authored":
                 self.no_mistakes.append(str(mistake.details["text"]))
@@ -342,13 +388,16 @@ class AuthoredQuestion:
         if one.reading.text is not None or other.reading.text is not None:
             return one.reading.text == other.reading.text
         # What differs from the right answer by no more than its tolerance is the right answer.
-        return within(self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1)
+        return within(
+            self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1
+        )
 
     def _known_answer(self, one: _Known, alone: bool) -> KnownAnswer:
         steps = [
             step
             for note, details in one.notes
-            # Those for one mistake of the author's are named by what it says; `authored` is for all of them.
+            # Those for one mistake of the author's are named by what it says; `authored` is for all
+            # of them.
             for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
@@ -357,7 +406,9 @@ class AuthoredQuestion:
         return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
     def names_for_others(self) -> list[str]:
-        """Under what names those who have another variant find that their answer is right for this one."""
+        """Under what names those who have another variant find that their answer is right for this
+        one.
+        """
         if self.public.exam or kinds()[self.public.kind].by_a_person:
             return []
         common = replace(self.public, salt=salt_of_all(self.name))
@@ -373,33 +424,57 @@ class AuthoredQuestion:
         code : str, optional
             What opens the worked solution for those who give up.
         first : Pages, optional
-            The pages of the first variant, :attr:`pages` of its question when it was sealed: what stands there is
-            not sealed once more.
+            The pages of the first variant, :attr:`pages` of its question when it was sealed: what
+            stands there is not sealed once more.
 
-        Of a question of an exam nothing is sealed: what a student receives would be the same with another answer.
+        Of a question of an exam nothing is sealed: what a student receives would be the same with
+        another answer.
         """
         answer = self.variable or ""
         if self.public.exam:
             salt = hashlib.sha256(f"{self.name} {self.number}".encode()).hexdigest()[:16]
-            return Sealed(replace(self.public, every_symbol=None, scale=None, salt=salt), "", self.worth, answer)
+            return Sealed(
+                replace(self.public, every_symbol=None, scale=None, salt=salt),
+                "",
+                self.worth,
+                answer,
+            )
         pages = self.pages = Pages(
             sealing.slow_key(self.public.salt, f"pages {self.fingerprint_of(self.plain)}"), first
         )
         catalogue = by_short_name(self.public)
-        solution = pages.add_solution(to_page(self.solution), self.public.variant) if self.solution else None
+        solution = (
+            pages.add_solution(to_page(self.solution), self.public.variant)
+            if self.solution
+            else None
+        )
         wanted = []
         for text, entry in self.entries.items():
             names = [short_name(*found) for found in entry.notes[:2]]
-            known = all(name in catalogue for name in names)  # what the author says of a mistake is not
-            plain = len(entry.answers) == 1 and not entry.answers[0].hints and not entry.answers[0].numbers and known
+            known = all(
+                name in catalogue for name in names
+            )  # what the author says of a mistake is not
+            plain = (
+                len(entry.answers) == 1
+                and not entry.answers[0].hints
+                and not entry.answers[0].numbers
+                and known
+            )
             shortened = tuple(replace(answer, notes=answer.notes[:2]) for answer in entry.answers)
             after = {name: tuple(steps) for name, steps in self.after.items()}
             locker = Locker(shortened, after if entry.outcome == "correct" else {})
             if entry.outcome == "correct":
                 plain = plain and not solution and not self.after
-            wanted.append((text, entry.outcome, names if plain else [], None if plain else locker.as_json()))
+            wanted.append(
+                (text, entry.outcome, names if plain else [], None if plain else locker.as_json())
+            )
         chosen = [
-            (text, outcome, names, about and pages.add(about, solution if outcome == "correct" else None))
+            (
+                text,
+                outcome,
+                names,
+                about and pages.add(about, solution if outcome == "correct" else None),
+            )
             for text, outcome, names, about in wanted
         ]
         chosen += [(text, "mistake", [], None) for text in self.near]
@@ -411,32 +486,46 @@ class AuthoredQuestion:
             place = (places[page], page) if page else ()
             key = sealing.slow_key(self.public.salt, text)
             lockers.append(sealing.locker(key, OUTCOMES.index(outcome), names, *place))
-        ladder = [sealing.seal(step, rung_key(self.public, number)) for number, step in enumerate(self.ladder)]
-        return Sealed(self.public, sealing.pack(lockers), self.worth, answer, tuple(pages.sealed), tuple(ladder))
+        ladder = [
+            sealing.seal(step, rung_key(self.public, number))
+            for number, step in enumerate(self.ladder)
+        ]
+        return Sealed(
+            self.public,
+            sealing.pack(lockers),
+            self.worth,
+            answer,
+            tuple(pages.sealed),
+            tuple(ladder),
+        )
 
 
 def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[Turn]) -> list[str]:
     """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
 
-    No secret locks them, so nothing of the solution is among them: its first sentence is often the answer.
+    No secret locks them, so nothing of the solution is among them: its first sentence is often the
+    answer.
     """
     if authored is not None:
         return list(authored)
     begin = (kinds()[public.kind].begin, kind_of_values(public).begin)
     steps = [step for step in dict.fromkeys(begin) if step]
     if len(turns) > 1:
-        steps.append(f"It is built of {len(turns)} turns, one after another. Check each of them alone.")
+        steps.append(
+            f"It is built of {len(turns)} turns, one after another. Check each of them alone."
+        )
     return steps
 
 
 class Pages:
-    """The pages of a question; each has a key of its own, which nobody can make who does not know the answer.
+    """The pages of a question; each has a key of its own, which nobody can make who does not know
+    the answer.
 
     Parameters
     ----------
     secret : bytes
-        What keys are made with. It follows from the answer by the slow hash: who guesses at a page has to spend one
-        for each guess, as for a locker.
+        What keys are made with. It follows from the answer by the slow hash: who guesses at a page
+        has to spend one for each guess, as for a locker.
     first : Pages, optional
         Those of the first variant of the question, which all variants share.
     """
@@ -448,10 +537,14 @@ class Pages:
         self.words: bytes | None = None
 
     def _key(self, text: str) -> bytes:
-        return hashlib.blake2b(text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY).digest()
+        return hashlib.blake2b(
+            text.encode("utf8"), key=self.secret, digest_size=sealing.PAGE_KEY
+        ).digest()
 
     def add(self, content: dict[str, Json], solution: bytes | None = None) -> bytes:
-        """Add a page, once; gives its key. The page of the right answer tells where the worked solution stands."""
+        """Add a page, once; gives its key. The page of the right answer tells where the worked
+        solution stands.
+        """
         text = json.dumps(content, ensure_ascii=False, sort_keys=True)
         if self.first:
             shared = self.first._key(text)
@@ -462,27 +555,36 @@ class Pages:
         return key
 
     def add_solution(self, text: str, variants: Variant | None) -> bytes:
-        """Add the worked solution, in variants as what differs from words that stand beside the first one."""
+        """Add the worked solution, in variants as what differs from words that stand beside the
+        first one.
+        """
         if self.first and self.first.words:
             place = self.first.places()[self.first.words]
             short = sealing.shorten(text, str(self.first.contents[self.first.words][0]["words"]))
             return self.add({"solution": [place, self.first.words.hex(), short]})
         if variants:
-            # No number: they are what differs, and those of the first variant are not for everybody.
+            # No number: they are what differs, and those of the first variant are not for
+            # everybody.
             self.words = self.add({"words": re.sub(r"\d+", "", text)})
         return self.add({"solution": text})
 
     def places(self) -> dict[bytes, int]:
-        """The place of each page by its key: in an order that tells nothing, after those of the first variant."""
+        """The place of each page by its key: in an order that tells nothing, after those of the
+        first variant.
+        """
         before = self.first.places() if self.first else {}
         start = len(self.first.sealed) if self.first else 0
         return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
     def seal(self) -> dict[bytes, int]:
-        """Seal all pages that are not sealed with the first variant; gives the place of each by its key."""
+        """Seal all pages that are not sealed with the first variant; gives the place of each by its
+        key.
+        """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
-            raise AuthorError("A question has more mistakes and hints of its own than there is room for.")
+            raise AuthorError(
+                "A question has more mistakes and hints of its own than there is room for."
+            )
         for key in sorted(self.contents):
             content, solution = self.contents[key]
             if solution:
@@ -495,7 +597,8 @@ class Pages:
 
 
 def solution_code(notebook: Mapping[str, Any]) -> str:
-    """The code that opens the worked solutions of a notebook: it follows from its source, so only who has that has it.
+    """The code that opens the worked solutions of a notebook: it follows from its source, so only
+    who has that has it.
 
     The variants of its questions have the same code.
     """
@@ -515,13 +618,17 @@ def _varying_in(rows: Sequence[Sequence[Number]]) -> set[int]:
 
 
 def _replay(results: Iterable[object]) -> Callable[..., object]:
-    """A function that gives prepared results, one for each call: what a mistaken function would return."""
+    """A function that gives prepared results, one for each call: what a mistaken function would
+    return.
+    """
     following = iter(itertools.cycle(results))
     return lambda *arguments: next(following)
 
 
 def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
-    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to whoever shows it."""
+    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to
+    whoever shows it.
+    """
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
 
@@ -544,10 +651,15 @@ def _demand_arguments(name: str, given: set[str]) -> None:
     ]
     for one in sorted(given - set(known)):
         close = difflib.get_close_matches(one, known, 1)
-        raise AuthorError(f"{name}: a question has no `{one}`." + (f" Did you mean `{close[0]}`?" if close else ""))
+        raise AuthorError(
+            f"{name}: a question has no `{one}`."
+            + (f" Did you mean `{close[0]}`?" if close else "")
+        )
 
 
-def _demand_forms(name: str, mistakes: object, hints: Any, after: Any, credit: Any, worth: object) -> None:
+def _demand_forms(
+    name: str, mistakes: object, hints: Any, after: Any, credit: Any, worth: object
+) -> None:
     """What an author says of a question has the form that the manual shows."""
     for argument, value, example in (
         ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
@@ -555,14 +667,20 @@ def _demand_forms(name: str, mistakes: object, hints: Any, after: Any, credit: A
         ("after", after, "{'levers/see-saw': ['what helps there']}"),
         ("credit", credit, "{'opposite': 0.5}"),
     ):
-        if value is not None and not (isinstance(value, dict) and all(isinstance(key, str) for key in value)):
-            raise AuthorError(f"{name}: `{argument}` is a dictionary with texts as its keys: {example}.")
+        if value is not None and not (
+            isinstance(value, dict) and all(isinstance(key, str) for key in value)
+        ):
+            raise AuthorError(
+                f"{name}: `{argument}` is a dictionary with texts as its keys: {example}."
+            )
     for note, steps in [*(hints or {}).items(), *(after or {}).items()]:
         if not isinstance(steps, (list, tuple)) or not all(isinstance(step, str) for step in steps):
             raise AuthorError(f"{name}: the hints of {note!r} are a list of texts.")
     for note, share in (credit or {}).items():
         if not _is_number(share) or not 0 <= share <= 1:
-            raise AuthorError(f"{name}: the credit of {note!r} is a share from 0 to 1, and this is {share!r}.")
+            raise AuthorError(
+                f"{name}: the credit of {note!r} is a share from 0 to 1, and this is {share!r}."
+            )
     if worth is not None and (not _is_number(worth) or worth < 0):
         raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
 
@@ -573,29 +691,48 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
         return
     for line, points in rubric.items():
         if not _is_number(points) or abs(points) > worth:
-            raise AuthorError(f"{name}: the line {line!r} of the rubric is worth {points!r}, of {worth} points.")
+            raise AuthorError(
+                f"{name}: the line {line!r} of the rubric is worth {points!r}, of {worth} points."
+            )
     earned = sum(points for points in rubric.values() if points > 0)
     if earned < worth:
-        raise AuthorError(f"{name}: the lines of its rubric come to {earned} of {worth} points: nobody could have all.")
+        raise AuthorError(
+            f"{name}: the lines of its rubric come to {earned} of {worth} points: nobody could "
+            "have all."
+        )
 
 
 def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
-    """What an answer may be off by is more than nothing: the last digits differ from machine to machine."""
+    """What an answer may be off by is more than nothing: the last digits differ from machine to
+    machine.
+    """
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
-        also = " With `relative`, it is what an answer of zero may be off by." if relative is not None else ""
+        also = (
+            " With `relative`, it is what an answer of zero may be off by."
+            if relative is not None
+            else ""
+        )
         raise AuthorError(
-            f"{name}: `tolerance` is what an answer may be off by, more than zero, and this is {tolerance!r}.{also}"
+            f"{name}: `tolerance` is what an answer may be off by, more than zero, and this is "
+            f"{tolerance!r}.{also}"
         )
     if relative is not None and (not _is_number(relative) or not 0 < relative < 1):
-        raise AuthorError(f"{name}: `relative` is a share between 0 and 1, and this is {relative!r}.")
+        raise AuthorError(
+            f"{name}: `relative` is a share between 0 and 1, and this is {relative!r}."
+        )
 
 
 def _demand_calls(name: str, calls: object) -> None:
     if calls is None:
         return
-    if not isinstance(calls, (list, tuple)) or not calls or not all(isinstance(one, (list, tuple)) for one in calls):
+    if (
+        not isinstance(calls, (list, tuple))
+        or not calls
+        or not all(isinstance(one, (list, tuple)) for one in calls)
+    ):
         raise AuthorError(
-            f"{name}: `calls` is a list of calls, each a list of its arguments: calls=[[1], [2]] calls the function "
+            f"{name}: `calls` is a list of calls, each a list of its arguments: calls=[[1], [2]] "
+            "calls the function "
             f"with 1, and then with 2. This is {calls!r}."
         )
 
@@ -638,22 +775,33 @@ def question(
         raise AuthorError(f"{name}: the kind {kind!r} is none of {', '.join(sorted(kinds()))}.")
     known, values = kinds()[kind], kinds()[result or kind]
     _demand_arguments(name, {*rest} - {*values.arguments})
-    _demand_forms(name, mistakes, **{key: rest.get(key) for key in ("hints", "after", "credit", "worth")})
+    _demand_forms(
+        name, mistakes, **{key: rest.get(key) for key in ("hints", "after", "credit", "worth")}
+    )
     _demand_tolerance(name, tolerance, relative)
     _demand_calls(name, calls)
     try:
         about = {"kind": kind, **(known.public(answer) if known.public else {})}
     except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
-        what = f"`{error}` is no unit that is known here." if isinstance(error, UnknownUnit) else f"This is {answer!r}."
+        what = (
+            f"`{error}` is no unit that is known here."
+            if isinstance(error, UnknownUnit)
+            else f"This is {answer!r}."
+        )
         raise AuthorError(
-            f"{name}: the right answer cannot be read. The solution of a question of kind {kind!r} is a number with "
+            f"{name}: the right answer cannot be read. The solution of a question of kind {kind!r} "
+            "is a number with "
             f"its unit, such as `(3.2, 'kN m')`. {what}"
         ) from None
     if rest.get("rubric") and not known.by_a_person:
-        raise AuthorError(f"{name}: a rubric is for answers that a person reads, of the kind 'free text'.")
+        raise AuthorError(
+            f"{name}: a rubric is for answers that a person reads, of the kind 'free text'."
+        )
     _demand_rubric(name, rest.get("rubric"), rest.get("worth", 1))
     if rest.get("partial") and kind not in PARTS:
-        raise AuthorError(f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part.")
+        raise AuthorError(
+            f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part."
+        )
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     ranges = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}

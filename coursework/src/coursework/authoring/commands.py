@@ -1,4 +1,6 @@
-"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``selftest`` and ``wheels``."""
+"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``selftest`` and
+``wheels``.
+"""
 
 import shlex
 import sys
@@ -8,34 +10,61 @@ from pathlib import Path
 def add_commands(commands):
     """Add these commands to those of ``coursework``."""
     new = commands.add_parser("new", help="make a small course that works at once")
-    new.add_argument("course", metavar="COURSE", help="the folder to make; its name becomes that of the course")
+    new.add_argument(
+        "course", metavar="COURSE", help="the folder to make; its name becomes that of the course"
+    )
     release = commands.add_parser(
         "release", help="make the exercises, the sealed questions and the archive for students"
     )
-    release.add_argument("only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to make; all of them")
+    release.add_argument(
+        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to make; all of them"
+    )
     for name, says in (
         ("sources", "folder of the notebooks with solutions"),
         ("exercises", "where the exercise notebooks go"),
         ("sealed", "where the sealed questions go"),
     ):
         release.add_argument(f"--{name}", type=Path, help=f"{says}, if not as course.toml says")
-    release.add_argument("--no-archive", action="store_true", help="leave the archive for students out")
-    publish = commands.add_parser("publish", help="make a site: the exercises as pages that check themselves")
+    release.add_argument(
+        "--no-archive", action="store_true", help="leave the archive for students out"
+    )
+    publish = commands.add_parser(
+        "publish", help="make a site: the exercises as pages that check themselves"
+    )
     publish.add_argument("--site", type=Path, help="the folder to make; `site` beside the archive")
     publish.add_argument(
-        "--room", action="store_true", help="also fetch all wheels that are needed, for a room without a network"
+        "--room",
+        action="store_true",
+        help="also fetch all wheels that are needed, for a room without a network",
     )
-    trial = commands.add_parser("try", help="show a question as students will meet it, with every reply")
-    trial.add_argument("name", metavar="NOTEBOOK/QUESTION", help="a question, or a notebook for all of its questions")
-    wheels = commands.add_parser("wheels", help="write the packages of coursework, to be installed elsewhere")
+    trial = commands.add_parser(
+        "try", help="show a question as students will meet it, with every reply"
+    )
+    trial.add_argument(
+        "name",
+        metavar="NOTEBOOK/QUESTION",
+        help="a question, or a notebook for all of its questions",
+    )
+    wheels = commands.add_parser(
+        "wheels", help="write the packages of coursework, to be installed elsewhere"
+    )
     wheels.add_argument("folder", type=Path)
-    selftest = commands.add_parser("selftest", help="try every question as students will, and look for leaks")
-    selftest.add_argument("only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to try; all of them")
-    selftest.add_argument(
-        "--sources", type=Path, help="folder of the notebooks with solutions, if not as course.toml says"
+    selftest = commands.add_parser(
+        "selftest", help="try every question as students will, and look for leaks"
     )
     selftest.add_argument(
-        "--budget", type=int, default=2**16, help="slow hashes that the attack on one question may need"
+        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to try; all of them"
+    )
+    selftest.add_argument(
+        "--sources",
+        type=Path,
+        help="folder of the notebooks with solutions, if not as course.toml says",
+    )
+    selftest.add_argument(
+        "--budget",
+        type=int,
+        default=2**16,
+        help="slow hashes that the attack on one question may need",
     )
     for parser, page in ((trial, "try"), (selftest, "selftest")):
         parser.add_argument("--page", help=f"where the page goes; {page}.html beside the archive")
@@ -44,7 +73,9 @@ def add_commands(commands):
 def _course(**folders):
     from .course import find_course
 
-    return find_course()._replace(**{name: folder.resolve() for name, folder in folders.items() if folder})
+    return find_course()._replace(
+        **{name: folder.resolve() for name, folder in folders.items() if folder}
+    )
 
 
 def new(course):
@@ -83,7 +114,9 @@ def wheels(folder):
 
 
 def _writable(page):
-    """The path of a page that is to be written; that it cannot be is said before the work is done."""
+    """The path of a page that is to be written; that it cannot be is said before the work is
+    done.
+    """
     from .author import AuthorError
 
     try:
@@ -93,7 +126,9 @@ def _writable(page):
         if new:
             Path(page).unlink()
     except OSError as error:
-        raise AuthorError(f"{page} cannot be written ({error.strerror}). Say where the page may go: --page") from None
+        raise AuthorError(
+            f"{page} cannot be written ({error.strerror}). Say where the page may go: --page"
+        ) from None
     return page
 
 
@@ -101,7 +136,9 @@ def trial(name, page):
     from .trial import trial as show
 
     course = _course()
-    print(f"The page: {show(course, name, _writable(page or course.archive.with_name('try.html')))}")
+    print(
+        f"The page: {show(course, name, _writable(page or course.archive.with_name('try.html')))}"
+    )
 
 
 def selftest(only, page, budget, **folders):

@@ -23,16 +23,18 @@ class Course(NamedTuple):
     archive : Path
         What students download.
     package : str
-        ``module:function`` that builds the wheels for students into a folder, that of coursework among them, and gives
-        their paths, for a course with a package of its own; empty for one that needs nothing but coursework.
+        ``module:function`` that builds the wheels for students into a folder, that of coursework
+        among them, and gives their paths, for a course with a package of its own; empty for one
+        that needs nothing but coursework.
     edition : str
         Each edition draws the variants of questions afresh: an exam, say, or another year.
     chapter, solution : str
-        Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in them: where one reads
-        on, and the worked solution, named here once it is released.
+        Addresses that the graders' feedback leads to, with ``{notebook}`` and ``{question}`` in
+        them: where one reads on, and the worked solution, named here once it is released.
     variants : str
-        How variants are given to students: ``"by name"``, so that one that is taken out moves only those who had it, or
-        by number if nothing is said. Say it before a term begins: students' numbers change with it.
+        How variants are given to students: ``"by name"``, so that one that is taken out moves only
+        those who had it, or by number if nothing is said. Say it before a term begins: students'
+        numbers change with it.
     moved : dict
         Names that questions had in an earlier edition, and those that they have now.
     """
@@ -74,7 +76,8 @@ def find_course(start: str | Path = ".") -> Course:
     course = _course_around(start)
     if course is None:
         raise AuthorError(
-            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. `coursework new COURSE` makes a "
+            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. `coursework "
+            "new COURSE` makes a "
             "course that has one."
         )
     return course
@@ -82,7 +85,9 @@ def find_course(start: str | Path = ".") -> Course:
 
 def _course_around(start: str | Path) -> Course | None:
     first = Path(start).resolve()
-    found = next((folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None)
+    found = next(
+        (folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None
+    )
     return _read(found) if found else None
 
 
@@ -101,7 +106,11 @@ def gives_by_name(folder: str | Path) -> bool:
 def links_of(folder: str | Path) -> dict[str, str]:
     """The addresses that the course of a folder names, by what they lead to."""
     course = _course_around(folder)
-    return {name: address for name in ("chapter", "solution") if course and (address := getattr(course, name))}
+    return {
+        name: address
+        for name in ("chapter", "solution")
+        if course and (address := getattr(course, name))
+    }
 
 
 def _read(path: Path) -> Course:
@@ -111,21 +120,30 @@ def _read(path: Path) -> Course:
         raise AuthorError(f"{path}: {error}") from None
     moved = said.pop(MOVED, {})
     if not isinstance(moved, dict) or not all(isinstance(name, str) for name in moved.values()):
-        raise AuthorError(f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = "levers/moment"')
+        raise AuthorError(
+            f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = '
+            '"levers/moment"'
+        )
     if said.get("variants", BY_NAME) != BY_NAME:
-        raise AuthorError(f'{path}: variants = "{BY_NAME}", or nothing; this is {said["variants"]!r}.')
+        raise AuthorError(
+            f'{path}: variants = "{BY_NAME}", or nothing; this is {said["variants"]!r}.'
+        )
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, a table [{MOVED}], and "
+            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, a "
+            f"table [{MOVED}], and "
             + "nothing else"
             + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}
     for name in ("chapter", "solution"):
-        if others[name] and not re.fullmatch(r"https?://[^{}\s]*(\{(notebook|question)\}[^{}\s]*)+", others[name]):
+        if others[name] and not re.fullmatch(
+            r"https?://[^{}\s]*(\{(notebook|question)\}[^{}\s]*)+", others[name]
+        ):
             raise AuthorError(
-                f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and {others[name]!r} is none."
+                f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and "
+                f"{others[name]!r} is none."
             )
     return Course(path.parent, said.get("title", path.parent.name), **places, **others, moved=moved)

@@ -1,4 +1,6 @@
-"""The same answer in other forms, to try checks with: what students write is rarely what the author wrote."""
+"""The same answer in other forms, to try checks with: what students write is rarely what the author
+wrote.
+"""
 
 import itertools
 import random
@@ -53,7 +55,9 @@ def unknowns(entries):
 
 
 def flat(answer):
-    """The entries of a matrix or a nested list, and a function that puts entries back into that shape."""
+    """The entries of a matrix or a nested list, and a function that puts entries back into that
+    shape.
+    """
     if isinstance(answer, sympy.MatrixBase):
         return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))
     if not isinstance(answer, sympy.Basic) and hasattr(answer, "tolist"):
@@ -64,7 +68,10 @@ def flat(answer):
 
         def together(entries):
             entries = iter(list(entries))
-            return [put(list(itertools.islice(entries, length))) for (_, put), length in zip(parts, lengths)]
+            return [
+                put(list(itertools.islice(entries, length)))
+                for (_, put), length in zip(parts, lengths)
+            ]
 
         return [entry for entries, _ in parts for entry in entries], together
     return [sympy.sympify(answer)], lambda entries: list(entries)[0]
@@ -95,7 +102,10 @@ def _common_forms(public, kind, answer):
     if kind == "measurement":
         number, text = answer
         found = unit(text)
-        base = " ".join(f"{name}^{power}" for name, power in zip(BASE, found.exponents) if power) or "1"
+        base = (
+            " ".join(f"{name}^{power}" for name, power in zip(BASE, found.exponents) if power)
+            or "1"
+        )
         forms = _common_forms(replace(public, kind="expression"), "expression", number)
         forms = [(name, (form, text)) for name, form in forms]
         return [
@@ -145,17 +155,26 @@ def _forms_of_symbols(public, answer, entries, put):
         add(name, lambda entry, name=name: _rewrite(entry, SINES[name], COSINES[name]))
     add(
         "one added as squares",
-        lambda entry: entry * sympy.Add(sin(unknowns(entries)[0]) ** 2, cos(unknowns(entries)[0]) ** 2, evaluate=False),
+        lambda entry: (
+            entry
+            * sympy.Add(
+                sin(unknowns(entries)[0]) ** 2, cos(unknowns(entries)[0]) ** 2, evaluate=False
+            )
+        ),
     )
     plain = [symbol for symbol in unknowns(entries) if isinstance(symbol, sympy.Symbol)]
     time = sympy.Symbol("t")
     add(
         "other assumptions",
-        lambda entry: entry.xreplace({symbol: sympy.Symbol(symbol.name, real=True) for symbol in plain}),
+        lambda entry: entry.xreplace(
+            {symbol: sympy.Symbol(symbol.name, real=True) for symbol in plain}
+        ),
     )
     add(
         "functions of time",
-        lambda entry: entry.xreplace({symbol: sympy.Function(symbol.name)(time) for symbol in plain}),
+        lambda entry: entry.xreplace(
+            {symbol: sympy.Function(symbol.name)(time) for symbol in plain}
+        ),
     )
     if isinstance(answer, sympy.MatrixBase):
         forms += [
@@ -205,7 +224,9 @@ def _digits(public):
 
 
 def random_form(public, answer, chance):
-    """Give the same answer in a form made up by chance, as one who simplifies nothing might write it."""
+    """Give the same answer in a form made up by chance, as one who simplifies nothing might write
+    it.
+    """
     kind = public.kind
     if kind == "measurement":
         return (random_form(replace(public, kind="expression"), answer[0], chance), answer[1])
@@ -216,14 +237,20 @@ def random_form(public, answer, chance):
     if not free:
         tolerance = public.tolerance
         if tolerance is not None and chance.random() < 0.6:
-            result = put([float(entry) + chance.uniform(-0.9, 0.9) * tolerance for entry in entries])
+            result = put(
+                [float(entry) + chance.uniform(-0.9, 0.9) * tolerance for entry in entries]
+            )
         else:
             result = put([_shuffled_number(sympy.sympify(entry), chance) for entry in entries])
     else:
         result = put([_shuffled(sympy.sympify(entry), chance, free) for entry in entries])
         changes = {
             symbol: chance.choice(
-                [symbol, sympy.Symbol(str(symbol), real=True), sympy.Function(str(symbol))(sympy.Symbol("t"))]
+                [
+                    symbol,
+                    sympy.Symbol(str(symbol), real=True),
+                    sympy.Function(str(symbol))(sympy.Symbol("t")),
+                ]
             )
             for symbol in free
             if isinstance(symbol, sympy.Symbol)
@@ -231,9 +258,9 @@ def random_form(public, answer, chance):
         again, put = flat(result)
         result = put([sympy.sympify(entry).xreplace(changes) for entry in again])
     if isinstance(result, sympy.MatrixBase):
-        result = chance.choice([lambda m: m, sympy.ImmutableMatrix, lambda m: m.tolist() if m.cols > 1 else list(m)])(
-            result
-        )
+        result = chance.choice(
+            [lambda m: m, sympy.ImmutableMatrix, lambda m: m.tolist() if m.cols > 1 else list(m)]
+        )(result)
     return result
 
 
@@ -247,7 +274,9 @@ def _shuffled(expression, chance, free):
     luck = chance.random()
     if luck < 0.1:
         symbol = chance.choice(free)
-        return sympy.Mul(result, sympy.Add(sin(symbol) ** 2, cos(symbol) ** 2, evaluate=False), evaluate=False)
+        return sympy.Mul(
+            result, sympy.Add(sin(symbol) ** 2, cos(symbol) ** 2, evaluate=False), evaluate=False
+        )
     if luck < 0.2:
         extra = chance.choice(free) + chance.randint(1, 5)
         return sympy.Add(result, extra, -extra, evaluate=False)
@@ -294,13 +323,17 @@ def another_answer(public, answer, chance=None):
     if hasattr(answer, "to_matrix"):
         return answer * Rational(17, 13)
     entries, put = flat(answer)
-    return put([entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)])
+    return put(
+        [entry * Rational(17, 13) + Rational(11, 37) for entry in map(sympy.sympify, entries)]
+    )
 
 
 def roots_for_cosines(answer):
-    """Answers in which one function of one symbol is a root that agrees with it in some quadrants only.
+    """Answers in which one function of one symbol is a root that agrees with it in some quadrants
+    only.
 
-    Pairs of a name and an answer: ``sqrt(1 - sin(x)**2)`` for ``cos(x)``, for every symbol and function that occurs.
+    Pairs of a name and an answer: ``sqrt(1 - sin(x)**2)`` for ``cos(x)``, for every symbol and
+    function that occurs.
     """
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]
@@ -308,12 +341,16 @@ def roots_for_cosines(answer):
     for function, other in ((cos, sin), (sin, cos)):
         for part in sorted(set().union(*(entry.atoms(function) for entry in entries)), key=str):
             root = sqrt(1 - other(part.args[0]) ** 2)
-            found.append((f"{root} for {part}", put([entry.xreplace({part: root}) for entry in entries])))
+            found.append(
+                (f"{root} for {part}", put([entry.xreplace({part: root}) for entry in entries]))
+            )
     return found
 
 
 def mutant(answer, chance):
-    """The answer with one small thing changed by chance; it may still be right, and whoever asks must look."""
+    """The answer with one small thing changed by chance; it may still be right, and whoever asks
+    must look.
+    """
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]
     place = chance.randrange(len(entries))
@@ -322,17 +359,31 @@ def mutant(answer, chance):
 
 
 def _mutated(expression, chance):
-    parts = [part for part in sympy.preorder_traversal(expression) if not isinstance(part, AppliedUndef)]
+    parts = [
+        part for part in sympy.preorder_traversal(expression) if not isinstance(part, AppliedUndef)
+    ]
     part = chance.choice(parts)
     changes = [lambda: -part, lambda: 2 * part, lambda: part / 2, lambda: part + Rational(1, 1000)]
     if isinstance(part, (sin, cos)):
         changes += [lambda: (cos if isinstance(part, sin) else sin)(part.args[0])] * 3
-        changes += [lambda: part.func(2 * part.args[0]), lambda: tan(part.args[0]), lambda: sympy.Abs(part)]
-        changes += [lambda: sqrt(1 - (cos if isinstance(part, sin) else sin)(part.args[0]) ** 2)] * 3
+        changes += [
+            lambda: part.func(2 * part.args[0]),
+            lambda: tan(part.args[0]),
+            lambda: sympy.Abs(part),
+        ]
+        changes += [
+            lambda: sqrt(1 - (cos if isinstance(part, sin) else sin)(part.args[0]) ** 2)
+        ] * 3
     if isinstance(part, (sympy.Add, sympy.Mul)) and len(part.args) > 1:
-        changes += [lambda: part.func(*part.args[1:]), lambda: part.func(-part.args[0], *part.args[1:])] * 2
+        changes += [
+            lambda: part.func(*part.args[1:]),
+            lambda: part.func(-part.args[0], *part.args[1:]),
+        ] * 2
     if isinstance(part, sympy.Symbol):
-        changes += [lambda: sympy.Abs(part), lambda: chance.choice(sorted(expression.free_symbols, key=str))] * 2
+        changes += [
+            lambda: sympy.Abs(part),
+            lambda: chance.choice(sorted(expression.free_symbols, key=str)),
+        ] * 2
     if not expression.has(part):
         return expression
     try:

@@ -11,9 +11,11 @@ from .release import KERNEL, release
 
 NOTEBOOK = "first-steps"
 CELLS = [
-    "# First steps\n\nRun the cell below first. Then answer in place of the dots and run the check.",
+    "# First steps\n\nRun the cell below first. Then answer in place of the dots and "
+    "run the check.",
     "import sympy as sm\nfrom coursework import check\n\nb, h, x = sm.symbols('b, h, x')",
-    "## Area\n\nA triangle has a base of length $b$ and a height of length $h$. Give its area as `area`.",
+    "## Area\n\nA triangle has a base of length $b$ and a height of length $h$. Give its "
+    "area as `area`.",
     "### BEGIN SOLUTION\narea = b * h / 2\n### END SOLUTION",
     """check('first-steps/area', area)
 ### BEGIN HIDDEN TESTS
@@ -30,7 +32,8 @@ question('first-steps/slope', kind='expression', symbols='x', worth=2,
          mistakes={'The product rule has a second term.': 2 * x * sm.sin(x)},
          solution='By the product rule the derivative is $2x\\\\sin(x) + x^2\\\\cos(x)$.')
 ### END HIDDEN TESTS""",
-    "## Mean\n\nWrite a function `mean(numbers)` that returns the arithmetic mean of a list of numbers.",
+    "## Mean\n\nWrite a function `mean(numbers)` that returns the arithmetic mean of a list of "
+    "numbers.",
     '### BEGIN SOLUTION\ndef mean(numbers):\n    """Return the arithmetic mean."""\n'
     "    return sum(numbers) / len(numbers)\n### END SOLUTION",
     """check('first-steps/mean', mean)
@@ -144,7 +147,9 @@ def new(folder):
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(text.format(title=title.replace('"', "'")), "utf8")
     cells = [
-        nbformat.v4.new_markdown_cell(text) if text.startswith(("# ", "## ")) else nbformat.v4.new_code_cell(text)
+        nbformat.v4.new_markdown_cell(text)
+        if text.startswith(("# ", "## "))
+        else nbformat.v4.new_code_cell(text)
         for text in CELLS
     ]
     for number, cell in enumerate(cells):
@@ -161,6 +166,7 @@ def new(folder):
     made = sorted(path for path in folder.rglob("*") if path.is_file())
     return [
         *(f"made  {path}" for path in made),
-        f"The course works as it is: `cd {shlex.quote(str(folder))}`, then `coursework try {NOTEBOOK}/area`.",
+        f"The course works as it is: `cd {shlex.quote(str(folder))}`, then `coursework try "
+        f"{NOTEBOOK}/area`.",
         f"Students get {course.archive}.",
     ]

@@ -19,8 +19,8 @@ from .course import Course, find_course
 
 #: Every file of an archive carries this time, so that the same contents are the same bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
-#: What each distribution holds of coursework, what it needs, and its one line. Students get neither the author's
-#: tools nor the grader.
+#: What each distribution holds of coursework, what it needs, and its one line. Students get neither
+#: the author's tools nor the grader.
 DISTRIBUTIONS = {
     "coursework-checks": (
         ("*.py", "py.typed", "checking/*.py"),
@@ -46,7 +46,8 @@ DISTRIBUTIONS = {
             "pyyaml",  # Gradescope's table of submissions
             "tornado",  # the page to judge in
         ),
-        "Exercises in notebooks that check themselves and hold no answers: what authors and instructors need",
+        "Exercises in notebooks that check themselves and hold no answers: what authors and "
+        "instructors need",
     ),
 }
 README = """Exercises of {title}
@@ -113,14 +114,17 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     with tempfile.TemporaryDirectory() as folder:
         module, _, function = course.package.partition(":")
         wheels = (
-            getattr(import_module(module), function)(folder) if course.package else [wheel("coursework-checks", folder)]
+            getattr(import_module(module), function)(folder)
+            if course.package
+            else [wheel("coursework-checks", folder)]
         )
         packages = {path.name: path.read_bytes() for path in wheels}
     files = {
         "README.txt": README.format(title=course.title).encode("utf8"),
         # The manifest has the digest of each.
         "requirements.txt": "".join(
-            f"{one}\n" for one in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
+            f"{one}\n"
+            for one in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
         ).encode(),
         **packages,
     }
@@ -128,7 +132,8 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
     if not course.package:
         files |= {f"sealed/{path.name}": path.read_bytes() for path in course.sealed.glob("*.json")}
         files |= {
-            f"sealed/variants/{path.name}": path.read_bytes() for path in (course.sealed / "variants").glob("*.json")
+            f"sealed/variants/{path.name}": path.read_bytes()
+            for path in (course.sealed / "variants").glob("*.json")
         }
     files[MANIFEST] = manifest(files).encode()
     write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
@@ -136,16 +141,26 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
 
 
 def archive_of(folder: str | Path, target: str | Path) -> Path:
-    """Make the archive for students of the course in a folder: for what makes pages of a course to offer."""
+    """Make the archive for students of the course in a folder: for what makes pages of a course to
+    offer.
+    """
     return archive(find_course(folder), target)
 
 
-def dated(stated: str, tag: str, folder: str | Path, paths: Sequence[str] = (".",), files: Sequence[Path] = ()) -> str:
-    """The version of a package that is built from its sources: as it is stated, or ``1.2.0.post20261122093000``.
+def dated(
+    stated: str,
+    tag: str,
+    folder: str | Path,
+    paths: Sequence[str] = (".",),
+    files: Sequence[Path] = (),
+) -> str:
+    """The version of a package that is built from its sources: as it is stated, or
+    ``1.2.0.post20261122093000``.
 
-    A package that students hold is only replaced by one of another version. So the version that the sources state is
-    for those of its tag alone; built from others, it adds when they were last changed, in UTC: when they were last
-    committed or, where something is not committed or there is no repository, when those files were written.
+    A package that students hold is only replaced by one of another version. So the version that the
+    sources state is for those of its tag alone; built from others, it adds when they were last
+    changed, in UTC: when they were last committed or, where something is not committed or there is
+    no repository, when those files were written.
 
     Parameters
     ----------
@@ -162,7 +177,9 @@ def dated(stated: str, tag: str, folder: str | Path, paths: Sequence[str] = ("."
         """What git says, or nothing where there is no git, or no repository that it would read."""
         if not shutil.which("git"):
             return ""
-        done = subprocess.run(["git", "-C", folder, *arguments, "--", *paths], capture_output=True, text=True)
+        done = subprocess.run(
+            ["git", "-C", folder, *arguments, "--", *paths], capture_output=True, text=True
+        )
         return done.stdout.strip() if done.returncode == 0 else ""
 
     def named(*arguments: str) -> list[Path]:
@@ -171,7 +188,9 @@ def dated(stated: str, tag: str, folder: str | Path, paths: Sequence[str] = ("."
     committed = git("log", "-1", "--format=%ct")
     if committed:
         unknown = named("ls-files", "--others", "--exclude-standard")
-        if git("log", "-1", "--format=%ct", tag) and not unknown + named("diff", "--name-only", "--relative", tag):
+        if git("log", "-1", "--format=%ct", tag) and not unknown + named(
+            "diff", "--name-only", "--relative", tag
+        ):
             return stated
         files = unknown + named("diff", "--name-only", "--relative", "HEAD")
     # Of a file that is gone, the folder that it stood in tells when.
@@ -180,7 +199,9 @@ def dated(stated: str, tag: str, folder: str | Path, paths: Sequence[str] = ("."
 
 
 def _own_version(root: Path) -> str:
-    """The version of this package; where it was installed from a wheel, that is the version of the wheel."""
+    """The version of this package; where it was installed from a wheel, that is the version of the
+    wheel.
+    """
     tracked = (
         shutil.which("git")
         and not subprocess.run(
@@ -192,7 +213,9 @@ def _own_version(root: Path) -> str:
 
 
 def wheel(name: str, folder: str | Path) -> Path:
-    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its file."""
+    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its
+    file.
+    """
     patterns, needs, summary = DISTRIBUTIONS[name]
     root = Path(coursework.__file__).parent
     version = _own_version(root)
@@ -204,9 +227,23 @@ def wheel(name: str, folder: str | Path) -> Path:
     }
     if "coursework/__init__.py" in files:
         text = files["coursework/__init__.py"].decode("utf8")
-        files["coursework/__init__.py"] = VERSION.sub(f'__version__ = "{version}"', text).encode("utf8")
-    command = "[console_scripts]\ncoursework = coursework.__main__:main\n" if name == "coursework-checks" else ""
-    return write_wheel(folder, name, version, summary, [one.format(version=version) for one in needs], files, command)
+        files["coursework/__init__.py"] = VERSION.sub(f'__version__ = "{version}"', text).encode(
+            "utf8"
+        )
+    command = (
+        "[console_scripts]\ncoursework = coursework.__main__:main\n"
+        if name == "coursework-checks"
+        else ""
+    )
+    return write_wheel(
+        folder,
+        name,
+        version,
+        summary,
+        [one.format(version=version) for one in needs],
+        files,
+        command,
+    )
 
 
 def write_wheel(
@@ -223,11 +260,16 @@ def write_wheel(
     about = ABOUT.format(name=name, version=version, summary=summary)
     files = {
         **files,
-        f"{place}.dist-info/METADATA": (about + "".join(f"Requires-Dist: {one}\n" for one in needs)).encode(),
+        f"{place}.dist-info/METADATA": (
+            about + "".join(f"Requires-Dist: {one}\n" for one in needs)
+        ).encode(),
         f"{place}.dist-info/WHEEL": WHEEL.encode(),
         f"{place}.dist-info/entry_points.txt": entry_points.encode(),
     }
-    lines = [f"{name},sha256={_digest(content)},{len(content)}\n" for name, content in sorted(files.items())]
+    lines = [
+        f"{name},sha256={_digest(content)},{len(content)}\n"
+        for name, content in sorted(files.items())
+    ]
     record = f"{place}.dist-info/RECORD"
     files[record] = "".join([*lines, f"{record},,\n"]).encode()
     return write_zip(Path(folder, f"{place}-py3-none-any.whl"), files)

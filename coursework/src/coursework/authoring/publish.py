@@ -1,15 +1,16 @@
 """``coursework publish``: a site of a course, made by a package that makes pages from notebooks.
 
-Such a package offers itself by an entry point, and gets nothing but files: notebooks, wheels, an archive. So neither
-needs to know the other:
+Such a package offers itself by an entry point, and gets nothing but files: notebooks, wheels, an
+archive. So neither needs to know the other:
 
 .. code-block:: toml
 
     [project.entry-points."coursework.pages"]
     name = "module:function"
 
-``function(parts, workshop, site)`` makes the folder ``site``, and may work in the folder ``workshop``. ``parts`` is
-what :func:`parts_of` describes, or a later format of it, which it must refuse.
+``function(parts, workshop, site)`` makes the folder ``site``, and may work in the folder
+``workshop``. ``parts`` is what :func:`parts_of` describes, or a later format of it, which it must
+refuse.
 """
 
 import re
@@ -54,7 +55,9 @@ def publish(course, site, room=False):
     if site.exists() and any(site.iterdir()) and not (site / "index.html").is_file():
         raise AuthorError(f"{site} holds something that is no site; nothing was changed.")
     if not any(course.exercises.glob("*.ipynb")):
-        raise AuthorError(f"There are no exercises in {course.exercises}: `coursework release` makes them.")
+        raise AuthorError(
+            f"There are no exercises in {course.exercises}: `coursework release` makes them."
+        )
     with tempfile.TemporaryDirectory() as folder:
         parts = parts_of(course, folder)
         try:
@@ -72,9 +75,10 @@ def parts_of(course, folder):
     Returns
     -------
     dict
-        ``format``; ``title``; ``notebooks``, the files that students get, in their order; ``archive``, the zip with all
-        of them; ``wheels``, the files of the packages that they import, each after those that it needs; ``plugin``, the
-        module among them that holds the sealed questions.
+        ``format``; ``title``; ``notebooks``, the files that students get, in their order;
+        ``archive``, the zip with all of them; ``wheels``, the files of the packages that they
+        import, each after those that it needs; ``plugin``, the module among them that holds the
+        sealed questions.
     """
     if course.package:
         module, _, function = course.package.partition(":")
@@ -93,7 +97,9 @@ def parts_of(course, folder):
 
 
 def questions_wheel(course, module, folder):
-    """The sealed questions of a course as a package that ``check`` finds wherever it is installed."""
+    """The sealed questions of a course as a package that ``check`` finds wherever it is
+    installed.
+    """
     sealed = sorted(course.sealed.rglob("*.json"))
     version = dated("1.0", f"{module}-1.0", course.sealed, files=sealed)
     return write_wheel(
@@ -108,12 +114,16 @@ def _maker():
     offers = list(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
-            "Nothing here makes pages from notebooks. Install notebook-pages beside coursework, from its folder in the "
-            "repository of coursework; `python -m notebook_pages.set_up` then fetches what pages are made with."
+            "Nothing here makes pages from notebooks. Install notebook-pages beside coursework, "
+            "from its folder in the "
+            "repository of coursework; `python -m notebook_pages.set_up` then fetches what pages "
+            "are made with."
         )
     if len(offers) > 1:
         named = " and ".join(f"{one.dist.name} ({one.value})" for one in offers)
-        raise AuthorError(f"More than one package makes pages: {named}. Leave one of them installed.")
+        raise AuthorError(
+            f"More than one package makes pages: {named}. Leave one of them installed."
+        )
     return offers[0].load()
 
 
@@ -130,7 +140,8 @@ def _fetch_wheels(archive, target):
             "--only-binary=:all:",
         ]
         done = subprocess.run(
-            [*command, "--dest", target, "--requirement", "requirements.txt"], cwd=Path(folder, "exercises")
+            [*command, "--dest", target, "--requirement", "requirements.txt"],
+            cwd=Path(folder, "exercises"),
         )
     if done.returncode:
         raise AuthorError("pip could not fetch all wheels: see above. The pages are made.")

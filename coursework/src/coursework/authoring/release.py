@@ -1,8 +1,10 @@
-"""From the notebooks with the solutions to the exercises that students get, and the questions sealed for them.
+"""From the notebooks with the solutions to the exercises that students get, and the questions
+sealed for them.
 
-The cells of each source are run, so that the right answers are what the solutions compute, and two things are
-made of it: the exercise notebook with blanks, and the file of sealed questions. The same sources give the same
-bytes. :mod:`coursework.authoring.packing` makes the archive that students download.
+The cells of each source are run, so that the right answers are what the solutions compute, and two
+things are made of it: the exercise notebook with blanks, and the file of sealed questions. The same
+sources give the same bytes. :mod:`coursework.authoring.packing` makes the archive that students
+download.
 """
 
 from __future__ import annotations
@@ -95,8 +97,14 @@ class Made(NamedTuple):
 
 
 def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
-    """Whether a cell is the text of a question with variants, which students are shown by the cell before."""
-    return number > 0 and cells[number].cell_type == "markdown" and drawn_in(cells[number - 1].source) is not None
+    """Whether a cell is the text of a question with variants, which students are shown by the cell
+    before.
+    """
+    return (
+        number > 0
+        and cells[number].cell_type == "markdown"
+        and drawn_in(cells[number - 1].source) is not None
+    )
 
 
 def exercise_notebook(source: Source) -> NotebookNode:
@@ -113,7 +121,9 @@ def exercise_notebook(source: Source) -> NotebookNode:
             continue
         elif number in source.figures:
             cells.append(
-                nbformat.v4.new_markdown_cell(image(source.figures[number].picture(), source.figures[number].alt))
+                nbformat.v4.new_markdown_cell(
+                    image(source.figures[number].picture(), source.figures[number].alt)
+                )
             )
         elif cell.cell_type == "markdown":
             cells.append(nbformat.v4.new_markdown_cell(cell.source))
@@ -126,10 +136,14 @@ def exercise_notebook(source: Source) -> NotebookNode:
                 if re.search(rf"check\(\s*['\"]{re.escape(name)}['\"]", code.source)
             ]
             if blanks:
-                code.metadata["nbgrader"] = _nbgrader(code, _identifier(owners[blanks[0]]), solution=True)
+                code.metadata["nbgrader"] = _nbgrader(
+                    code, _identifier(owners[blanks[0]]), solution=True
+                )
             elif graded:
                 code.metadata["nbgrader"] = _nbgrader(
-                    code, f"check-{_identifier(graded[0].name)}", points=sum(question.worth for question in graded)
+                    code,
+                    f"check-{_identifier(graded[0].name)}",
+                    points=sum(question.worth for question in graded),
                 )
             cells.append(code)
     for number, cell in enumerate(cells):
@@ -188,13 +202,16 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
         timeout=120,
         kernel_name="python3",
         resources={"metadata": {"path": str(folder)}},
-        extra_arguments=["--IPKernelApp.log_level=ERROR"],  # it warns of its own sockets, which are on this machine
+        extra_arguments=[
+            "--IPKernelApp.log_level=ERROR"
+        ],  # it warns of its own sockets, which are on this machine
     )
     try:
         client.execute()
     except CellExecutionError as error:
         raise AuthorError(
-            f"The notebook for students does not run with its blanks as they are: {error.ename}: {error.evalue}. Does "
+            f"The notebook for students does not run with its blanks as they are: {error.ename}: "
+            f"{error.evalue}. Does "
             f"a cell that is no solution use an answer? {error.traceback.partition(chr(10) * 3)[0]}"
         ) from None
     for cell in notebook.cells:
@@ -206,9 +223,12 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
 
 
 def sealed_file(
-    source: Source, first: Mapping[str, dict[str, Any]] | None = None, pages: Mapping[str, Pages] | None = None
+    source: Source,
+    first: Mapping[str, dict[str, Any]] | None = None,
+    pages: Mapping[str, Pages] | None = None,
 ) -> str:
-    """The text of the file with the sealed questions of a notebook; of a variant, what differs from the ``first``.
+    """The text of the file with the sealed questions of a notebook; of a variant, what differs from
+    the ``first``.
 
     ``pages`` are those of the first variant, by the name of the question.
     """
@@ -233,13 +253,17 @@ def _release_one(path: Path, course: Course) -> Made:
     source = read_source(path, edition=course.edition)
     for name, question in source.questions.items():
         for text in question.no_mistakes:
-            raise AuthorError(f"{name}, in {path.name}: This authored mistake gives the right answer: {text}")
+            raise AuthorError(
+                f"{name}, in {path.name}: This authored mistake gives the right answer: {text}"
+            )
         for fault in told_openly(question, secrets_of(source)) if question.ladder else ():
             raise AuthorError(f"{name}, in {path.name}: {fault}")
     if source.rules and not source.asks_who and source.name != CHAPTERS:
         raise AuthorError(
-            f"{path.name}: students say nowhere who they are, so all would get the same numbers. Near the top, write a "
-            'cell `student("")`, with `from coursework import check, hint, student, variant` above it.'
+            f"{path.name}: students say nowhere who they are, so all would get the same numbers. "
+            "Near the top, write a "
+            'cell `student("")`, with `from coursework import check, hint, student, '
+            "variant` above it."
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
@@ -251,7 +275,11 @@ def _release_one(path: Path, course: Course) -> Made:
         pages,
         solution_code(source.notebook),
         {name: _about_answer(source.questions[name]) for name in source.rules},
-        {name: list(question.after) for name, question in source.questions.items() if question.after},
+        {
+            name: list(question.after)
+            for name, question in source.questions.items()
+            if question.after
+        },
     )
 
 
@@ -260,7 +288,9 @@ def _about_answer(question: AuthoredQuestion) -> AboutAnswer:
 
 
 def _answer_of(question: AuthoredQuestion) -> str:
-    """A short text that is the same for variants with one answer, whatever points each is compared at."""
+    """A short text that is the same for variants with one answer, whatever points each is compared
+    at.
+    """
     public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
     numbers = canonical(public, reading) if reading.text is None else []
@@ -268,12 +298,15 @@ def _answer_of(question: AuthoredQuestion) -> str:
 
 
 def _demand_answers(name: str, answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
-    """Variants with one answer are one question: what a classmate has found is right for everybody."""
+    """Variants with one answer are one question: what a classmate has found is right for
+    everybody.
+    """
     for question in answers[0]:
         found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
-                f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: what is drawn "
+                f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: "
+                "what is drawn "
                 "does not change it. Draw what the answer depends on, or ask it without variants."
             )
 
@@ -285,35 +318,50 @@ def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
             file = course.sources / f"{one.partition('/')[0]}.ipynb"
             if not file.is_file() or one not in names_asked(file):
                 now = f" It is called '{course.moved[one]}' now." if one in course.moved else ""
-                raise AuthorError(f"{question}: `after` names '{one}', and no notebook asks such a question.{now}")
+                raise AuthorError(
+                    f"{question}: `after` names '{one}', and no notebook asks such a question.{now}"
+                )
 
 
-def _release_variant(path: Path, number: int, pages: Mapping[str, Pages], course: Course) -> dict[str, AboutAnswer]:
+def _release_variant(
+    path: Path, number: int, pages: Mapping[str, Pages], course: Course
+) -> dict[str, AboutAnswer]:
     """Solve, try and seal one variant of a notebook's questions.
 
-    What came of it is kept beside the archive, under a name that follows from all that it was made with: the source,
-    our code, the versions of what computes the answers, and the pages of the first variant, to which its own point.
+    What came of it is kept beside the archive, under a name that follows from all that it was made
+    with: the source, our code, the versions of what computes the answers, and the pages of the
+    first variant, to which its own point.
     """
     first = (course.sealed / f"{path.stem}.json").read_text("utf8")
-    digest = hashlib.sha256("\n".join([course.edition, str(number), digest_of_code(), *_versions(), first]).encode())
+    digest = hashlib.sha256(
+        "\n".join([course.edition, str(number), digest_of_code(), *_versions(), first]).encode()
+    )
     digest.update(path.read_bytes())
-    kept = course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
+    kept = (
+        course.archive.parent / "variants" / f"{path.stem}-{number}-{digest.hexdigest()[:16]}.json"
+    )
     answers = kept.with_name(f"{kept.stem}-answers.json")
     if not (kept.exists() and answers.exists()):
         source = read_source(path, number, course.edition)
         for name, question in source.questions.items():
             faults = try_question(question, budget=0, against_sealed=False).faults
             if faults:
-                raise AuthorError(f"{name}, variant {number}, {dict(question.public.given)}: {faults[0]}")
+                raise AuthorError(
+                    f"{name}, variant {number}, {dict(question.public.given)}: {faults[0]}"
+                )
         kept.parent.mkdir(parents=True, exist_ok=True)
         for outdated in kept.parent.glob(f"{path.stem}-{number}-*.json"):
             outdated.unlink()
         kept.write_text(sealed_file(source, json.loads(first)["questions"], pages), "utf8")
-        answers.write_text(json.dumps({name: _about_answer(one) for name, one in source.questions.items()}), "utf8")
+        answers.write_text(
+            json.dumps({name: _about_answer(one) for name, one in source.questions.items()}), "utf8"
+        )
     target = course.sealed / "variants" / f"{path.stem}-{number}.json"
     target.parent.mkdir(exist_ok=True)
     shutil.copyfile(kept, target)
-    return fields.by_name(AboutAnswer.from_json)(json.loads(answers.read_text("utf8")), str(answers))
+    return fields.by_name(AboutAnswer.from_json)(
+        json.loads(answers.read_text("utf8")), str(answers)
+    )
 
 
 def _versions() -> Iterator[str]:
@@ -325,10 +373,12 @@ def _versions() -> Iterator[str]:
 
 
 def _even_out(name: str, code: str, course: Course) -> None:
-    """Give all variants of a question as many lockers as the one but most of them has, with empty ones.
+    """Give all variants of a question as many lockers as the one but most of them has, with empty
+    ones.
 
-    How many there are follows from the answer: from what mistakes lead to the same, and how near to the edges of
-    their cells the numbers lie. Over sixteen variants that singles out a right formula with no slow hash at all.
+    How many there are follows from the answer: from what mistakes lead to the same, and how near to
+    the edges of their cells the numbers lie. Over sixteen variants that singles out a right formula
+    with no slow hash at all.
     """
     first = course.sealed / f"{name}.json"
     variants = sorted((course.sealed / "variants").glob(f"{name}-*.json"))
@@ -353,14 +403,26 @@ def _even_out(name: str, code: str, course: Course) -> None:
         file.write_text(_as_text(content), "utf8")
 
 
-def _add_names_for_others(name: str, answers: Sequence[Mapping[str, AboutAnswer]], course: Course) -> None:
-    """Seal with the first variant of each question what is right in any: so a classmate's answer is recognised."""
+def _add_names_for_others(
+    name: str, answers: Sequence[Mapping[str, AboutAnswer]], course: Course
+) -> None:
+    """Seal with the first variant of each question what is right in any: so a classmate's answer is
+    recognised.
+    """
     file = course.sealed / f"{name}.json"
     content = json.loads(file.read_text("utf8"))
     for question in answers[0]:
-        names = [bytes.fromhex(text) for one in answers if question in one for text in one[question].names]
+        names = [
+            bytes.fromhex(text)
+            for one in answers
+            if question in one
+            for text in one[question].names
+        ]
         if names:
-            content["questions"][question]["others"] = [salt_of_all(question), sealing.pack_names(names, TOGETHER)]
+            content["questions"][question]["others"] = [
+                salt_of_all(question),
+                sealing.pack_names(names, TOGETHER),
+            ]
     file.write_text(_as_text(content), "utf8")
 
 
@@ -369,14 +431,18 @@ def _run_one(path: Path, sealed: Path) -> None:
 
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        # The sealed questions stand beside the notebook, as they do where there is no package for them.
+        # The sealed questions stand beside the notebook, as they do where there is no package for
+        # them.
         shutil.copytree(sealed, Path(folder, "sealed"))
         run_notebook(notebook, folder)
     nbformat.write(notebook, path)
 
 
 def release(
-    course: Course, only: Collection[str] = (), run: bool = True, variants: Collection[int] | None = None
+    course: Course,
+    only: Collection[str] = (),
+    run: bool = True,
+    variants: Collection[int] | None = None,
 ) -> list[str]:
     """Make the exercise notebooks and the sealed questions.
 
@@ -398,7 +464,8 @@ def release(
     Raises
     ------
     AuthorError
-        A question is not well posed, or the folders hold what these sources do not make. Nothing is ever deleted.
+        A question is not well posed, or the folders hold what these sources do not make. Nothing is
+        ever deleted.
     """
     _demand_sources(course, {path.stem for path in notebooks_in(course.sources)})
     paths = notebooks_in(course.sources, only)
@@ -422,7 +489,9 @@ def release(
                 answers[path].append(more)
         for path in paths:
             _demand_answers(path.name, answers[path])
-        _demand_later(course, {question: later for one in made for question, later in one.after.items()})
+        _demand_later(
+            course, {question: later for one in made for question, later in one.after.items()}
+        )
         for one in made:
             for path in (course.sealed / "variants").glob(f"{one.name}-*.json"):
                 number = path.stem.removeprefix(f"{one.name}-")
@@ -431,7 +500,9 @@ def release(
             _even_out(one.name, one.code, course)
             _add_names_for_others(one.name, answers[course.sources / f"{one.name}.ipynb"], course)
         if run:
-            exercises = [course.exercises / f"{one.name}.ipynb" for one in made if one.name != CHAPTERS]
+            exercises = [
+                course.exercises / f"{one.name}.ipynb" for one in made if one.name != CHAPTERS
+            ]
             list(pool.map(_run_one, exercises, [course.sealed] * len(exercises)))
     return [one.name for one in made]
 
@@ -448,7 +519,8 @@ def _demand_sources(course: Course, known: Collection[str]) -> None:
         raise AuthorError(
             f"{others[0]} is made of no notebook in {course.sources}"
             + (f", and neither are {len(others) - 1} other files" if others[1:] else "")
-            + ". Nothing was changed: delete what is no longer wanted yourself, or name other folders."
+            + ". Nothing was changed: delete what is no longer wanted yourself, or name other "
+            "folders."
         )
 
 

@@ -1,7 +1,8 @@
-"""Questions tried before students get them: right forms pass, each mistake has its message, nothing leaks.
+"""Questions tried before students get them: right forms pass, each mistake has its message, nothing
+leaks.
 
-The result is a page for the author: what each question recognises, how hard it is to guess, and what is wrong
-with it, if anything is.
+The result is a page for the author: what each question recognises, how hard it is to guess, and
+what is wrong with it, if anything is.
 """
 
 import base64
@@ -84,7 +85,10 @@ td::before{content:attr(data-of) ": ";font-weight:600}
 td details{display:inline-block;max-width:100%;vertical-align:top}
 }
 """
-NO_LEAK = "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is released.</p>"
+NO_LEAK = (
+    "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is "
+    "released.</p>"
+)
 
 
 class Finding(NamedTuple):
@@ -115,8 +119,9 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     found : Found, optional
         What came of the attack, where it is known.
 
-    Answers are compared with what is sealed before the slow hash locks it up: that the locks hold the same is
-    shown by the right answer here, and for the rest by the release, which makes the locks of nothing else.
+    Answers are compared with what is sealed before the slow hash locks it up: that the locks hold
+    the same is shown by the right answer here, and for the rest by the release, which makes the
+    locks of nothing else.
     """
     faults = []
     if kinds()[question.public.kind].by_a_person:
@@ -125,12 +130,18 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     for form, answer in forms:
         reply = _judge(question, answer)
         if reply.outcome != "correct":
-            faults.append(f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}')
+            faults.append(
+                f'The right answer in the form "{form}" gets "{reply.outcome}": {reply.messages}'
+            )
     words = kinds()[question.public.kind].text or question.public.kind == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
         faults.append(f"The right answer was tried in {len(forms)} forms only.")
     there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
-    sealed = notebook_questions(question.name.partition("/")[0], question.number)[question.name] if there else None
+    sealed = (
+        notebook_questions(question.name.partition("/")[0], question.number)[question.name]
+        if there
+        else None
+    )
     expected = "recorded" if question.public.exam else "correct"
     if sealed and judge(question.name, sealed, question.plain).outcome != expected:
         faults.append("The right answer does not open what is sealed: make the release anew.")
@@ -139,9 +150,12 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     if blank.outcome != "not attempted":
         faults.append(f'The untouched blank gets "{blank.outcome}".')
     others = (
-        question.to_plain(another_answer(question.public, question.answer, random.Random(seed))) for seed in range(9)
+        question.to_plain(another_answer(question.public, question.answer, random.Random(seed)))
+        for seed in range(9)
     )
-    other = next((plain for plain in others if question.fingerprint_of(plain) not in question.entries), None)
+    other = next(
+        (plain for plain in others if question.fingerprint_of(plain) not in question.entries), None
+    )
     other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if other.outcome == "correct" or other.outcome == "wrong" and other.note:
         faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
@@ -160,9 +174,15 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
 
 
 def _try_text(question):
-    """A question whose answers a person reads: the untouched blank is none, and every text is put aside."""
+    """A question whose answers a person reads: the untouched blank is none, and every text is put
+    aside.
+    """
     outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
-    faults = [] if outcomes == ["not attempted", "not attempted", "undecided"] else [f"Its answers get {outcomes}."]
+    faults = (
+        []
+        if outcomes == ["not attempted", "not attempted", "undecided"]
+        else [f"Its answers get {outcomes}."]
+    )
     if not question.rubric:
         faults.append("Nothing says what a person looks for: give a `rubric`.")
     name, kind = question.name, question.public.kind
@@ -193,13 +213,17 @@ def _try_mistakes(question, faults):
             named.append((mistake.note, f"(refused for its form) {refused}"))
             continue
         except KeyError:
-            faults.append(f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: {reply.messages}')
+            faults.append(
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: '
+                f"{reply.messages}"
+            )
             continue
         known = [note for answer in entry.answers for note in answer.notes]
         covered = mistake.note in GENERAL and known
         if reply.outcome != "wrong" or not covered and (mistake.note, mistake.details) not in known:
             faults.append(
-                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its own message.'
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its '
+                "own message."
             )
         elif not reply.messages:
             faults.append(f'The mistake "{mistake.note}" has no message.')
@@ -211,7 +235,9 @@ def _try_mistakes(question, faults):
 
 
 def secrets_of(source):
-    """Texts of a notebook with solutions that no student may receive, without spaces: what each is, and it."""
+    """Texts of a notebook with solutions that no student may receive, without spaces: what each is,
+    and it.
+    """
     found = []
     for cell in source.notebook.cells:
         if cell.cell_type == "code":
@@ -222,7 +248,9 @@ def secrets_of(source):
     for name, question in source.questions.items():
         for line in question.solution.splitlines():
             found.append((f"the worked solution of {name}", line))
-        for step in [step for steps in [*question.hints.values(), *question.after.values()] for step in steps]:
+        for step in [
+            step for steps in [*question.hints.values(), *question.after.values()] for step in steps
+        ]:
             found.append((f"a hint of {name}", step))
         if kinds()[question.public.kind].entries:
             found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
@@ -231,7 +259,8 @@ def secrets_of(source):
         for cell in source.notebook.cells
         for line in HIDDEN.sub("", SOLUTION.sub("", cell.source)).splitlines()
     }
-    # What stands in place of a solution is given too: the signature of a function and its docstring.
+    # What stands in place of a solution is given too: the signature of a function and its
+    # docstring.
     owners = {question.variable: name for name, question in source.questions.items()}
     given |= {
         _dense(line)
@@ -240,19 +269,26 @@ def secrets_of(source):
         for line in blank(region, owners).splitlines()
     }
     # The arguments that a function is tried with are public: whoever checks it must call it.
-    given |= {_dense(json.dumps(question.public.calls or "")) for question in source.questions.values()}
+    given |= {
+        _dense(json.dumps(question.public.calls or "")) for question in source.questions.values()
+    }
     seen = {}
     for what, text in found:
         dense = _dense(text)
-        # Short lines stand anywhere, imports and marks tell nothing, and what the author gives openly
-        # elsewhere is no secret.
-        if len(dense) >= 14 and not _tells_nothing(text) and not any(dense.strip(",") in line for line in given):
+        # Short lines stand anywhere, imports and marks tell nothing, and what the author gives
+        # openly elsewhere is no secret.
+        if (
+            len(dense) >= 14
+            and not _tells_nothing(text)
+            and not any(dense.strip(",") in line for line in given)
+        ):
             seen.setdefault(dense, what)
     return seen
 
 
 def told_openly(question, secrets):
-    """The faults of the ladder of a question: no secret locks its steps, so anybody can read them with a few lines.
+    """The faults of the ladder of a question: no secret locks its steps, so anybody can read them
+    with a few lines.
 
     Parameters
     ----------
@@ -263,7 +299,9 @@ def told_openly(question, secrets):
     openly = "A step of its ladder, which anybody can open with a few lines of code,"
     faults = []
     for step in question.ladder:
-        faults += [f"{openly} holds {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)]
+        faults += [
+            f"{openly} holds {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)
+        ]
         for code in re.findall(r"`([^`]+)`", step):
             if _judge_code(question, code) == "correct":
                 faults.append(f"{openly} gives the right answer: {step}")
@@ -282,8 +320,13 @@ def _judge_code(question, code):
 
 
 def _tells_nothing(line):
-    """Whether a line is an import, a mark, or the head of a function, a class or a loop over what has a name."""
-    return re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line) is not None
+    """Whether a line is an import, a mark, or the head of a function, a class or a loop over what
+    has a name.
+    """
+    return (
+        re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line)
+        is not None
+    )
 
 
 def _writings(answer):
@@ -292,7 +335,9 @@ def _writings(answer):
     if isinstance(answer, tuple) and isinstance(answer[-1], str):
         answer = answer[0]  # of a number with its unit
     try:
-        expression = sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
+        expression = (
+            sympy.Matrix(answer) if isinstance(answer, (list, tuple)) else sympy.sympify(answer)
+        )
     except (TypeError, ValueError, sympy.SympifyError):
         return []
     if not hasattr(expression, "free_symbols"):
@@ -308,7 +353,9 @@ def _dense(text):
 
 
 def released_texts(exercises, sealed, archive):
-    """Everything that students receive, as texts by place: files, what is packed in them, and pictures."""
+    """Everything that students receive, as texts by place: files, what is packed in them, and
+    pictures.
+    """
     files = {
         str(path): path.read_bytes()
         for folder, pattern in ((exercises, "*.ipynb"), (sealed, "*.json"))
@@ -351,19 +398,30 @@ def _strings(data):
 
 def leaks(sources, texts):
     """Give every secret that stands in a released text: what it is, and where."""
-    return [leak for source in sources if source.name != CHAPTERS for leak in found_in(texts, secrets_of(source))]
+    return [
+        leak
+        for source in sources
+        if source.name != CHAPTERS
+        for leak in found_in(texts, secrets_of(source))
+    ]
 
 
 def found_in(texts, secrets):
     """Each of some secrets that stands in a text: what it is, and where."""
-    return [(what, place) for secret, what in secrets.items() for place, text in texts.items() if secret in text]
+    return [
+        (what, place)
+        for secret, what in secrets.items()
+        for place, text in texts.items()
+        if secret in text
+    ]
 
 
 # --- the page -----------------------------------------------------------------------------------
 
 
 def selftest(course, page=None, budget=BUDGET, only=()):
-    """Try all questions of a course, or of the notebooks that are named, look for leaks, and write the page.
+    """Try all questions of a course, or of the notebooks that are named, look for leaks, and write
+    the page.
 
     Returns
     -------
@@ -410,7 +468,8 @@ def measure(course, only=(), all_variants=False, budget=BUDGET):
     Returns
     -------
     list of str
-        A line for each question, one for each that counts much and is soon guessed, and the share of the points.
+        A line for each question, one for each that counts much and is soon guessed, and the share
+        of the points.
     """
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
@@ -423,7 +482,11 @@ def measure(course, only=(), all_variants=False, budget=BUDGET):
     found = {name: (one["worth"], weakest_of(one)) for name, one in measured.items()}
     return [
         *(f"{name}, {_of(worth, 'point')}: {one}" for name, (worth, one) in found.items()),
-        *(proposal(name, worth, one) for name, (worth, one) in found.items() if one.way and worth > LIGHT),
+        *(
+            proposal(name, worth, one)
+            for name, (worth, one) in found.items()
+            if one.way and worth > LIGHT
+        ),
         f"{said_beyond(measured)}.",
     ]
 
@@ -434,14 +497,19 @@ def _measured_in(path, course, all_variants=False, budget=BUDGET):
 
 
 def measured_of(source, course, names, all_variants=False, budget=BUDGET):
-    """What the attack finds of some questions of a notebook, by name: what is known of them is not tried again.
+    """What the attack finds of some questions of a notebook, by name: what is known of them is not
+    tried again.
 
-    Of each its points, a digest of all that the attack depends on, after how many tries each variant was found, 0 where
-    it was not and ``None`` where it was not attacked, and by what way the weakest.
+    Of each its points, a digest of all that the attack depends on, after how many tries each
+    variant was found, 0 where it was not and ``None`` where it was not attacked, and by what way
+    the weakest.
     """
     known, found = measured_questions(course.sources) if budget == BUDGET else {}, {}
     for name in names:
-        question, count = source.questions[name], source.rules[name].count if name in source.rules else 1
+        question, count = (
+            source.questions[name],
+            source.rules[name].count if name in source.rules else 1,
+        )
         digest = digest_of_question(source, course, name)
         one = known.get(name)
         if one is None or one["digest"] != digest or len(one["tries"]) not in (0, count):
@@ -460,7 +528,9 @@ def measured_of(source, course, names, all_variants=False, budget=BUDGET):
 def attack_variant(source, course, name, number, one, budget=BUDGET):
     """Attack a variant of a question, and write into ``one`` what came of it."""
     if number:
-        source = read_source(course.sources / f"{source.name}.ipynb", number, course.edition, only=[name])
+        source = read_source(
+            course.sources / f"{source.name}.ipynb", number, course.edition, only=[name]
+        )
     question = source.questions[name]
     found, before = attack(question, text_of(source, question, course), budget), weakest_of(one)
     one["tries"][number] = found.tries if found.way else 0
@@ -471,11 +541,15 @@ def attack_variant(source, course, name, number, one, budget=BUDGET):
 def weakest_of(one, budget=BUDGET):
     """What was found of the weakest variant of a question that was measured."""
     tries = [count for count in one["tries"] if count]
-    return Found(min(tries), one["way"]) if tries else Found(budget, "") if one["tries"] else NOTHING
+    return (
+        Found(min(tries), one["way"]) if tries else Found(budget, "") if one["tries"] else NOTHING
+    )
 
 
 def digest_of_question(source, course, name):
-    """A text that follows from what the attack on a question depends on: its cells, with the text, and the attack."""
+    """A text that follows from what the attack on a question depends on: its cells, with the text,
+    and the attack.
+    """
     cells, needed = source.notebook.cells, sorted(cells_needed(source.notebook, [name]))
     digest = hashlib.sha256(f"{digest_of_attack()} {course.edition} {name}".encode())
     for number in needed:
@@ -491,7 +565,9 @@ def digest_of_question(source, course, name):
 
 @functools.cache
 def digest_of_attack():
-    """A text that follows from the attack: which versions of it there are, and what functions it applies."""
+    """A text that follows from the attack: which versions of it there are, and what functions it
+    applies.
+    """
     modules = [f"{plugin.__name__}.attack" for plugin in plugins()]
     own = [importlib.import_module(name) for name in modules if importlib.util.find_spec(name)]
     versions = [VERSION, *(getattr(module, "VERSION", 0) for module in own)]
@@ -502,19 +578,25 @@ def digest_of_attack():
 def proposal(name, worth, found):
     """What an author may do of a question that counts much and is soon guessed."""
     return (
-        f"{name}, {_of(worth, 'point')}, {found}. To carry them, ask for several parts in one answer, for a function, "
+        f"{name}, {_of(worth, 'point')}, {found}. To carry them, ask for several parts in one "
+        "answer, for a function, "
         "or say exam=True: then nothing is sealed, and the grader marks it."
     )
 
 
 def write_measured(sources, paths, found):
-    """Write down what was measured of the questions of some notebooks; what is known of the others stays."""
+    """Write down what was measured of the questions of some notebooks; what is known of the others
+    stays.
+    """
     tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
     questions = {
-        name: one for name, one in measured_questions(sources).items() if name.partition("/")[0] in there - tried
+        name: one
+        for name, one in measured_questions(sources).items()
+        if name.partition("/")[0] in there - tried
     } | found
     lines = ",\n".join(
-        f"  {json.dumps(name)}: {json.dumps(one, sort_keys=True)}" for name, one in sorted(questions.items())
+        f"  {json.dumps(name)}: {json.dumps(one, sort_keys=True)}"
+        for name, one in sorted(questions.items())
     )
     text = f'{{\n "format": {FORMAT_OF_MEASURED},\n "questions": {{\n{lines}\n }}\n}}\n'
     Path(sources, MEASURED).write_text(text, "utf8")
@@ -538,7 +620,8 @@ def _says_nothing(question):
 
 
 def text_of(source, question, course):
-    """The text of a question, that of its variant or the Markdown above its check, and the open code of its cell.
+    """The text of a question, that of its variant or the Markdown above its check, and the open
+    code of its cell.
 
     Where a question stands in a chapter, its text stands there, and not in the source.
     """
@@ -555,7 +638,9 @@ def text_of(source, question, course):
 
 
 def _above_check(cells, question):
-    """The Markdown above the cell that checks a question, and that cell; ``None`` where none does."""
+    """The Markdown above the cell that checks a question, and that cell; ``None`` where none
+    does.
+    """
     above = ""
     for cell in cells:
         said = "".join(cell["source"])
@@ -582,7 +667,8 @@ def write_page(findings, found, before="", measured=None):
     for finding in findings:
         said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
         mistakes = "".join(
-            f"<li><b>{html.escape(note)}</b>: {said}{f' ({times} of these)' if times > 1 else ''}</li>"
+            f"<li><b>{html.escape(note)}</b>: "
+            f"{said}{f' ({times} of these)' if times > 1 else ''}</li>"
             for (note, said), times in said_of.items()
         )
         faults = "".join(f"<li>{html.escape(fault)}</li>" for fault in finding.faults)
@@ -596,19 +682,29 @@ def write_page(findings, found, before="", measured=None):
         )
         rows.append(
             f'<tr><th scope="row">{html.escape(finding.name)}</th>'
-            + "".join(f'<td data-of="{head}">{cell}</td>' for head, cell in zip(COLUMNS[1:], cells, strict=True))
+            + "".join(
+                f'<td data-of="{head}">{cell}</td>'
+                for head, cell in zip(COLUMNS[1:], cells, strict=True)
+            )
             + "</tr>"
         )
-    listed = "".join(f"<li>{html.escape(what)} stands in {html.escape(place)}</li>" for what, place in found or [])
+    listed = "".join(
+        f"<li>{html.escape(what)} stands in {html.escape(place)}</li>"
+        for what, place in found or []
+    )
     # Where only a few questions are tried, nothing was looked for.
     leaked = "" if found is None else f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1"><style>{STYLE}</style>'
-        f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; {sum(bool(f.faults) for f in findings)} with "
+        '<meta name="viewport" content="width=device-width, '
+        f'initial-scale=1"><style>{STYLE}</style>'
+        f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; "
+        f"{sum(bool(f.faults) for f in findings)} with "
         f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
-        "<p>What can be checked without a server can also be tried without one. The last but one column says how many "
-        f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has needed to find the "
+        "<p>What can be checked without a server can also be tried without one. The last but one "
+        "column says how many "
+        f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has "
+        "needed to find the "
         "answer. Not found means not found by this attack: somebody may have a better idea."
         f"{f' {share}.' if share else ''}</p>"
         f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"

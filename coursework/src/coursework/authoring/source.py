@@ -1,4 +1,5 @@
-"""A notebook with solutions: what its author wrote between nbgrader's marks, and what its cells compute.
+"""A notebook with solutions: what its author wrote between nbgrader's marks, and what its cells
+compute.
 
 ``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
 """
@@ -39,18 +40,24 @@ if TYPE_CHECKING:
 CHAPTERS = "chapters"
 #: Where the code is that the seals of a question follow from.
 ROOMS = ("authoring", "checking")
-#: Digits after the point of which a number that students see has no more: others are the rounding of a machine.
+#: Digits after the point of which a number that students see has no more: others are the rounding
+#: of a machine.
 MOST_PLACES = 10
 #: What is written in place of pi, and is not: right to some digits, and the answer to no more.
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: Characters of a parameter up to which it is a word, and not a part of the text.
 LONGEST_WORD = 40
-#: The file beside the sources in which the selftest writes after how many tries each question was guessed, if it was.
+#: The file beside the sources in which the selftest writes after how many tries each question was
+#: guessed, if it was.
 MEASURED = "strengths.json"
 FORMAT_OF_MEASURED = 2
 
-SOLUTION = re.compile(r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S)
-HIDDEN = re.compile(r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S)
+SOLUTION = re.compile(
+    r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S
+)
+HIDDEN = re.compile(
+    r"^[ \t]*### BEGIN HIDDEN TESTS[ \t]*\n.*?^[ \t]*### END HIDDEN TESTS[ \t]*\n?", re.M | re.S
+)
 #: What is marked, and every line that was meant as a mark.
 MARKED = ("SOLUTION", "HIDDEN TESTS", "VARIANTS")
 MARK = re.compile(r"[ \t]*#+[ \t]*(BEGIN|END)[ \t]+((?:SOLUTION|HIDDEN|VARIANT).*)", re.I)
@@ -75,7 +82,9 @@ class Drawing(NamedTuple):
 
         text = io.StringIO()
         with matplotlib.rc_context({"svg.hashsalt": "coursework", "svg.fonttype": "path"}):
-            self.figure.savefig(text, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
+            self.figure.savefig(
+                text, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None}
+            )
         return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.S)
 
 
@@ -91,7 +100,9 @@ class Source(NamedTuple):
 
 
 class Measured(TypedDict):
-    """What was measured of a question: after how many tries the attack guessed each variant, if it did, and how."""
+    """What was measured of a question: after how many tries the attack guessed each variant, if it
+    did, and how.
+    """
 
     worth: float
     digest: str
@@ -110,7 +121,8 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
         raise author.AuthorError(
-            f"There is no notebook with solutions in {folder}. If the solutions are kept in a private repository, "
+            f"There is no notebook with solutions in {folder}. If the solutions are kept in a "
+            "private repository, "
             "get them first; without them everything builds, but nothing is released or graded."
         )
     unknown = sorted(set(only) - {path.stem for path in found})
@@ -122,9 +134,14 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
 
 @functools.cache
 def digest_of_code() -> str:
-    """A text that follows from the code that reads, attacks and seals questions, ours and that of plug-ins."""
+    """A text that follows from the code that reads, attacks and seals questions, ours and that of
+    plug-ins.
+    """
     digest = hashlib.sha256()
-    for folder in [*(Path(coursework.__file__).parent / room for room in ROOMS), *map(Path, folders_of(packages()))]:
+    for folder in [
+        *(Path(coursework.__file__).parent / room for room in ROOMS),
+        *map(Path, folders_of(packages())),
+    ]:
         for path in sorted(folder.rglob("*.py")):
             # A new version by itself is no reason to try everything again.
             digest.update(path.name.encode() + VERSION.sub("", path.read_text("utf8")).encode())
@@ -132,14 +149,17 @@ def digest_of_code() -> str:
 
 
 def names_asked(path: str | Path) -> dict[str, str]:
-    """The names of the questions of a notebook with solutions, and the variable of each; nothing is run."""
+    """The names of the questions of a notebook with solutions, and the variable of each; nothing is
+    run.
+    """
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
     cells = json.loads(Path(path).read_text("utf8"))["cells"]
     return checked_in("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
 
 
 def measured_strengths(sources: str | Path) -> dict[str, int]:
-    """After how many tries the attack guessed each question in its weakest variant, by name: 0 where it did not.
+    """After how many tries the attack guessed each question in its weakest variant, by name: 0
+    where it did not.
 
     A question that is not named there has not been attacked yet.
 
@@ -149,11 +169,16 @@ def measured_strengths(sources: str | Path) -> dict[str, int]:
         The file is of another version of coursework.
     """
     measured = measured_questions(sources)
-    return {name: min((count for count in one["tries"] if count), default=0) for name, one in measured.items()}
+    return {
+        name: min((count for count in one["tries"] if count), default=0)
+        for name, one in measured.items()
+    }
 
 
 def share_beyond(measured: Mapping[str, Measured]) -> float:
-    """The share of the points that the attack has not found, of what was measured: every variant counts alike."""
+    """The share of the points that the attack has not found, of what was measured: every variant
+    counts alike.
+    """
     points = sum(one["worth"] for one in measured.values())
     beyond = 0.0
     for one in measured.values():
@@ -163,7 +188,8 @@ def share_beyond(measured: Mapping[str, Measured]) -> float:
 
 
 def said_beyond(measured: Mapping[str, Measured]) -> str:
-    """That share in words, for authors and for instructors; and how many variants it is of, where there are any.
+    """That share in words, for authors and for instructors; and how many variants it is of, where
+    there are any.
 
     >>> said_beyond({"levers/arm": {"worth": 1, "tries": [0, 20, None]}, "levers/plain": {"worth": 2, "tries": [0]}})
     '83% of 3 points are behind more than 65,536 tries of a script, as far as 3 of 4 variants were attacked'
@@ -172,31 +198,45 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
 
     points = sum(one["worth"] for one in measured.values())
     tries = [count for one in measured.values() for count in one["tries"]]
-    attacked = f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+    attacked = (
+        f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+    )
     return (
-        f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are behind more than "
-        f"{BUDGET:,} tries of a script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
+        f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are "
+        "behind more than "
+        f"{BUDGET:,} tries of a "
+        f"script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
     )
 
 
 def measured_questions(sources: str | Path) -> dict[str, Measured]:
-    """What was measured of each question by name, as :func:`coursework.authoring.selftest.measured_of` gives it."""
+    """What was measured of each question by name, as
+    :func:`coursework.authoring.selftest.measured_of` gives it.
+    """
     file = Path(sources, MEASURED)
     if not file.is_file():
         return {}
     measured = json.loads(file.read_text("utf8"))
-    if measured.get("format") == 1:  # of the first variant alone, by an attack that nobody knows any more
+    if (
+        measured.get("format") == 1
+    ):  # of the first variant alone, by an attack that nobody knows any more
         return {
-            name: {"worth": 1, "digest": "", "tries": [count], "way": ""} for name, count in measured["tries"].items()
+            name: {"worth": 1, "digest": "", "tries": [count], "way": ""}
+            for name, count in measured["tries"].items()
         }
     if measured.get("format") != FORMAT_OF_MEASURED:
-        raise author.AuthorError(f"{file} is of another version of coursework: delete it, and release anew.")
+        raise author.AuthorError(
+            f"{file} is of another version of coursework: delete it, and release anew."
+        )
     return fields.by_name(_measured)(measured["questions"], str(file))
 
 
 def _measured(found: object, where: str) -> Measured:
     about = fields.Fields(found, where)
-    tries = about.get("tries", fields.many(lambda count, where: None if count is None else fields.whole(count, where)))
+    tries = about.get(
+        "tries",
+        fields.many(lambda count, where: None if count is None else fields.whole(count, where)),
+    )
     return {
         "worth": about.get("worth", fields.number),
         "digest": about.get("digest", fields.text),
@@ -218,13 +258,15 @@ def read_source(
     ----------
     path : path
     variant : int
-        For 0 all questions are given, in their first variant; for another number those that have that variant.
+        For 0 all questions are given, in their first variant; for another number those that have
+        that variant.
     edition : str
         Of a course: each edition draws afresh.
     only : collection of str, optional
         The questions that are wanted: cells that these do not need are not run.
     pictures : bool, optional
-        Whether the pictures of variants are drawn; if nothing is said, where all questions are wanted.
+        Whether the pictures of variants are drawn; if nothing is said, where all questions are
+        wanted.
 
     Raises
     ------
@@ -270,32 +312,57 @@ def read_source(
         if name in questions:
             raise author.AuthorError(f"{name}: there are two questions of this name.")
         if name.partition("/")[0] != path.stem:
-            raise author.AuthorError(f"{name}: a question of this notebook is named '{path.stem}/...'.")
+            raise author.AuthorError(
+                f"{name}: a question of this notebook is named '{path.stem}/...'."
+            )
         if only is not None and name not in only:
             return
         if "kind" not in about:
-            raise author.AuthorError(f"{name}: say of which kind it is: kind='expression', for example.")
+            raise author.AuthorError(
+                f"{name}: say of which kind it is: kind='expression', for example."
+            )
         if name not in rules:
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
         elif variant < rules[name].count:
-            own = variant_drawn(given[name], texts[name], variant, rules[name].count, edition=edition)
+            own = variant_drawn(
+                given[name], texts[name], variant, rules[name].count, edition=edition
+            )
             _demand_few_digits(name, own.shown)
             if by_name:
-                drawn = (rules[name].parameters(number, edition) for number in range(rules[name].count))
-                own = replace(own, names=tuple(names_of_variants(variant_drawn(one, texts[name]) for one in drawn)))
+                drawn = (
+                    rules[name].parameters(number, edition) for number in range(rules[name].count)
+                )
+                own = replace(
+                    own,
+                    names=tuple(
+                        names_of_variants(variant_drawn(one, texts[name]) for one in drawn)
+                    ),
+                )
             picture = rules[name].picture
             if picture and (only is None if pictures is None else pictures):
                 drawing = picture(given[name])
                 own = replace(own, picture=packed(drawing.picture(), drawing.alt))
-            questions[name] = author.question(name, about.pop("kind"), answers[name], variant=own, **about)
+            questions[name] = author.question(
+                name, about.pop("kind"), answers[name], variant=own, **about
+            )
 
     def record_identity(identity: str = "") -> None:
         identities.append(identity)
 
-    namespace = {"__name__": "__main__", "question": record_question, "draw": draw, "drawing": Drawing}
-    # A figure is nobody's answer: it is drawn where pictures are asked for, and once for all variants.
-    plots = [number for number, cell in enumerate(notebook.cells) if "figure" in cell.metadata.get("tags", [])]
+    namespace = {
+        "__name__": "__main__",
+        "question": record_question,
+        "draw": draw,
+        "drawing": Drawing,
+    }
+    # A figure is nobody's answer: it is drawn where pictures are asked for, and once for all
+    # variants.
+    plots = [
+        number
+        for number, cell in enumerate(notebook.cells)
+        if "figure" in cell.metadata.get("tags", [])
+    ]
     needed = set(range(len(notebook.cells)))
     if only is not None:
         needed = cells_needed(notebook, only, plots if pictures and not variant else ())
@@ -311,7 +378,9 @@ def read_source(
             except author.AuthorError:
                 raise
             except Exception as error:
-                raise author.AuthorError(f"{path.name}, cell {number}: {type(error).__name__}: {error}") from error
+                raise author.AuthorError(
+                    f"{path.name}, cell {number}: {type(error).__name__}: {error}"
+                ) from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
     unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
@@ -341,9 +410,13 @@ def _demand_marks(text: str, where: str) -> None:
             known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
             raise author.AuthorError(f"{where}: `{line.strip()}` is no mark; there are {known}.")
         if what == "BEGIN" and open_one:
-            raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
+            raise author.AuthorError(
+                f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`."
+            )
         if what == "END" and marked != open_one:
-            raise author.AuthorError(f"{where}: `### END {marked}` has no `### BEGIN {marked}` before it.")
+            raise author.AuthorError(
+                f"{where}: `### END {marked}` has no `### BEGIN {marked}` before it."
+            )
         open_one = marked if what == "BEGIN" else ""
     if open_one:
         raise author.AuthorError(f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`.")
@@ -356,7 +429,8 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
             found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
             if found:
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the solution has {found[0]} for pi, and a student who takes all digits "
+                    f"{file}, cell {number}: the solution has {found[0]} for pi, and a student who "
+                    "takes all digits "
                     "would be told that the value is wrong. Write `sm.pi` or `math.pi`."
                 )
 
@@ -367,26 +441,33 @@ def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
         found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
         if found:
             raise author.AuthorError(
-                f"{name}: its text would show {found[0]} for {parameter}. Round it where it is drawn: round(value, 3)."
+                f"{name}: its text would show {found[0]} for {parameter}. Round it where it is "
+                "drawn: round(value, 3)."
             )
 
 
 def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, str]) -> None:
     """An answer or a question that stands outside of the marks would be given to students."""
     owners = {variable: name for name, variable in variables.items()}
-    cells = [(number, cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
+    cells = [
+        (number, cell.source)
+        for number, cell in enumerate(notebook.cells)
+        if cell.cell_type == "code"
+    ]
     solved_here = {name for _, text in cells for name in answered_in(text, owners)}
     for variable, name in owners.items():
         if variable not in solved_here:
             raise author.AuthorError(
-                f"{name}: no solution in {file} sets `{variable}`, so students would get the answer, or no blank. "
+                f"{name}: no solution in {file} sets `{variable}`, so students would get the "
+                "answer, or no blank. "
                 f"Write `{variable} = ...` between `### BEGIN SOLUTION` and `### END SOLUTION`."
             )
     for number, text in cells:
         for node in ast.walk(ast.parse(posed(text, owners))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the question stands between `### BEGIN HIDDEN TESTS` and "
+                    f"{file}, cell {number}: the question stands between `### BEGIN "
+                    "HIDDEN TESTS` and "
                     "`### END HIDDEN TESTS`, or students would get it."
                 )
 
@@ -399,13 +480,16 @@ def _demand_shown(
     texts: Mapping[str, str],
     questions: Mapping[str, author.AuthoredQuestion],
 ) -> None:
-    """What varies belongs to a question, and what a text shows in braces is drawn; students see all that is drawn."""
+    """What varies belongs to a question, and what a text shows in braces is drawn; students see all
+    that is drawn.
+    """
     codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
     for name in rules:
         if name not in questions:
             raise author.AuthorError(
-                f"{name}: {file} draws what varies in it, and asks no such question; it asks {', '.join(questions)}."
+                f"{name}: {file} draws what varies in it, and asks no such question; it asks "
+                f"{', '.join(questions)}."
             )
         braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
         unknown = [one for one in braces if one not in (*given[name], "picture")]
@@ -413,30 +497,38 @@ def _demand_shown(
         # Braces within braces may be TeX; a parameter that is shown nowhere makes it a slip.
         if unknown and unshown:
             raise author.AuthorError(
-                f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are {', '.join(given[name])}."
+                f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are "
+                f"{', '.join(given[name])}."
             )
         unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
         # What `where` ties to others may stand for them.
         if unseen and not rules[name].picture and not rules[name].where:
             raise author.AuthorError(
-                f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, which would show it as "
+                f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, "
+                "which would show it as "
                 f"{{{{{unseen[0]}}}}}, nor a cell that they get, nor a picture."
             )
 
 
 def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
-    """The text of each question with variants, with the places of its parameters: the Markdown below what may vary."""
+    """The text of each question with variants, with the places of its parameters: the Markdown
+    below what may vary.
+    """
     texts: dict[str, str] = {}
     for cell, after in itertools.pairwise([*notebook.cells, None]):
         found = drawn_in(cell.source) if cell.cell_type == "code" else None
         if found:
             if after is None or after.cell_type != "markdown":
-                raise author.AuthorError(f"{found[1]}: the text of the question comes next after what may vary in it.")
+                raise author.AuthorError(
+                    f"{found[1]}: the text of the question comes next after what may vary in it."
+                )
             texts[found[1]] = after.source
     return texts
 
 
-def variant_drawn(drawn: Mapping[str, Any], text: str, number: int = 0, count: int = 1, edition: str = "") -> Variant:
+def variant_drawn(
+    drawn: Mapping[str, Any], text: str, number: int = 0, count: int = 1, edition: str = ""
+) -> Variant:
     """What is shown and given of what was drawn for a variant."""
     return Variant(
         number,
@@ -448,8 +540,11 @@ def variant_drawn(drawn: Mapping[str, Any], text: str, number: int = 0, count: i
     )
 
 
-def texts_of_questions(notebook: NotebookNode, figures: Mapping[int, Drawing] | None = None) -> dict[str, str]:
-    """The text of each question as it stands in the source: the Markdown between the check before it and its own.
+def texts_of_questions(
+    notebook: NotebookNode, figures: Mapping[int, Drawing] | None = None
+) -> dict[str, str]:
+    """The text of each question as it stands in the source: the Markdown between the check before
+    it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
@@ -469,12 +564,22 @@ def texts_of_questions(notebook: NotebookNode, figures: Mapping[int, Drawing] | 
 
 
 def _is_given(value: object) -> bool:
-    """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole sentences."""
-    return (isinstance(value, str) and len(value) <= LONGEST_WORD) or _is_plain(value) and not isinstance(value, str)
+    """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole
+    sentences.
+    """
+    return (
+        (isinstance(value, str) and len(value) <= LONGEST_WORD)
+        or _is_plain(value)
+        and not isinstance(value, str)
+    )
 
 
 def _is_plain(value: object) -> bool:
-    return isinstance(value, (int, float, str)) or isinstance(value, (list, tuple)) and all(map(_is_plain, value))
+    return (
+        isinstance(value, (int, float, str))
+        or isinstance(value, (list, tuple))
+        and all(map(_is_plain, value))
+    )
 
 
 @contextlib.contextmanager
@@ -499,17 +604,27 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
     return None
 
 
-def cells_needed(notebook: NotebookNode, names: Iterable[str], also: Collection[int] = ()) -> set[int]:
-    """The numbers of the code cells that some questions of a notebook need: by the names that cells bind and use.
+def cells_needed(
+    notebook: NotebookNode, names: Iterable[str], also: Collection[int] = ()
+) -> set[int]:
+    """The numbers of the code cells that some questions of a notebook need: by the names that cells
+    bind and use.
 
-    What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than too few: which of
-    several values a name has when a function is called is not followed.
+    What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than
+    too few: which of several values a name has when a function is called is not followed.
     """
-    uses = {number: _Uses(cell.source) for number, cell in enumerate(notebook.cells) if cell.cell_type == "code"}
+    uses = {
+        number: _Uses(cell.source)
+        for number, cell in enumerate(notebook.cells)
+        if cell.cell_type == "code"
+    }
     needed = {number for number, cell in uses.items() if cell.texts & set(names) or number in also}
     while True:
         # What a function uses it may use as late as it is called.
-        wanted, before = {name for number in needed for name in uses[number].in_functions}, len(needed)
+        wanted, before = (
+            {name for number in needed for name in uses[number].in_functions},
+            len(needed),
+        )
         for number, cell in sorted(uses.items(), reverse=True):
             if number in needed or cell.bound & wanted:
                 needed.add(number)
@@ -519,7 +634,9 @@ def cells_needed(notebook: NotebookNode, names: Iterable[str], also: Collection[
 
 
 class _Uses(ast.NodeVisitor):
-    """What a cell binds or may change, what it uses, at once or in its functions, and the texts in it."""
+    """What a cell binds or may change, what it uses, at once or in its functions, and the texts in
+    it.
+    """
 
     #: Functions that change nothing of what they are given.
     HARMLESS = ("check", "question", "draw", "print", "display")
@@ -554,7 +671,10 @@ class _Uses(ast.NodeVisitor):
     visit_AsyncFunctionDef = visit_ClassDef = visit_Lambda = visit_FunctionDef
 
     def visit_Expr(self, node: ast.Expr) -> None:
-        if isinstance(node.value, ast.Call) and getattr(node.value.func, "id", "") not in self.HARMLESS:
+        if (
+            isinstance(node.value, ast.Call)
+            and getattr(node.value.func, "id", "") not in self.HARMLESS
+        ):
             self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.generic_visit(node)
 
@@ -582,7 +702,9 @@ def checked_in(codes: Iterable[str]) -> dict[str, str]:
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "check":
             name, answer = node.args
             if not isinstance(name, ast.Constant) or not isinstance(answer, ast.Name):
-                raise author.AuthorError(f"{ast.unparse(node)}: a check has a text, and the plain name of an answer.")
+                raise author.AuthorError(
+                    f"{ast.unparse(node)}: a check has a text, and the plain name of an answer."
+                )
             found[str(name.value)] = answer.id
     return found
 
@@ -610,19 +732,27 @@ def solved(text: str) -> str:
 
 def posed(text: str, owners: Mapping[str, str]) -> str:
     """The same cell as students get it: with blanks, and without hidden tests."""
-    return HIDDEN.sub("", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))).rstrip()
+    return HIDDEN.sub(
+        "", SOLUTION.sub(lambda region: blank(region[1], owners), in_variants(text))
+    ).rstrip()
 
 
 def in_variants(text: str) -> str:
     """A cell that says what may vary as students get it: it shows their variant."""
     found = drawn_in(text)
-    return text if found is None else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
+    return (
+        text
+        if found is None
+        else VARIANTS.sub("", text) + f'{found[0]} = variant("{found[1]}")\n{found[0]}'
+    )
 
 
 def blank(region: str, owners: Mapping[str, str]) -> str:
     """What stands in place of a solution."""
     functions = {
-        node.name: node for node in ast.parse(textwrap.dedent(region)).body if isinstance(node, ast.FunctionDef)
+        node.name: node
+        for node in ast.parse(textwrap.dedent(region)).body
+        if isinstance(node, ast.FunctionDef)
     }
     lines = []
     for name in dict.fromkeys(bound(region, owners)):

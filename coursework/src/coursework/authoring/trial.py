@@ -1,4 +1,6 @@
-"""The author's preview of a question: its text, and everything that a student may hear about an answer."""
+"""The author's preview of a question: its text, and everything that a student may hear about an
+answer.
+"""
 
 import html
 import re
@@ -35,10 +37,13 @@ def trial(course, name, page):
     source = read_source(path)
     chosen = [question for key, question in source.questions.items() if name in (notebook, key)]
     if not chosen:
-        raise AuthorError(f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}.")
+        raise AuthorError(
+            f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}."
+        )
     texts = "".join(
         f"<section><h2>{html.escape(question.name)}</h2>{_under(to_page(_text(source, question)))}"
-        f"<details><summary>The worked solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
+        "<details><summary>The worked "
+        f"solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
@@ -62,20 +67,29 @@ def _with_mathematics(page):
 
 
 def _text(source, question):
-    """All that stands above a question as students meet it: the heading, the text and the pictures."""
+    """All that stands above a question as students meet it: the heading, the text and the
+    pictures.
+    """
     return "\n\n".join(
-        [*_above(source, question), *([whole_text(question.public.variant)] if question.public.variant else [])]
+        [
+            *_above(source, question),
+            *([whole_text(question.public.variant)] if question.public.variant else []),
+        ]
     )
 
 
 def _above(source, question):
-    """The Markdown and the figures between the question before and the cell that its answer stands in."""
+    """The Markdown and the figures between the question before and the cell that its answer stands
+    in.
+    """
     cells, found = source.notebook.cells, []
     owners = {one.variable: name for name, one in source.questions.items()}
     for number, cell in enumerate(cells):
         if cell.cell_type == "markdown":
             if not shows_variants(cells, number):
-                found = [cell.source] if cell.source.lstrip().startswith("#") else [*found, cell.source]
+                found = (
+                    [cell.source] if cell.source.lstrip().startswith("#") else [*found, cell.source]
+                )
         elif number in source.figures:
             found.append(image(source.figures[number].picture(), source.figures[number].alt))
         elif question.variable in answered_in(cell.source, owners):

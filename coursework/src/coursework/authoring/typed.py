@@ -1,10 +1,12 @@
-"""Candidates for an answer that are built from what a student holds: a question's own data, and the course's functions.
+"""Candidates for an answer that are built from what a student holds: a question's own data, and the
+course's functions.
 
-Nothing here knows a question. A value has a sort: a number, a vector, a unit vector, a matrix, a rotation. It begins
-with the numbers of the text, of the variant and of the open code; each step applies a public function of the
-course's packages, or an operation of vectors and matrices, to values of the sorts that it takes, which is found by
-trying. Every value has a price: that of what it is made of, and that of the step. The cheap ones come first, and
-none comes twice. Whoever sets a question gives what is needed: values that use all of the data come before others.
+Nothing here knows a question. A value has a sort: a number, a vector, a unit vector, a matrix, a
+rotation. It begins with the numbers of the text, of the variant and of the open code; each step
+applies a public function of the course's packages, or an operation of vectors and matrices, to
+values of the sorts that it takes, which is found by trying. Every value has a price: that of what
+it is made of, and that of the step. The cheap ones come first, and none comes twice. Whoever sets a
+question gives what is needed: values that use all of the data come before others.
 """
 
 import ast
@@ -21,7 +23,8 @@ import numpy as np
 
 from ..checking.plugins import packages, plugins
 
-#: Values that one step may give at one price, values in all, and calls that a function needs for them.
+#: Values that one step may give at one price, values in all, and calls that a function needs for
+#: them.
 MOST_OF_A_STEP, MOST, MOST_CALLS = 1_500, 100_000, 60
 #: Calls of functions, in all.
 MOST_CALLS_IN_ALL = 25_000
@@ -55,7 +58,9 @@ CONSTANTS = (0, 1, 2, np.pi, 3, np.sqrt(2), np.sqrt(3), 4, 60, 90, 180, 360, 100
 
 
 class Step(NamedTuple):
-    """A function of the course with its words chosen, or an operation; how many values it takes, and what it costs."""
+    """A function of the course with its words chosen, or an operation; how many values it takes,
+    and what it costs.
+    """
 
     name: str
     work: object
@@ -65,9 +70,11 @@ class Step(NamedTuple):
 
 
 class Pool:
-    """Values by sort and price, each once, with what data they use; each at all points: shape (points, ...).
+    """Values by sort and price, each once, with what data they use; each at all points: shape
+    (points, ...).
 
-    ``data`` counts what a question gives; what a value uses of it is a number whose bits stand for these.
+    ``data`` counts what a question gives; what a value uses of it is a number whose bits stand for
+    these.
     """
 
     def __init__(self, points, wanted=()):
@@ -80,7 +87,9 @@ class Pool:
         return 1 << (self.data - 1)
 
     def add(self, values, price, uses=0):
-        """Add an array of values, shape (values, points, ...); what they use is one number, or one for each."""
+        """Add an array of values, shape (values, points, ...); what they use is one number, or one
+        for each.
+        """
         values = np.asarray(values, dtype=float)
         if values.ndim < 2 or values.ndim > 5 or values.shape[1] != self.points or not values.size:
             return
@@ -98,7 +107,9 @@ class Pool:
             known = shape, packed[place * size : (place + 1) * size]
             if known not in self.seen:
                 self.seen.add(known)
-                at_price = self.sorts.setdefault((shape, special[place]), {}).setdefault(price, ([], []))
+                at_price = self.sorts.setdefault((shape, special[place]), {}).setdefault(
+                    price, ([], [])
+                )
                 at_price[0].append(values[place])
                 at_price[1].append(uses[place])
 
@@ -111,7 +122,8 @@ class Pool:
             self.add_whole(rows.reshape(-1, *rows.shape[2:]), price + (values.ndim == 4), uses)
 
     def of_shape(self, shape, only_special=False, price=None, whole=None):
-        """All values of a shape, the cheap ones first, or those of one price: shape (values, points, ...).
+        """All values of a shape, the cheap ones first, or those of one price: shape (values,
+        points, ...).
 
         With ``whole`` those that use all of the data, or those that do not.
         """
@@ -155,7 +167,9 @@ OF_ENTRIES = (np.sum, np.mean, np.max, np.min, np.median, np.prod, np.std, len, 
 
 
 def beginning(at, given, text, code, wanted):
-    """The pool of what a student holds: symbols, the numbers of a variant, of the text and of the open code."""
+    """The pool of what a student holds: symbols, the numbers of a variant, of the text and of the
+    open code.
+    """
     pool, in_degrees = Pool(len(at.points), wanted), DEGREES.search(text)
 
     def add(value, price=1, uses=None):
@@ -195,7 +209,9 @@ def beginning(at, given, text, code, wanted):
     for found in SUM.finditer(text):
         components = [0.0, 0.0, 0.0]
         for sign, above, below, over, under, whole, axis in re.findall(TERM, found[0]):
-            size = float(above or over or whole or 1) / (float(below or under) if above or over else 1)
+            size = float(above or over or whole or 1) / (
+                float(below or under) if above or over else 1
+            )
             components["xyz".index(axis)] += -size if sign == "-" else size
         add(components, uses=0)
     for above, below, over, under in FRACTION.findall(text):
@@ -207,15 +223,20 @@ def beginning(at, given, text, code, wanted):
     for value in numbers:
         pool.add(np.radians(value)[None], 2)
     _add_constants(pool)
-    # What stands as separate numbers may be meant as one triple, of angles or of components, most likely in order.
-    numbers, used = (np.array(part[:8]) for part in pool.sorts.get(((), False), {}).get(1, ([], [])))
+    # What stands as separate numbers may be meant as one triple, of angles or of components, most
+    # likely in order.
+    numbers, used = (
+        np.array(part[:8]) for part in pool.sorts.get(((), False), {}).get(1, ([], []))
+    )
     for size in (3, 4):
         for start in range(len(numbers) - size + 1):
             uses = np.bitwise_or.reduce(used[start : start + size])
             pool.add(np.moveaxis(numbers[start : start + size], 0, -1)[None], 2, uses)
         orders = list(itertools.permutations(range(len(numbers[:6])), size))
         if orders:
-            pool.add(np.moveaxis(numbers[orders], 1, -1), 5, np.bitwise_or.reduce(used[orders], axis=1))
+            pool.add(
+                np.moveaxis(numbers[orders], 1, -1), 5, np.bitwise_or.reduce(used[orders], axis=1)
+            )
     # A turn through one of them about one axis is written with noughts.
     for value, uses in zip(numbers, used, strict=True):
         pool.add(np.eye(3)[:, None, :] * value[None, :, None], 2, uses)
@@ -231,7 +252,10 @@ def _tables_in(text):
             if row.strip()
         ]
     for found in ROWS.finditer(text):
-        rows = [[_number(entry) for entry in row.strip(" |").split("|")] for row in found[0].strip().splitlines()]
+        rows = [
+            [_number(entry) for entry in row.strip(" |").split("|")]
+            for row in found[0].strip().splitlines()
+        ]
         rows = [[entry for entry in row if entry is not None] for row in rows]
         yield [row for row in rows if row]
 
@@ -247,7 +271,9 @@ def _number(text):
 
 
 def of_arguments(calls, wanted):
-    """The pool of the arguments that a function is called with, where they have one shape in all calls."""
+    """The pool of the arguments that a function is called with, where they have one shape in all
+    calls.
+    """
     pool = Pool(len(calls), wanted)
     for column in zip(*calls, strict=False):
         uses = pool.of_new_data()
@@ -310,19 +336,33 @@ def _angle(v, w):
 
 def _vee(m):
     """What of a matrix changes its sign with the transpose, as a vector."""
-    return np.stack([m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]], -1) / 2
+    return (
+        np.stack(
+            [m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]],
+            -1,
+        )
+        / 2
+    )
 
 
 def _inverse(m):
-    """The inverse; not a number where there is none, so that the others of a batch are found all the same."""
+    """The inverse; not a number where there is none, so that the others of a batch are found all
+    the same.
+    """
     singular = np.abs(np.linalg.det(m)) < 1e-12
-    return np.where(singular[..., None, None], np.nan, np.linalg.inv(np.where(singular[..., None, None], np.eye(3), m)))
+    return np.where(
+        singular[..., None, None],
+        np.nan,
+        np.linalg.inv(np.where(singular[..., None, None], np.eye(3), m)),
+    )
 
 
 def _crossed(v):
     x, y, z = np.moveaxis(v, -1, 0)
     o = 0 * x
-    return np.stack([np.stack([o, -z, y], -1), np.stack([z, o, -x], -1), np.stack([-y, x, o], -1)], -2)
+    return np.stack(
+        [np.stack([o, -z, y], -1), np.stack([z, o, -x], -1), np.stack([-y, x, o], -1)], -2
+    )
 
 
 def _outer(v, w):
@@ -335,7 +375,9 @@ def _wrapped(turn):
 
 def _other_way(half, proper):
     """The other triple of angles of the same orientation."""
-    return lambda v: np.stack([v[..., 0] + half, -v[..., 1] if proper else half - v[..., 1], v[..., 2] + half], -1)
+    return lambda v: np.stack(
+        [v[..., 0] + half, -v[..., 1] if proper else half - v[..., 1], v[..., 2] + half], -1
+    )
 
 
 def _entry(*place):
@@ -434,7 +476,9 @@ TURNS = (
 
 @functools.cache
 def public_functions():
-    """The public functions of the course's packages, once for each choice of the words that they need."""
+    """The public functions of the course's packages, once for each choice of the words that they
+    need.
+    """
     words, found = {}, []
     for plugin in plugins():
         words |= getattr(plugin, "WORDS", {})
@@ -447,7 +491,9 @@ def public_functions():
 
 
 def _steps_of(name, function, words):
-    needed = [one for one in inspect.signature(function).parameters.values() if one.default is one.empty]
+    needed = [
+        one for one in inspect.signature(function).parameters.values() if one.default is one.empty
+    ]
     spoken = [one.name for one in needed if one.name in words]
     arity = len(needed) - len(spoken)
     if not 1 <= arity <= 3 or any(one.kind is not one.POSITIONAL_OR_KEYWORD for one in needed):
@@ -457,7 +503,9 @@ def _steps_of(name, function, words):
 
         def work(*values, said=said):
             values = iter(values)
-            return function(*(said[one.name] if one.name in said else next(values) for one in needed))
+            return function(
+                *(said[one.name] if one.name in said else next(values) for one in needed)
+            )
 
         yield Step(" ".join([name, *chosen]), work, arity)
 
@@ -477,31 +525,47 @@ def priced(steps, text):
 
 
 def near(value):
-    """What differs little from a value: shape (points, ...), and (values, points, ...) of the result.
+    """What differs little from a value: shape (points, ...), and (values, points, ...) of the
+    result.
 
-    Tried where a value turns out to be a mistake, since most mistakes are one sign, one order or one unit away.
+    Tried where a value turns out to be a mistake, since most mistakes are one sign, one order or
+    one unit away.
     """
     shape = value.shape[1:]
     whole = [factor * value for factor in (-1, np.pi / 180, 180 / np.pi, 2, 0.5, 1000, 0.001)]
     if shape == (3, 3):
         frames = _frames()
         both = [value, np.swapaxes(value, -1, -2)]
-        return np.array([first @ one @ second for one in both for first in frames for second in frames] + whole)
+        return np.array(
+            [first @ one @ second for one in both for first in frames for second in frames] + whole
+        )
     if len(shape) == 1 and shape[0] <= 4:
         orders = list(itertools.permutations(range(shape[0])))
         signs = np.array(list(itertools.product((1, -1), repeat=shape[0])))
         units = [1, np.pi / 180, 180 / np.pi, 2, 0.5]
-        turned = [value[:, order] * sign * unit for unit in units for order in orders for sign in signs]
+        turned = [
+            value[:, order] * sign * unit for unit in units for order in orders for sign in signs
+        ]
         wraps = [work(value) for work in WRAPS] if shape[0] == 3 else []
-        return np.array([*turned, *wraps, *(_wrapped(turn)(one) for turn in (2 * np.pi, 360) for one in turned[:48])])
+        return np.array(
+            [
+                *turned,
+                *wraps,
+                *(_wrapped(turn)(one) for turn in (2 * np.pi, 360) for one in turned[:48]),
+            ]
+        )
     if len(shape) == 1:
         signs = [np.where(np.isin(np.arange(shape[0]), some), -1, 1) for some in _some_of(shape[0])]
         swaps = [value[:, order] for order in _swaps(shape[0])]
         return np.array([*(value * sign for sign in signs), *swaps, *whole])
     if shape:
         return np.array(whole)
-    shifts = [value + one for one in (np.pi, -np.pi, np.pi / 2, -np.pi / 2, 90, -90, 180, -180, 1, -1)]
-    return np.array([*whole, *shifts, *(work(value) for work in NUMBERS_ALONE), *(1 - one for one in whole)])
+    shifts = [
+        value + one for one in (np.pi, -np.pi, np.pi / 2, -np.pi / 2, 90, -90, 180, -180, 1, -1)
+    ]
+    return np.array(
+        [*whole, *shifts, *(work(value) for work in NUMBERS_ALONE), *(1 - one for one in whole)]
+    )
 
 
 @functools.cache
@@ -527,7 +591,9 @@ def _swaps(size):
 
 
 def by_price(pool, steps, most=MOST):
-    """Make all values of a price from cheaper ones, price by price; yields the price, first that of what is given."""
+    """Make all values of a price from cheaper ones, price by price; yields the price, first that of
+    what is given.
+    """
     yield from (1, 2)
     refused, made = set(), {}
     for price in range(2, DEAREST):
@@ -536,7 +602,10 @@ def by_price(pool, steps, most=MOST):
             of_sort = made.setdefault(sort, {})
             for one, (some, uses) in values.items():
                 if one < price and one not in of_sort:
-                    of_sort[one] = np.array(some[: max(TAKEN.values())]), np.array(uses[: max(TAKEN.values())])
+                    of_sort[one] = (
+                        np.array(some[: max(TAKEN.values())]),
+                        np.array(uses[: max(TAKEN.values())]),
+                    )
         for step in steps:
             sorts_of = [
                 [sort for sort in made if not step.shapes or len(sort[0]) == step.shapes[place]]
@@ -561,7 +630,12 @@ def _sums(whole, allowed):
     """All lists of numbers that make a sum, each of those that are allowed in its place."""
     if len(allowed) == 1:
         return [(whole,)] if whole in allowed[0] else []
-    return [(first, *rest) for first in allowed[0] if first < whole for rest in _sums(whole - first, allowed[1:])]
+    return [
+        (first, *rest)
+        for first in allowed[0]
+        if first < whole
+        for rest in _sums(whole - first, allowed[1:])
+    ]
 
 
 def _apply(pool, chosen, step, price):
@@ -573,7 +647,9 @@ def _apply(pool, chosen, step, price):
     places = np.indices(lengths).reshape(len(lengths), -1)
     places = places[:, np.argsort(places.sum(axis=0), kind="stable")]
     values = [values[one] for (values, _), one in zip(chosen, places, strict=True)]
-    uses = functools.reduce(np.bitwise_or, [uses[one] for (_, uses), one in zip(chosen, places, strict=True)])
+    uses = functools.reduce(
+        np.bitwise_or, [uses[one] for (_, uses), one in zip(chosen, places, strict=True)]
+    )
     if not step.name:
         found = _parts(step.work, values, len(values[0]), pool.points)
         for part in found:
@@ -591,10 +667,15 @@ def _apply(pool, chosen, step, price):
 
 
 def _parts(work, values, *begin):
-    """What a step gives for all values at once, each part of it, as far as their shapes begin so; or nothing."""
+    """What a step gives for all values at once, each part of it, as far as their shapes begin so;
+    or nothing.
+    """
     try:
         found = work(*values)
-        found = [np.asarray(part, dtype=float) for part in (found if isinstance(found, tuple) else (found,))]
+        found = [
+            np.asarray(part, dtype=float)
+            for part in (found if isinstance(found, tuple) else (found,))
+        ]
     except Exception:  # whatever a function says to what it was not made for
         return []
     return [part for part in found if part.shape[: len(begin)] == begin]
@@ -603,19 +684,29 @@ def _parts(work, values, *begin):
 def _called(function, values, pool):
     """What a function of the course gives: rows, and the parts of what it gives for them.
 
-    Most take a batch, which must have more rows than a vector has numbers. It is tried on one value, then on more and
-    more at once, and on fewer again where one of them is refused.
+    Most take a batch, which must have more rows than a vector has numbers. It is tried on one
+    value, then on more and more at once, and on fewer again where one of them is refused.
     """
     points, first, size, refused = pool.points, 0, 1, 0
     for _ in range(MOST_CALLS):
         pool.calls += 1
         last = min(first + size, len(values[0]))
-        count, some = last - first, [value[first:last].reshape(-1, *value.shape[2:]) for value in values]
-        parts = _parts(function, some, len(some[0])) if len(some[0]) > 4 or points > 1 and count == 1 else []
+        count, some = (
+            last - first,
+            [value[first:last].reshape(-1, *value.shape[2:]) for value in values],
+        )
+        parts = (
+            _parts(function, some, len(some[0]))
+            if len(some[0]) > 4 or points > 1 and count == 1
+            else []
+        )
         if not parts and count == points == 1:
             parts = [part[None] for part in _parts(function, [value[0] for value in some])]
         if parts:
-            yield slice(first, last), [part.reshape(count, points, *part.shape[1:]) for part in parts]
+            yield (
+                slice(first, last),
+                [part.reshape(count, points, *part.shape[1:]) for part in parts],
+            )
             first, size, refused = last, 4 * size, -math.inf
         elif count > 1:
             size = max(1, count // 8)

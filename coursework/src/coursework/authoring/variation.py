@@ -1,6 +1,7 @@
 """How the parameters of a question's variants are drawn, by rule, and how its text shows them.
 
-In a source, a cell above the text of a question says what may vary; the text shows a parameter as ``{{force}}``:
+In a source, a cell above the text of a question says what may vary; the text shows a parameter as
+``{{force}}``:
 
 .. code-block:: python
 
@@ -8,7 +9,8 @@ In a source, a cell above the text of a question says what may vary; the text sh
     lever = draw('levers/see-saw', force=[20, 30, 45], arm=[0.2, 0.4, 0.5])
     ### END VARIANTS
 
-Students get in place of both ``lever = variant('levers/see-saw')``, which shows the text of their own variant.
+Students get in place of both ``lever = variant('levers/see-saw')``, which shows the text of their
+own variant.
 """
 
 import ast
@@ -22,7 +24,9 @@ from typing import Any
 
 from .author import AuthorError
 
-VARIANTS = re.compile(r"^[ \t]*### BEGIN VARIANTS\n(.*?)^[ \t]*### END VARIANTS[ \t]*\n?", re.M | re.S)
+VARIANTS = re.compile(
+    r"^[ \t]*### BEGIN VARIANTS\n(.*?)^[ \t]*### END VARIANTS[ \t]*\n?", re.M | re.S
+)
 #: How many variants a question has if nothing is said.
 COUNT = 16
 #: How often a variant is drawn anew because it is one that there was already, or does not fit.
@@ -42,11 +46,13 @@ class Rule:
     count : int
         How many variants there are.
     pools : dict
-        For each parameter a list to choose from, or a function of a ``random.Random`` that gives a value.
+        For each parameter a list to choose from, or a function of a ``random.Random`` that gives a
+        value.
     where : function, optional
         Which choices will do: a function of the dictionary of parameters.
     picture : function, optional
-        The drawing of a variant, from the dictionary of its parameters: the text shows it as ``{{picture}}``.
+        The drawing of a variant, from the dictionary of its parameters: the text shows it as
+        ``{{picture}}``.
     """
 
     name: str
@@ -56,7 +62,8 @@ class Rule:
     picture: Callable[..., Any] | None = None
 
     def parameters(self, number: int, edition: str = "") -> dict[str, Any]:
-        """The parameters of a variant. Of the first edition, variant 0 takes the first of each list.
+        """The parameters of a variant. Of the first edition, variant 0 takes the first of each
+        list.
 
         Raises
         ------
@@ -67,14 +74,16 @@ class Rule:
         for order in range(number + 1):
             for attempt in range(MOST_ATTEMPTS):
                 drawn = self._draw(
-                    f"{edition}\n{self.name}\n{order}\n{attempt}", first=not (edition or order or attempt)
+                    f"{edition}\n{self.name}\n{order}\n{attempt}",
+                    first=not (edition or order or attempt),
                 )
                 if drawn not in found and (self.where is None or self.where(drawn)):
                     found.append(drawn)
                     break
             else:
                 raise AuthorError(
-                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are {order} different variants; {self.count} "
+                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are {order} different "
+                    f"variants; {self.count} "
                     "are wanted. Give longer lists, or a smaller count."
                 )
         return found[number]
@@ -129,6 +138,7 @@ def drawn_in(text: str) -> tuple[str, str] | None:
     ]
     if len(calls) != 1:
         raise AuthorError(
-            f"Between the marks for variants stands one `name = draw(...)`; here are {len(calls)}:\n{region[1]}"
+            "Between the marks for variants stands one `name = draw(...)`; here are "
+            f"{len(calls)}:\n{region[1]}"
         )
     return calls[0]

@@ -1,4 +1,6 @@
-"""The catalogue: every mistake that a question knows, by its short name, with what the student is told."""
+"""The catalogue: every mistake that a question knows, by its short name, with what the student is
+told.
+"""
 
 import functools
 import inspect
@@ -50,12 +52,18 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
                 for values in itertools.product(*choices):
                     one = Note(note, dict(zip(needed, values, strict=True)))
                     if found.setdefault(short_name(*one), one) != one:
-                        raise RuntimeError(f"{one} and {found[short_name(*one)]} have one short name: rename a note.")
+                        raise RuntimeError(
+                            f"{one} and {found[short_name(*one)]} have one short name: "
+                            "rename a note."
+                        )
     return found
 
 
 def mistakes(
-    question: Question, answer: object, turns: Iterable[tuple[Any, Any]] = (), turned: tuple[Any, Any] | None = None
+    question: Question,
+    answer: object,
+    turns: Iterable[tuple[Any, Any]] = (),
+    turned: tuple[Any, Any] | None = None,
 ) -> list[Mistake]:
     """Give every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
 
@@ -65,8 +73,8 @@ def mistakes(
     answer : SymPy object, nested list or number
         The right answer, as its author wrote it.
     turns : list of tuples (axis, angle)
-        The successive turns, each about an axis of the frame that the turns before it have reached, of which
-        the answer is the direction cosine matrix or the quaternion.
+        The successive turns, each about an axis of the frame that the turns before it have reached,
+        of which the answer is the direction cosine matrix or the quaternion.
     turned : tuple (matrix, components)
         For components that a matrix turned: the matrix and what it was applied to.
     """

@@ -32,7 +32,8 @@ REVIEW_AFTER = 3
 DAY = 86_400
 #: Different answers of one question that are remembered.
 MOST_ANSWERS = 100
-#: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are the same.
+#: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are
+#: the same.
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
@@ -50,14 +51,14 @@ def check(name: str, answer: object) -> Reply:
     name : str
         The question, as its cell names it: ``'notebook/question'``.
     answer : object
-        A SymPy expression or matrix, a reference frame, a vector, numbers, a text or a function, as the
-        question asks.
+        A SymPy expression or matrix, a reference frame, a vector, numbers, a text or a function, as
+        the question asks.
 
     Returns
     -------
     Reply
-        Shown below the cell: whether the answer is right; if not, which mistake leads to it, or what is
-        wrong with its form.
+        Shown below the cell: whether the answer is right; if not, which mistake leads to it, or
+        what is wrong with its form.
 
     Raises
     ------
@@ -67,7 +68,9 @@ def check(name: str, answer: object) -> Reply:
     student = identity()
     sealed = find_question(name, student)
     try:
-        reply = judge(name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True), student)
+        reply = judge(
+            name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True), student
+        )
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
@@ -91,7 +94,9 @@ def check(name: str, answer: object) -> Reply:
 
 
 def hint(name: str) -> Reply:
-    """Show the hints that you have earned for a question: each different answer that is wrong earns one more."""
+    """Show the hints that you have earned for a question: each different answer that is wrong earns
+    one more.
+    """
     student = identity()
     entry = _entry(Progress.read(), name, student)
     steps, earned = _steps(find_question(name, student), entry), _earned(entry)
@@ -107,20 +112,26 @@ def hint(name: str) -> Reply:
         lines = ["There is no hint yet."]
     if left:
         lines.append(
-            f"{left} more can be earned: hand in what you have to `check`, even if you are not sure of it. "
+            f"{left} more can be earned: hand in what you have to `check`, even if you are not "
+            "sure of it. "
             "Each different answer counts; pressing Run again does not."
         )
     return Reply(name, "hints", "", lines)
 
 
 def worked_solution(name: str, code: str) -> Reply:
-    """Show the worked solution of a question to one who gives up, with the code that the instructor gave out."""
+    """Show the worked solution of a question to one who gives up, with the code that the instructor
+    gave out.
+    """
     student = identity()
     sealed = find_question(name, student)
     locker = opened(sealed, code_text(str(code)))
     if locker is None or locker.solution is None:
         return Reply(
-            name, "hints", "", ["This code opens no solution. Your instructor gives the code out when it is time."]
+            name,
+            "hints",
+            "",
+            ["This code opens no solution. Your instructor gives the code out when it is time."],
         )
     entry = _note_help(name, student, "solution")
     said = ["Read it, close it, and write it out for yourself."]
@@ -135,18 +146,25 @@ def _note_help(name: str, student: str, kind: str) -> Entry:
     entry = _entry(progress, name, student)
     if entry.outcome != "correct":
         kinds = list(HELP)
-        entry = replace(entry, help=max(kind, entry.help, key=lambda one: kinds.index(one) if one in kinds else -1))
+        entry = replace(
+            entry,
+            help=max(kind, entry.help, key=lambda one: kinds.index(one) if one in kinds else -1),
+        )
         progress.put({name: entry})
     return entry
 
 
 def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
-    """Say of the siblings of a question what concerns one who had help, or who has solved one without."""
+    """Say of the siblings of a question what concerns one who had help, or who has solved one
+    without.
+    """
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.variants)
     if not help_had:
         reply.messages += (
-            [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."] if order else []
+            [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."]
+            if order
+            else []
         )
     elif siblings:
         said = f"You had help: {HELP.get(help_had, 'it was shown')}."
@@ -155,8 +173,10 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
             return
         reply.sibling = siblings[order]
         reply.messages.append(
-            f"{said} For the rest of the points of `{asked}`, solve it with other numbers and without help: "
-            f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks your answer."
+            f"{said} For the rest of the points of `{asked}`, solve it with other numbers and "
+            "without help: "
+            f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks "
+            "your answer."
         )
 
 
@@ -167,7 +187,9 @@ def _steps(sealed: Sealed, entry: Entry) -> list[str]:
         with suppress(ValueError, LookupError):  # the page is of an earlier release of the question
             locker = Locker.from_json(open_page(sealed, entry.page), "A page")
             steps = next((list(known.hints) for known in locker.answers if known.hints), [])
-    return steps + [unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)]
+    return steps + [
+        unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)
+    ]
 
 
 def _earned(entry: Entry) -> int:
@@ -190,17 +212,23 @@ def _show_next_hint(sealed: Sealed, student: str, reply: Reply, entry: Entry) ->
 
 
 def progress() -> Reply:
-    """Show how far you are, by chapter, and what is worth another look; from the record beside this notebook."""
+    """Show how far you are, by chapter, and what is worth another look; from the record beside this
+    notebook.
+    """
     kept, student = Progress.read(), identity()
     known = {name: entry for name in kept.entries if (entry := _entry(kept, name, student)).outcome}
     record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
     others = _right_for_others(kept, student)
     if not record:
-        return Reply("progress", "hints", "", others or ["Nothing has been checked in this folder yet."])
+        return Reply(
+            "progress", "hints", "", others or ["Nothing has been checked in this folder yet."]
+        )
     right = {name for name, entry in record.items() if entry.outcome == "correct"}
     lines = [f"{len(right)} of the {len(record)} questions that you have tried are right."]
     if len(record) == 1:
-        lines = [f"The one question that you have tried is {'right' if right else 'not right yet'}."]
+        lines = [
+            f"The one question that you have tried is {'right' if right else 'not right yet'}."
+        ]
     for notebook in sorted({name.partition("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
     lines += others
@@ -216,18 +244,28 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
     questions = questions or {name: 1 for name in record if name.startswith(f"{notebook}/")}
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
-    taken_down = {name for name in questions if name in record and record[name].outcome == "recorded"}
+    taken_down = {
+        name for name in questions if name in record and record[name].outcome == "recorded"
+    }
     open_ = [name for name in questions if name not in right and name not in taken_down]
     # What was begun comes before what is new.
     open_.sort(key=lambda name: name not in record)
-    line = f"*{notebook}*: {len(right & set(questions))} of {len(questions)} right, {earned} of {points} points."
+    line = (
+        f"*{notebook}*: {len(right & set(questions))} of {len(questions)} right, {earned} of "
+        f"{points} points."
+    )
     if taken_down:
-        line += f" Taken down, and marked later: {', '.join(f'`{name}`' for name in sorted(taken_down))}."
+        line += (
+            " Taken down, and marked later: "
+            f"{', '.join(f'`{name}`' for name in sorted(taken_down))}."
+        )
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
 
 def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) -> list[str]:
-    """The questions whose points are not all earned, since they were right with help and no sibling without."""
+    """The questions whose points are not all earned, since they were right with help and no sibling
+    without.
+    """
     alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
     found = []
     for name in sorted(right - alone):
@@ -237,7 +275,9 @@ def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) 
             continue  # a question of another release
         if known[name].help and count > 1:
             found.append(f"`{name}`")
-    return [f"Right with help, so that a sibling earns the rest: {', '.join(found)}."] if found else []
+    return (
+        [f"Right with help, so that a sibling earns the rest: {', '.join(found)}."] if found else []
+    )
 
 
 def _is_alone(name: str, entry: Entry) -> bool:
@@ -252,18 +292,26 @@ def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
         days = int((today - (entry.mistake_at or today)) // DAY)
         if days >= REVIEW_AFTER and entry.mistake:
             found.append(f"`{name}` ({days} days ago: {entry.mistake})")
-    return [f"Worth another look, since you made a mistake there: {', '.join(found)}."] if found else []
+    return (
+        [f"Worth another look, since you made a mistake there: {', '.join(found)}."]
+        if found
+        else []
+    )
 
 
 def _right_for_others(progress: Progress, student: str) -> list[str]:
-    """What is said of questions that are right with other numbers than a student's own: that stays known."""
+    """What is said of questions that are right with other numbers than a student's own: that stays
+    known.
+    """
     found = [
         f"`{name}`"
         for name in sorted(progress.entries)
         if (entry := _entry(progress, name, student)).outcome != "correct"
         and any(one.outcome == "correct" for one in entry.others)
     ]
-    return [f"Right with other numbers, and not with yours yet: {', '.join(found)}."] if found else []
+    return (
+        [f"Right with other numbers, and not with yours yet: {', '.join(found)}."] if found else []
+    )
 
 
 def _entry(progress: Progress, name: str, student: str) -> Entry:
@@ -282,7 +330,9 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
     # What was right once stays right: another try in the same cell takes nothing away.
     if entry.outcome != "correct":
         helped = reply.outcome == "wrong" and reply.note not in NO_HELP
-        entry = replace(entry, outcome=reply.outcome, help=entry.help or ("mistake" if helped else ""))
+        entry = replace(
+            entry, outcome=reply.outcome, help=entry.help or ("mistake" if helped else "")
+        )
     entry = replace(entry, note=reply.note)
     if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:  # which is no try at one's own
         answers = entry.answers
@@ -291,13 +341,17 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
         has_hints = reply.known is not None and reply.known.hints
         page = reply.opened.place if has_hints and reply.opened else None
         mistake = reply.note or "another value"
-        entry = replace(entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time()))
+        entry = replace(
+            entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time())
+        )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
         entry = replace(entry, mistake="")  # looked at again, and right
     changed = {name: entry}
     if reply.opened and reply.opened.place and reply.outcome == "correct":
         for other in reply.opened.after:
             later = changed.get(other, progress.entry(other))
-            changed[other] = replace(later, after=tuple(dict.fromkeys((*later.after, (name, reply.opened.place)))))
+            changed[other] = replace(
+                later, after=tuple(dict.fromkeys((*later.after, (name, reply.opened.place))))
+            )
     progress.put(changed)
     return entry

@@ -1,4 +1,6 @@
-"""Sealed variants that lie where the pages lie: only a browser's Python asks for them, one by one."""
+"""Sealed variants that lie where the pages lie: only a browser's Python asks for them, one by
+one.
+"""
 
 from importlib.resources.abc import Traversable
 
@@ -18,4 +20,6 @@ def fetched(file: Traversable, name: str) -> str:
         why = f"the server says {request.status}"
     except Exception as error:  # what the browser throws where there is no network
         why = str(error)
-    raise RuntimeError(f"Your numbers could not be fetched from {address} ({why}). Is there a network?")
+    raise RuntimeError(
+        f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
+    )

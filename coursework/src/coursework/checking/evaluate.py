@@ -1,11 +1,12 @@
 """The numbers that an answer stands for, at given values of its symbols.
 
-Two forms of one expression have the same values, so values are compared and forms are not: nothing is
-simplified, which could take a minute or not come back at all. They are worked out with 40 digits, of
-which a check compares nine, so no two ways of writing an answer are told apart by rounding.
+Two forms of one expression have the same values, so values are compared and forms are not: nothing
+is simplified, which could take a minute or not come back at all. They are worked out with 40
+digits, of which a check compares nine, so no two ways of writing an answer are told apart by
+rounding.
 
-This reads the plain data of :mod:`coursework.checking.plain` only. It never builds a SymPy object from it, and
-whatever the data holds, its work is bounded.
+This reads the plain data of :mod:`coursework.checking.plain` only. It never builds a SymPy object
+from it, and whatever the data holds, its work is bounded.
 """
 
 from collections.abc import Mapping
@@ -18,15 +19,17 @@ MP.dps = 40
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
-#: Below ten to this power a number is not worked with: what is done with it takes memory in the size of the exponent.
+#: Below ten to this power a number is not worked with: what is done with it takes memory in the
+#: size of the exponent.
 SMALLEST = -1_000_000
-#: The smaller part of a complex number of which the larger one is this many powers of two larger is taken for nothing:
-#: no digit depends on it, and some functions would write out every place between the two.
+#: The smaller part of a complex number of which the larger one is this many powers of two larger is
+#: taken for nothing: no digit depends on it, and some functions would write out every place between
+#: the two.
 APART = 20_000
 #: A decimal exponent beyond which a number is not read by writing it out.
 LONG_EXPONENT = 400
-#: Work on one answer at one point, in additions of real numbers; others cost as many as they take. An
-#: honest answer of thousands of nodes stays far below; a hostile one would take a minute.
+#: Work on one answer at one point, in additions of real numbers; others cost as many as they take.
+#: An honest answer of thousands of nodes stays far below; a hostile one would take a minute.
 MOST_WORK = 100_000
 
 
@@ -56,8 +59,8 @@ def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
     point : dict
         A number for each symbol, by name.
 
-    An error is kept as the value of its node and is raised by :func:`number`, since a branch that is
-    not taken may be undefined.
+    An error is kept as the value of its node and is raised by :func:`number`, since a branch that
+    is not taken may be undefined.
     """
     results, work = [], 0
     for node in nodes:
@@ -70,7 +73,13 @@ def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
             results.append(error)
         except ZeroDivisionError:
             results.append(Undefined("division by zero"))
-        except (ValueError, TypeError, OverflowError, ArithmeticError, mpmath.libmp.NoConvergence) as error:
+        except (
+            ValueError,
+            TypeError,
+            OverflowError,
+            ArithmeticError,
+            mpmath.libmp.NoConvergence,
+        ) as error:
             results.append(NotSupported(f"{node[0]} ({type(error).__name__})"))
     return results
 
@@ -85,7 +94,9 @@ def number(result):
 
 
 def real(result: Any, rest: Any = 0) -> Any:
-    """The real number that a result is; raises ``ValueError`` where its imaginary part is more than ``rest``."""
+    """The real number that a result is; raises ``ValueError`` where its imaginary part is more than
+    ``rest``.
+    """
     result = number(result)
     if result in (MP.inf, -MP.inf):
         raise Undefined("infinite")
@@ -247,7 +258,9 @@ FUNCTIONS = {
     "Mul": lambda *factors: MP.fprod(factors),
     "Pow": _power,
     "exp": _exponential,
-    "log": lambda argument, base=None: MP.log(argument) if base is None else MP.log(argument) / MP.log(base),
+    "log": lambda argument, base=None: (
+        MP.log(argument) if base is None else MP.log(argument) / MP.log(base)
+    ),
     "sin": _moderate(MP.sin),
     "cos": _moderate(MP.cos),
     "tan": _moderate(MP.tan),
@@ -282,7 +295,9 @@ FUNCTIONS = {
     "floor": _real_only(MP.floor),
     "ceiling": _real_only(MP.ceil),
     "Mod": _real_only(lambda argument, modulus: argument - modulus * MP.floor(argument / modulus)),
-    "Heaviside": lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[int(_sign(argument))],
+    "Heaviside": lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[
+        int(_sign(argument))
+    ],
 }
 
 CONDITIONS = {

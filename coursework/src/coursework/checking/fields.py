@@ -1,7 +1,8 @@
-"""JSON from outside, read into what has types: whatever is wrong is said with its key and its value.
+"""JSON from outside, read into what has types: whatever is wrong is said with its key and its
+value.
 
-A reader takes what :func:`json.loads` gave, and where it stood, and gives the value or raises :class:`Misread`. It
-keeps a number as it is, so that what is written again is the same to the byte.
+A reader takes what :func:`json.loads` gave, and where it stood, and gives the value or raises
+:class:`Misread`. It keeps a number as it is, so that what is written again is the same to the byte.
 """
 
 from __future__ import annotations
@@ -96,7 +97,9 @@ def by_name(reader: Reader[Some]) -> Reader[dict[str, Some]]:
     def read(value: object, where: str) -> dict[str, Some]:
         if not isinstance(value, dict):
             raise Misread(where, "an object", value)
-        return {text(name, where): reader(part, f"{where}: {name!r}") for name, part in value.items()}
+        return {
+            text(name, where): reader(part, f"{where}: {name!r}") for name, part in value.items()
+        }
 
     return read
 

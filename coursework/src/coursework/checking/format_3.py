@@ -1,7 +1,8 @@
-"""Sealed files of format 3, as they were made until November 2026: read for ever, and never made again.
+"""Sealed files of format 3, as they were made until November 2026: read for ever, and never made
+again.
 
-A locker held the place of a mistake in the catalogue of that time. That order is kept here, and for the kinds of a
-plug-in in its ``FORMAT_3``; what is added to the catalogue is not added here.
+A locker held the place of a mistake in the catalogue of that time. That order is kept here, and for
+the kinds of a plug-in in its ``FORMAT_3``; what is added to the catalogue is not added here.
 """
 
 import itertools
@@ -48,11 +49,16 @@ def mistakes_in(inside: bytes, question: Question) -> list[Note]:
 
 
 def numbered(question: Question) -> list[Note]:
-    """Every mistake of the catalogue of that time for a question, with its details, in its order."""
+    """Every mistake of the catalogue of that time for a question, with its details, in its
+    order.
+    """
     kind = question.kind_of_values
     symbols = sorted(question.symbols)
     found = []
     for note, details in (*CATALOGUE, *(OF_KINDS.get(kind) or catalogue_of_format_3(kind))):
         choices = (symbols if values == SYMBOLS else values for values in details.values())
-        found += [Note(note, dict(zip(details, chosen, strict=True))) for chosen in itertools.product(*choices)]
+        found += [
+            Note(note, dict(zip(details, chosen, strict=True)))
+            for chosen in itertools.product(*choices)
+        ]
     return found

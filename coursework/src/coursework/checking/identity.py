@@ -1,7 +1,9 @@
-"""Who works in this notebook: said once, kept beside the notebooks, and known to page, notebook and grader alike.
+"""Who works in this notebook: said once, kept beside the notebooks, and known to page, notebook and
+grader alike.
 
-With it each student gets numbers of their own. Who forgets it works on those that everybody sees, and would learn
-from the grader that they earn nothing: so it is said beside every such question, and in each reply to one.
+With it each student gets numbers of their own. Who forgets it works on those that everybody sees,
+and would learn from the grader that they earn nothing: so it is said beside every such question,
+and in each reply to one.
 """
 
 from pathlib import Path
@@ -13,7 +15,8 @@ from .question import Question
 KEPT = Path(".coursework", "me.txt")
 #: What is said where nobody has said who works here.
 FORGOTTEN = (
-    "These are the numbers that everybody sees. In a course they earn no points: there, first say who you are, by "
+    "These are the numbers that everybody sees. In a course they earn no points: there, first say "
+    "who you are, by "
     "`student('...')` in the first cell of code, and run it."
 )
 _identity = ""
@@ -22,9 +25,9 @@ _identity = ""
 def student(identity: str = "") -> None:
     """Say who you are, so that you get your own numbers: ``student('ada@uni.example')``.
 
-    Once is enough: it is kept beside your notebooks (in JupyterLite, in the browser), and ``student('')`` in another
-    one finds it there, and says so. Without it you get the numbers that everybody sees; who hands in answers to
-    another one's numbers gets no points for them.
+    Once is enough: it is kept beside your notebooks (in JupyterLite, in the browser), and
+    ``student('')`` in another one finds it there, and says so. Without it you get the numbers that
+    everybody sees; who hands in answers to another one's numbers gets no points for them.
 
     Parameters
     ----------
@@ -45,12 +48,15 @@ def student(identity: str = "") -> None:
         pass  # a folder that cannot be written to: then it is said anew in each notebook
     for whose, names in (Progress.read().right_for_others(_identity) if _identity else {}).items():
         print(
-            f"With {f'the numbers of {whose}' if whose else 'the numbers that everybody sees'} you have solved "
-            f"{', '.join(names)}. That stays written down; for the numbers of {_identity}, run the cells again."
+            f"With {f'the numbers of {whose}' if whose else 'the numbers that everybody sees'} you "
+            "have solved "
+            f"{', '.join(names)}. That stays written down; for the numbers of {_identity}, run the "
+            "cells again."
         )
 
 
-#: The older name, which stands in notebooks that were handed out; elsewhere it is SymPy's mechanics.
+#: The older name, which stands in notebooks that were handed out; elsewhere it is SymPy's
+#: mechanics.
 me = student
 
 
@@ -65,5 +71,7 @@ def plain_identity(identity: str) -> str:
 
 
 def forgotten(student: str, question: Question) -> str:
-    """What is said beside a question with other numbers for each student, while nobody has said who works here."""
+    """What is said beside a question with other numbers for each student, while nobody has said who
+    works here.
+    """
     return FORGOTTEN if question.variants > 1 and not student else ""

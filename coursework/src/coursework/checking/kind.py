@@ -10,7 +10,8 @@ class Kind(NamedTuple):
     Attributes
     ----------
     entries : function (question, value) -> list of int
-        For answers that are numbers: the nodes of an answer's entries, in order. Raises a fault of the form.
+        For answers that are numbers: the nodes of an answer's entries, in order. Raises a fault of
+        the form.
     text : function (question, plain) -> str
         For answers in words: the one way of writing what is meant.
     unique : function (question, numbers) -> list
@@ -32,12 +33,15 @@ class Kind(NamedTuple):
     mistakes : function (question, answer, turns, turned) -> iterable of Mistake
         The typical mistakes, carried out on the right answer.
     messages : dict
-        What a student is told of a mistake, by its note: functions of the question and of the mistake's details.
+        What a student is told of a mistake, by its note: functions of the question and of the
+        mistake's details.
     details : dict
-        What the details of these mistakes may be, by name: tuples of values, so that a mistake has a number.
+        What the details of these mistakes may be, by name: tuples of values, so that a mistake has
+        a number.
     slips : dict
-        Common slips that go with another mistake, by name: what is said of each, and a function of the question and
-        the numbers of an answer that undoes it, or gives ``None`` where it makes no sense.
+        Common slips that go with another mistake, by name: what is said of each, and a function of
+        the question and the numbers of an answer that undoes it, or gives ``None`` where it makes
+        no sense.
     build : function (turns) -> matrix
         The answer that successive turns lead to, where ``turns`` may be given.
     forms : function (question, answer) -> list of (str, answer)
@@ -45,7 +49,8 @@ class Kind(NamedTuple):
     public : function (answer) -> dict
         What of the right answer a student's computer must know, and may.
     by_a_person : bool
-        Whether a person reads the answers; then nothing is sealed, and no program says what is right.
+        Whether a person reads the answers; then nothing is sealed, and no program says what is
+        right.
     another : function (question, answer) -> answer
         An answer of the right form that is another one.
     """

@@ -1,7 +1,9 @@
-"""The kinds of questions that no course owns: how the entries of an answer are found, and what is wrong with its form.
+"""The kinds of questions that no course owns: how the entries of an answer are found, and what is
+wrong with its form.
 
-Plug-ins build their kinds from what stands here. An answer is the plain data of :mod:`coursework.checking.plain`; what
-becomes of its entries is in :mod:`coursework.checking.reading`.
+Plug-ins build their kinds from what stands here. An answer is the plain data of
+:mod:`coursework.checking.plain`; what becomes of its entries is in
+:mod:`coursework.checking.reading`.
 """
 
 import unicodedata
@@ -18,7 +20,9 @@ from .units import unit
 
 #: What stands between the parts of an answer in words.
 PARTS = {"words": " | ", "order": " < ", "truth values": ""}
-FUNCTIONS = SimpleNamespace(sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts)))
+FUNCTIONS = SimpleNamespace(
+    sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts))
+)
 
 
 #: One of mpmath.
@@ -30,7 +34,9 @@ class Blank(Exception):
 
 
 class Fault(Exception):
-    """An answer is not of the form that is asked for: a short note for statistics, and a message."""
+    """An answer is not of the form that is asked for: a short note for statistics, and a
+    message.
+    """
 
     def __init__(self, note: str, message: str) -> None:
         super().__init__(message)
@@ -56,7 +62,10 @@ def listed(names: Iterable[str]) -> str:
 
 
 def shape_fault(wanted: str, value: list[Any], got: str | None = None) -> Fault:
-    return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.")
+    return Fault(
+        "shape",
+        f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.",
+    )
 
 
 def _describe(value: list[Any]) -> str:
@@ -94,14 +103,18 @@ def _holding(whole: list[Any], part: list[Any]) -> str:
 
 
 def _fault_of_numbers(wanted: str, value: list[Any]) -> Fault:
-    return shape_fault(wanted, value, "a text: write it without quotation marks" if value[0] == "text" else None)
+    return shape_fault(
+        wanted, value, "a text: write it without quotation marks" if value[0] == "text" else None
+    )
 
 
 def leaf(value: list[Any], wanted: str) -> int:
     """The one expression that a value is; a list or matrix of one entry is that entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
         return int(value[3][0])
-    if value[0] == "list" and (len(value[1]) == 1 or list(value[1][1:]) == [["text", "1"]]):  # degrees are no unit
+    if value[0] == "list" and (
+        len(value[1]) == 1 or list(value[1][1:]) == [["text", "1"]]
+    ):  # degrees are no unit
         return leaf(value[1][0], wanted)
     if value[0] != "expression":
         raise _fault_of_numbers(wanted, value)
@@ -139,7 +152,9 @@ def _measurement(question: Question, value: list[Any]) -> list[int]:
 
 
 def scale_of(answer: Any) -> dict[str, str]:
-    """What the sealed part of a measurement tells of its unit: how large it is, and not what it measures."""
+    """What the sealed part of a measurement tells of its unit: how large it is, and not what it
+    measures.
+    """
     return {"scale": MP.nstr(unit(answer[1]).size, 15)}
 
 
@@ -151,7 +166,10 @@ def _vector(question: Question, value: list[Any]) -> list[int]:
         if frame is None:
             raise shape_fault(f"A list of {length} components", value)
         if frame not in value[1]:
-            raise Fault("frame", f"This vector is not connected with the frame `{frame}` that the question names.")
+            raise Fault(
+                "frame",
+                f"This vector is not connected with the frame `{frame}` that the question names.",
+            )
         value = value[1][frame]
     return components(value, length, f"A list of {length} components")
 
@@ -192,7 +210,9 @@ def word(plain: Plain, wanted: str) -> str:
 
 
 def _spelled(plain: Plain) -> str | None:
-    """The word that is meant by a number or a symbol: ``-1`` for ``'-1'``, the symbol ``-i`` for ``'-i'``."""
+    """The word that is meant by a number or a symbol: ``-1`` for ``'-1'``, the symbol ``-i`` for
+    ``'-i'``.
+    """
     if plain["value"][0] != "expression":
         return None
     nodes = plain["nodes"]
@@ -207,16 +227,21 @@ def _spelled(plain: Plain) -> str | None:
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks,")
+    given = _spelled(plain) or word(
+        plain, f"One of {listed(question.options)}, in quotation marks,"
+    )
     given = " ".join(given.split())
-    # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left out.
+    # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
+    # out.
     text = given.lower().translate(MINUS)
     options = {option.lower(): option for option in question.options}
     # Nor are wide letters, or quotation marks within those of Python.
     bare = unicodedata.normalize("NFKC", text).strip(QUOTES).replace("- ", "-").replace("+ ", "+")
     found = [one for one in (text, bare, bare.removeprefix("+"), f"+{bare}") if one in options]
     if not found:
-        raise Fault("shape", f"The answer is one of {listed(question.options)}; this is `{given[:40]}`.")
+        raise Fault(
+            "shape", f"The answer is one of {listed(question.options)}; this is `{given[:40]}`."
+        )
     return found[0]
 
 
@@ -257,7 +282,9 @@ def _order(question: Question, plain: Plain) -> str:
     parts = [_choice(question, {**plain, "value": part}) for part in value[1]]
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise shape_fault(wanted, value, f"one in which `{twice}` stands {parts.count(twice)} times")
+        raise shape_fault(
+            wanted, value, f"one in which `{twice}` stands {parts.count(twice)} times"
+        )
     return PARTS["order"].join(parts)
 
 
@@ -284,7 +311,9 @@ def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
 
 
 def sign_limit(question: Question) -> Number:
-    """Below this a component counts as zero, so that rounding does not decide which sign is taken."""
+    """Below this a component counts as zero, so that rounding does not decide which sign is
+    taken.
+    """
     return MP.mpf("2e-9") if question.tolerance is None else 8 * MP.mpf(str(question.tolerance))
 
 
@@ -314,7 +343,8 @@ def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | Non
         if abs(length - 1) > slack(question):
             return Fault(
                 "not unit length",
-                f"The question asks for a unit vector; this one has length {length_in_words(length)}.",
+                "The question asks for a unit vector; this one has length "
+                f"{length_in_words(length)}.",
             )
     return None
 
@@ -327,34 +357,60 @@ def transposed(question: Question, numbers: list[Number]) -> list[Number] | None
     return [numbers[row * columns + column] for column in range(columns) for row in range(rows)]
 
 
-TRANSPOSED = {"transposed": ("the matrix is transposed, and its transpose has another mistake.", transposed)}
+TRANSPOSED = {
+    "transposed": ("the matrix is transposed, and its transpose has another mistake.", transposed)
+}
 SEVERAL = "More than one of these is not right."
 #: Where to begin with each kind of question.
 BEGIN = {
-    "expression": "Name what is known and what is asked for, and write down one equation that connects them.",
-    "vector": "Along which frame are the components asked for? Write the vector down where it is simplest.",
+    "expression": "Name what is known and what is asked for, and write down one equation that "
+    "connects them.",
+    "vector": "Along which frame are the components asked for? Write the vector down where it is "
+    "simplest.",
     "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
-    "choice": "Put each of the possibilities to the test on the simplest case that tells them apart.",
-    "words": "Take them one by one, and begin with those that you are sure of; find a test for the others.",
-    "truth values": "Look for an example that breaks a claim; where there is none, look for the proof.",
-    "measurement": "Work with the units as with the numbers: what do those that are given make together?",
+    "choice": "Put each of the possibilities to the test on the simplest case that "
+    "tells them apart.",
+    "words": "Take them one by one, and begin with those that you are sure of; find a test "
+    "for the others.",
+    "truth values": "Look for an example that breaks a claim; where there is none, look "
+    "for the proof.",
+    "measurement": "Work with the units as with the numbers: what do those that are given make "
+    "together?",
     "order": "Find the first and the last; then compare two at a time.",
     "function": "Work out by hand what it should return for the simplest arguments, and compare.",
 }
 KINDS = {
-    "expression": Kind(begin=BEGIN["expression"], entries=_expression, mistakes=mistakes.of_expression),
+    "expression": Kind(
+        begin=BEGIN["expression"], entries=_expression, mistakes=mistakes.of_expression
+    ),
     "vector": Kind(
-        begin=BEGIN["vector"], entries=_vector, unique=one_sign, fault=_unit_vector_fault, mistakes=mistakes.of_vector
+        begin=BEGIN["vector"],
+        entries=_vector,
+        unique=one_sign,
+        fault=_unit_vector_fault,
+        mistakes=mistakes.of_vector,
     ),
     "matrix": Kind(
-        begin=BEGIN["matrix"], entries=_matrix, needs=("shape",), mistakes=mistakes.of_matrix, slips=TRANSPOSED
+        begin=BEGIN["matrix"],
+        entries=_matrix,
+        needs=("shape",),
+        mistakes=mistakes.of_matrix,
+        slips=TRANSPOSED,
     ),
     "choice": Kind(begin=BEGIN["choice"], text=_choice, needs=("options",)),
     "words": Kind(
-        begin=BEGIN["words"], text=_words, needs=("options", "length"), wrong=SEVERAL, mistakes=mistakes.of_parts
+        begin=BEGIN["words"],
+        text=_words,
+        needs=("options", "length"),
+        wrong=SEVERAL,
+        mistakes=mistakes.of_parts,
     ),
     "truth values": Kind(
-        begin=BEGIN["truth values"], text=_truths, needs=("length",), wrong=SEVERAL, mistakes=mistakes.of_parts
+        begin=BEGIN["truth values"],
+        text=_truths,
+        needs=("length",),
+        wrong=SEVERAL,
+        mistakes=mistakes.of_parts,
     ),
     "measurement": Kind(
         begin=BEGIN["measurement"],

@@ -1,8 +1,9 @@
 """The typical mistakes: what each does to a right answer, and what the student is told.
 
-When a question is sealed, every mistake that applies to it is carried out on the right answer, and its
-result gets a locker of its own. So a student's mistake is recognised by one fingerprint, and nothing of the
-right answer is needed where the student works. Mistakes that lead to the same answer are named together.
+When a question is sealed, every mistake that applies to it is carried out on the right answer, and
+its result gets a locker of its own. So a student's mistake is recognised by one fingerprint, and
+nothing of the right answer is needed where the student works. Mistakes that lead to the same answer
+are named together.
 
 The messages are no secret; which of them a question knows, and for what answers, is.
 """
@@ -18,9 +19,17 @@ from .question import Question
 from .sealing import MISTAKE
 
 #: Factors that are forgotten or put in twice, as they are said.
-FACTORS = (("2", "2"), ("one half", "1/2"), ("3", "3"), ("one third", "1/3"), ("4", "4"), ("one quarter", "1/4"))
+FACTORS = (
+    ("2", "2"),
+    ("one half", "1/2"),
+    ("3", "3"),
+    ("one third", "1/3"),
+    ("4", "4"),
+    ("one quarter", "1/4"),
+)
 NUMBERS = (
-    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen sixteen "
+    "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen "
+    "sixteen "
     "seventeen eighteen nineteen twenty"
 ).split()
 #: Mistakes that say little: where a more telling one leads to the same answer, they are left out.
@@ -28,7 +37,9 @@ GENERAL = ("one wrong", "factor", "half", "double", "opposite")
 
 
 class Mistake(NamedTuple):
-    """A note for statistics, what the message needs to know, and the answer that the mistake leads to."""
+    """A note for statistics, what the message needs to know, and the answer that the mistake leads
+    to.
+    """
 
     note: str
     details: dict[str, Json]
@@ -43,18 +54,27 @@ MESSAGES: dict[str, Callable[..., str]] = {
     "transposed": _only_the_transpose,
     "in degrees": lambda question: "Your answer is in degrees; angles here are in radians.",
     "in radians": lambda question: "Your answer is in radians; the question asks for degrees.",
-    "sign of a symbol": lambda question, symbol: f"The answer would be right if `{symbol}` had the other sign.",
-    "symbols interchanged": lambda question, first, second: f"`{first}` and `{second}` are interchanged.",
+    "sign of a symbol": lambda question, symbol: (
+        f"The answer would be right if `{symbol}` had the other sign."
+    ),
+    "symbols interchanged": lambda question, first, second: (
+        f"`{first}` and `{second}` are interchanged."
+    ),
     "opposite": lambda question: "Every sign is wrong: this is minus what the question asks for.",
     "reciprocal": lambda question: "This is the reciprocal of what the question asks for.",
-    "factor": lambda question, factor: f"This is {factor} times what the question asks for. The rest is right.",
-    "one wrong": lambda question, number: f"One of the {NUMBERS[number]} is not right; all the others are.",
+    "factor": lambda question, factor: (
+        f"This is {factor} times what the question asks for. The rest is right."
+    ),
+    "one wrong": lambda question, number: (
+        f"One of the {NUMBERS[number]} is not right; all the others are."
+    ),
     "half": lambda question: "This is half of what the question asks for.",
     "double": lambda question: "This is twice what the question asks for.",
     "supplement": lambda question: "This angle and the one asked for add up to half a turn.",
     "complement": lambda question: "This angle and the one asked for add up to a quarter turn.",
     "not turned": lambda question: (
-        "These are the components along the frame that you started from. You still have to turn them."
+        "These are the components along the frame that you started from. You still have "
+        "to turn them."
     ),
     "turned the wrong way": lambda question: (
         "The components were multiplied by the transpose of the matrix that turns them."
@@ -65,17 +85,21 @@ MESSAGES: dict[str, Callable[..., str]] = {
 POWERS = (3, -3, 6, -6, 2, -2)
 OF_MEASUREMENTS = {
     "power of ten": lambda question, power: (
-        f"This is $10^{{{power}}}$ times what the question asks for. Has a prefix been lost, as in kN or mm?"
+        f"This is $10^{{{power}}}$ times what the question asks for. Has a prefix been lost, as in "
+        "kN or mm?"
     ),
 }
 OF_ORDERS = {
     "turned round": lambda question: "This order is back to front: the last one comes first.",
-    "two interchanged": lambda question: "Two neighbours have been swapped; all the others are in order.",
+    "two interchanged": lambda question: (
+        "Two neighbours have been swapped; all the others are in order."
+    ),
 }
 
 
 def short_name(note: str, details: Mapping[str, Json]) -> bytes:
-    """The name that a mistake has in a locker: it follows from its note and details, and from nothing else.
+    """The name that a mistake has in a locker: it follows from its note and details, and from
+    nothing else.
 
     So files that were sealed before keep their meaning, whatever is added to the catalogue.
 
@@ -94,7 +118,8 @@ def as_matrix(answer: Any) -> Any:
 
     if hasattr(answer, "dcm"):
         raise TypeError(
-            "A reference frame is the right answer here: bind its direction cosine matrix instead, so "
+            "A reference frame is the right answer here: bind its direction cosine matrix "
+            "instead, so "
             "that mistakes can be made of it. A student may still answer with the frame."
         )
     return sympy.Matrix(answer)
@@ -151,7 +176,11 @@ def of_parts(question: Question, answer: Any, turns: Any, turned: Any) -> Iterat
     for place, right in enumerate(answer):
         for option in question.options or [True, False]:
             if option != right:
-                yield Mistake("one wrong", {"number": len(answer)}, answer[:place] + [option] + answer[place + 1 :])
+                yield Mistake(
+                    "one wrong",
+                    {"number": len(answer)},
+                    answer[:place] + [option] + answer[place + 1 :],
+                )
 
 
 def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
@@ -161,7 +190,9 @@ def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterat
     if len(answer) > 3:
         for place in range(len(answer) - 1):
             first, second = answer[place : place + 2]
-            yield Mistake("two interchanged", {}, [*answer[:place], second, first, *answer[place + 2 :]])
+            yield Mistake(
+                "two interchanged", {}, [*answer[:place], second, first, *answer[place + 2 :]]
+            )
 
 
 def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
@@ -173,7 +204,11 @@ def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> 
         if mistake.note != "reciprocal":
             yield mistake._replace(answer=(mistake.answer, unit))
     for power in POWERS:
-        yield Mistake("power of ten", {"power": power}, (sympy.sympify(number) * sympy.Integer(10) ** power, unit))
+        yield Mistake(
+            "power of ten",
+            {"power": power},
+            (sympy.sympify(number) * sympy.Integer(10) ** power, unit),
+        )
 
 
 def of_factors(answer: Any) -> Iterator[Mistake]:
@@ -188,7 +223,8 @@ def of_vector(question: Question, answer: Any, turns: Any, turned: Any) -> Itera
     import sympy
 
     if hasattr(answer, "to_matrix"):
-        return  # a SymPy vector: its author has written its components in `turned`, or names mistakes
+        # a SymPy vector: its author has written its components in `turned`, or names mistakes
+        return
     answer = as_matrix(answer)
     yield Mistake("opposite", {}, -answer)
     if turned:

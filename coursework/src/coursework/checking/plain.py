@@ -1,22 +1,22 @@
 """An answer as plain data: what a check reads, and all that ever leaves a student's process.
 
-An answer may be a SymPy expression, a matrix, a reference frame, a vector, a NumPy array, a list or a
-text. Here it becomes a table of numbers, names and operations that JSON can hold:
+An answer may be a SymPy expression, a matrix, a reference frame, a vector, a NumPy array, a list or
+a text. Here it becomes a table of numbers, names and operations that JSON can hold:
 
 ``{'value': value, 'nodes': [node, ...]}``
 
-``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``,
-``['matrix', rows, columns, [k, ...]]``, ``['list', [value, ...]]``,
-``['frame', name, {other: value, ...}]`` (its direction cosine matrix with respect to each frame it is
-connected to), ``['frames', {target: {source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its
-components in each frame) or ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says
-whether its body works anything out. Each ``k`` counts into ``nodes``; a node is
-``['integer', digits]``, ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``,
-``['constant', name]`` or ``[operation, k, ...]``, and refers only to nodes before itself.
+``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``, ``['matrix',
+rows, columns, [k, ...]]``, ``['list', [value, ...]]``, ``['frame', name, {other: value, ...}]``
+(its direction cosine matrix with respect to each frame it is connected to), ``['frames', {target:
+{source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its components in each frame) or
+``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says whether its
+body works anything out. Each ``k`` counts into ``nodes``; a node is ``['integer', digits]``,
+``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``, ``['constant', name]`` or
+``[operation, k, ...]``, and refers only to nodes before itself.
 
-A subexpression that occurs often is written once, so the table is as large as the work that made the
-answer and not as the tree that would be printed. Nothing is simplified. Reading such a table, unlike
-unpickling or ``sympify``, runs no code that a student wrote.
+A subexpression that occurs often is written once, so the table is as large as the work that made
+the answer and not as the tree that would be printed. Nothing is simplified. Reading such a table,
+unlike unpickling or ``sympify``, runs no code that a student wrote.
 """
 
 import contextlib
@@ -45,8 +45,9 @@ LONGEST_TEXT = 2_000
 LONGEST_INTEGER = 400
 DEEPEST = 6
 
-#: Calls of functions that working out one part of an answer (a derivative, an integral) may take: about a second.
-#: Calls are counted, and no clock is read, so that every machine decides alike, the one in a browser too.
+#: Calls of functions that working out one part of an answer (a derivative, an integral) may take:
+#: about a second. Calls are counted, and no clock is read, so that every machine decides alike, the
+#: one in a browser too.
 MOST_CALLS = 400_000
 
 VALUES = (
@@ -74,7 +75,9 @@ class NotPlain(ValueError):
 
 
 class TooMuchWork(BaseException):
-    """Working out a part took more calls than it may; no Exception, so that SymPy does not catch it."""
+    """Working out a part took more calls than it may; no Exception, so that SymPy does not catch
+    it.
+    """
 
 
 @contextlib.contextmanager
@@ -101,7 +104,9 @@ def limited_work(most=MOST_CALLS):
         sys.settrace(before)
 
 
-def to_plain(answer: object, calls: Sequence[Sequence[object]] | None = None, raise_missing: bool = False) -> Plain:
+def to_plain(
+    answer: object, calls: Sequence[Sequence[object]] | None = None, raise_missing: bool = False
+) -> Plain:
     """Give an answer as plain data.
 
     Parameters
@@ -109,11 +114,11 @@ def to_plain(answer: object, calls: Sequence[Sequence[object]] | None = None, ra
     answer : object
         What the student bound to the name. ``...`` and ``None`` are blanks.
     calls : list of lists, optional
-        For a question that asks for a function: the arguments of each call, already of the type that
-        the function is to be given. The results, and errors, of the calls are the answer.
+        For a question that asks for a function: the arguments of each call, already of the type
+        that the function is to be given. The results, and errors, of the calls are the answer.
     raise_missing : bool
-        Whether the error of a package that is not here goes on to whoever asks, who may bring the package (a page
-        fetches NumPy) and ask again; otherwise it counts as the answer's own.
+        Whether the error of a package that is not here goes on to whoever asks, who may bring the
+        package (a page fetches NumPy) and ask again; otherwise it counts as the answer's own.
 
     Raises
     ------
@@ -130,13 +135,23 @@ def to_plain(answer: object, calls: Sequence[Sequence[object]] | None = None, ra
         if raise_missing and isinstance(error, ModuleNotFoundError):
             raise
         raise NotPlain(
-            f"An answer of type `{type(answer).__name__[:40]}` could not be read ({type(error).__name__}). "
+            f"An answer of type `{type(answer).__name__[:40]}` could not be read "
+            f"({type(error).__name__}). "
             "Give a SymPy expression, a matrix, a list of numbers or a text."
         ) from None
 
 
 #: What the body of a function that is still blank is compiled to.
-IDLE = {"RESUME", "NOP", "CACHE", "POP_TOP", "LOAD_CONST", "RETURN_CONST", "RETURN_VALUE", "COPY_FREE_VARS"}
+IDLE = {
+    "RESUME",
+    "NOP",
+    "CACHE",
+    "POP_TOP",
+    "LOAD_CONST",
+    "RETURN_CONST",
+    "RETURN_VALUE",
+    "COPY_FREE_VARS",
+}
 
 
 def _works_something_out(function):
@@ -149,7 +164,9 @@ def _is_blank(answer):
 
 
 class _Writer:
-    """Writes one answer; the memory of what was written already is what keeps shared parts shared."""
+    """Writes one answer; the memory of what was written already is what keeps shared parts
+    shared.
+    """
 
     def __init__(self, raise_missing):
         self.raise_missing = raise_missing
@@ -212,7 +229,10 @@ class _Writer:
     def mpmath(self, answer, depth):
         if hasattr(answer, "tolist"):
             if answer.rows * answer.cols > MOST_PARTS:
-                raise NotPlain(f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large.")
+                raise NotPlain(
+                    f"The matrix is {answer.rows} × {answer.cols}; no question asks for "
+                    "one that large."
+                )
             return [
                 "matrix",
                 answer.rows,
@@ -225,7 +245,9 @@ class _Writer:
         """The frames of the book's own graph: the matrix of every pair that is connected."""
         names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
         if len(names) > 12:
-            raise NotPlain("You have given more than 12 frames: bind the matrix that the question asks for.")
+            raise NotPlain(
+                "You have given more than 12 frames: bind the matrix that the question asks for."
+            )
         found = {}
         for target in names:
             for source in names:
@@ -253,39 +275,58 @@ class _Writer:
             return [
                 "frame",
                 _text(answer.name),
-                {_text(other.name): self.value(answer.dcm(other), depth + 1) for other in _connected([answer])},
+                {
+                    _text(other.name): self.value(answer.dcm(other), depth + 1)
+                    for other in _connected([answer])
+                },
             ]
         if mechanics and isinstance(answer, mechanics.Vector):
             frames = _connected([frame for _, frame in answer.args])
             try:
                 return [
                     "vector",
-                    {_text(frame.name): self.value(answer.to_matrix(frame), depth + 1) for frame in frames},
+                    {
+                        _text(frame.name): self.value(answer.to_matrix(frame), depth + 1)
+                        for frame in frames
+                    },
                 ]
             except ValueError:
                 raise NotPlain(
-                    "The parts of this vector belong to frames that are not connected: orient one of "
+                    "The parts of this vector belong to frames that are not connected: "
+                    "orient one of "
                     "them with respect to another first."
                 ) from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
-        if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(answer, sympy.MatrixBase):
+        if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(
+            answer, sympy.MatrixBase
+        ):
             return ["matrix", *self.matrix(answer)]
         if isinstance(answer, sympy.MatrixBase):
             rows, columns = answer.shape
             if rows * columns > MOST_PARTS:
-                raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+                raise NotPlain(
+                    f"The matrix is {rows} × {columns}; no question asks for one that large."
+                )
             return ["matrix", rows, columns, [self.expression(entry) for entry in answer.flat()]]
         if isinstance(answer, (sympy.Tuple, sympy.FiniteSet)):
             return self.parts(list(answer), depth)
         if isinstance(answer, sympy.NDimArray):
-            return self.parts(answer.tolist(), depth) if answer.rank() else self.value(answer[()], depth)
+            return (
+                self.parts(answer.tolist(), depth)
+                if answer.rank()
+                else self.value(answer[()], depth)
+            )
         if isinstance(answer, sympy.Eq):
             # `Eq(theta, pi/4)`: what stands beside the one symbol that is solved for.
-            sides = [side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))]
+            sides = [
+                side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))
+            ]
             if len(sides) == 1:
                 return self.value(sides[0], depth)
-            raise NotPlain("An equation is not a value: give the side of it that the question asks for.")
+            raise NotPlain(
+                "An equation is not a value: give the side of it that the question asks for."
+            )
         if answer in (sympy.true, sympy.false):
             return ["truth", bool(answer)]
         if _has_unit(answer):
@@ -320,21 +361,26 @@ class _Writer:
         return len(self.nodes) - 1
 
     def matrix(self, answer):
-        """The rows, columns and entries of a matrix expression, whose products and inverses are worked out here.
+        """The rows, columns and entries of a matrix expression, whose products and inverses are
+        worked out here.
 
-        SymPy's own inverse of a product of three turns takes half a minute; written as cofactors over a
-        determinant it is a few more nodes.
+        SymPy's own inverse of a product of three turns takes half a minute; written as cofactors
+        over a determinant it is a few more nodes.
         """
         if not all(sympy.sympify(size).is_Integer for size in answer.shape):
             raise NotPlain("The matrix has no definite size.")
         rows, columns = map(int, answer.shape)
         if rows * columns > MOST_PARTS:
-            raise NotPlain(f"The matrix is {rows} × {columns}; no question asks for one that large.")
+            raise NotPlain(
+                f"The matrix is {rows} × {columns}; no question asks for one that large."
+            )
         if isinstance(answer, sympy.MatrixBase):
             return rows, columns, [self.expression(entry) for entry in answer.flat()]
         if isinstance(answer, sympy.MatMul):
             factors = [
-                self.matrix(part) if getattr(part, "is_Matrix", False) else (0, 0, [self.expression(part)])
+                self.matrix(part)
+                if getattr(part, "is_Matrix", False)
+                else (0, 0, [self.expression(part)])
                 for part in answer.args
             ]
             return functools.reduce(self._product, factors)
@@ -353,18 +399,25 @@ class _Writer:
             with limited_work():
                 explicit = answer.doit().as_explicit()
         except TooMuchWork:
-            raise NotPlain("The matrix takes too long to be worked out: call `.doit()` on it first.") from None
+            raise NotPlain(
+                "The matrix takes too long to be worked out: call `.doit()` on it first."
+            ) from None
         return rows, columns, [self.expression(entry) for entry in explicit.flat()]
 
     def _product(self, first, second):
         (rows, inner, left), (_, columns, right) = first, second
         if not rows or not columns:  # one of the two is a number
-            (_, _, (factor,)), (rows, columns, entries) = (first, second) if not rows else (second, first)
+            (_, _, (factor,)), (rows, columns, entries) = (
+                (first, second) if not rows else (second, first)
+            )
             return rows, columns, [self.node("Mul", factor, entry) for entry in entries]
         entries = [
             self.node(
                 "Add",
-                *(self.node("Mul", left[i * inner + k], right[k * columns + j]) for k in range(inner)),
+                *(
+                    self.node("Mul", left[i * inner + k], right[k * columns + j])
+                    for k in range(inner)
+                ),
             )
             for i in range(rows)
             for j in range(columns)
@@ -373,12 +426,19 @@ class _Writer:
 
     def _transposed(self, matrix):
         rows, columns, entries = matrix
-        return columns, rows, [entries[i * columns + j] for j in range(columns) for i in range(rows)]
+        return (
+            columns,
+            rows,
+            [entries[i * columns + j] for j in range(columns) for i in range(rows)],
+        )
 
     def _inverse(self, matrix):
         size, _, entries = matrix
         if size > 4:
-            raise NotPlain("The inverse of a matrix of this size is not worked out here: call `.doit()` on it first.")
+            raise NotPlain(
+                "The inverse of a matrix of this size is not worked out here: call `.doit()` "
+                "on it first."
+            )
         minus = self.node("integer", "-1")
         numbers_left = tuple(range(size))
         cofactors = {
@@ -393,11 +453,20 @@ class _Writer:
             for j in range(size)
         }
         cofactors = {
-            (i, j): self.node("Mul", minus, found) if (i + j) % 2 else found for (i, j), found in cofactors.items()
+            (i, j): self.node("Mul", minus, found) if (i + j) % 2 else found
+            for (i, j), found in cofactors.items()
         }
         terms = [self.node("Mul", entries[j], cofactors[0, j]) for j in range(size)]
         reciprocal = self.node("Pow", self.node("Add", *terms), minus)
-        return size, size, [self.node("Mul", reciprocal, cofactors[j, i]) for i in range(size) for j in range(size)]
+        return (
+            size,
+            size,
+            [
+                self.node("Mul", reciprocal, cofactors[j, i])
+                for i in range(size)
+                for j in range(size)
+            ],
+        )
 
     def _minor(self, entries, size, rows, columns, minus):
         """The determinant of some rows and columns."""
@@ -405,7 +474,9 @@ class _Writer:
             return self.node("integer", "1")
         terms = []
         for place, column in enumerate(columns):
-            rest = self._minor(entries, size, rows[1:], columns[:place] + columns[place + 1 :], minus)
+            rest = self._minor(
+                entries, size, rows[1:], columns[:place] + columns[place + 1 :], minus
+            )
             factors = [entries[rows[0] * size + column], rest] + [minus] * (place % 2)
             terms.append(self.node("Mul", *factors))
         return self.node("Add", *terms)
@@ -414,7 +485,9 @@ class _Writer:
         if _module(type(number)).partition(".")[0] == "mpmath":
             if hasattr(number, "_mpc_"):
                 real, imaginary = (self.number(part) for part in (number.real, number.imag))
-                return self.node("Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary))
+                return self.node(
+                    "Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary)
+                )
             return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, complex):
             real, imaginary = (self.number(part) for part in (number.real, number.imag))
@@ -456,7 +529,9 @@ class _Writer:
         return self.written[root]
 
     def worked_out(self, part):
-        """A part that SymPy has put off, worked out; or itself, which has no value, where that takes too long."""
+        """A part that SymPy has put off, worked out; or itself, which has no value, where that
+        takes too long.
+        """
         if self.gave_up < 2:
             try:
                 with limited_work():
@@ -468,7 +543,10 @@ class _Writer:
         return part
 
     def children(self, part):
-        if isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef)) or part is sympy.I:
+        if (
+            isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef))
+            or part is sympy.I
+        ):
             return ()
         if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
             return ()
@@ -484,13 +562,18 @@ class _Writer:
         return part.args
 
     def without_unit(self, unit):
-        """What stands for a unit in a list or matrix of numbers: a radian is none, and a degree a part of it."""
+        """What stands for a unit in a list or matrix of numbers: a radian is none, and a degree a
+        part of it.
+        """
         units = sys.modules.get("sympy.physics.units")
         if not units or not isinstance(unit, units.Quantity):
             return unit.args
         if unit in (units.radian, units.degree):
             return (sympy.S.One if unit == units.radian else sympy.pi / 180,)
-        raise NotPlain(f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the question names.")
+        raise NotPlain(
+            f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the "
+            "question names."
+        )
 
     def operation(self, part, children):
         if isinstance(part, sympy.Rational):
@@ -503,9 +586,16 @@ class _Writer:
             return self.node("symbol", _name_of(part.func.__name__))
         if isinstance(part, sympy.Derivative):
             if isinstance(part.expr, AppliedUndef):
-                return self.node("symbol", _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9))
+                return self.node(
+                    "symbol",
+                    _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9),
+                )
             return self.written[children[0]]
-        if isinstance(part, sympy.UnevaluatedExpr) or children and (part.is_Atom or isinstance(part, PUT_OFF)):
+        if (
+            isinstance(part, sympy.UnevaluatedExpr)
+            or children
+            and (part.is_Atom or isinstance(part, PUT_OFF))
+        ):
             return self.written[children[0]]
         if not children:
             return self.node("constant", type(part).__name__[:60])
@@ -526,7 +616,9 @@ PUT_OFF = (
 
 
 def _name_of(symbol):
-    """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is ``theta_1``."""
+    """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is
+    ``theta_1``.
+    """
     name = unicodedata.normalize("NFKC", _text(symbol)) if not symbol.isascii() else symbol
     return _text(re.sub(r"[^\x00-\x7f]", lambda letter: _spelled(letter[0]), name))
 
@@ -548,20 +640,28 @@ def _text(text):
 
 
 def _module(kind):
-    # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no module.
+    # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no
+    # module.
     return kind.__module__ or ""
 
 
 def _is_array(answer):
-    """Whether this is an array of NumPy, or one of those that stand in for it where it is not: by what it can do."""
-    return callable(getattr(answer, "tolist", None)) and isinstance(getattr(answer, "shape", None), tuple)
+    """Whether this is an array of NumPy, or one of those that stand in for it where it is not: by
+    what it can do.
+    """
+    return callable(getattr(answer, "tolist", None)) and isinstance(
+        getattr(answer, "shape", None), tuple
+    )
 
 
 def _has_unit(part):
-    units = sys.modules.get("sympy.physics.units")  # slow to import; whoever has a quantity has imported it
+    units = sys.modules.get(
+        "sympy.physics.units"
+    )  # slow to import; whoever has a quantity has imported it
     if not units or not isinstance(part, sympy.Expr):
         return False
-    # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be printed.
+    # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be
+    # printed.
     seen, waiting = set(), [part]
     while waiting:
         one = waiting.pop()
@@ -574,12 +674,20 @@ def _has_unit(part):
 
 
 def _number_and_unit(answer, units):
-    """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in base units."""
+    """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in
+    base units.
+    """
     base = {getattr(units, name): sympy.Dummy(name, positive=True) for name in BASE}
-    pure = {units.radian: sympy.S.One, units.degree: sympy.pi / 180, units.percent: sympy.Rational(1, 100)}
+    pure = {
+        units.radian: sympy.S.One,
+        units.degree: sympy.pi / 180,
+        units.percent: sympy.Rational(1, 100),
+    }
     try:
         with limited_work():
-            plain = answer.xreplace({prefix: prefix.scale_factor for prefix in answer.atoms(units.prefixes.Prefix)})
+            plain = answer.xreplace(
+                {prefix: prefix.scale_factor for prefix in answer.atoms(units.prefixes.Prefix)}
+            )
             for quantity in sorted(answer.atoms(units.Quantity), key=str):
                 size = pure.get(quantity)
                 if size is None:
@@ -592,14 +700,18 @@ def _number_and_unit(answer, units):
                 number, rest = term.as_independent(*base.values(), as_Add=False)
                 found.setdefault(rest, []).append(number)
     except TooMuchWork:
-        raise NotPlain("The unit takes too long to be worked out. Give a pair: `(number, 'N m')`.") from None
+        raise NotPlain(
+            "The unit takes too long to be worked out. Give a pair: `(number, 'N m')`."
+        ) from None
     if len(found) > 1:
         raise NotPlain("The terms of this sum have different units.")
     [(rest, terms)] = found.items()
     powers = rest.as_powers_dict() if rest != 1 else {}
     if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
         raise NotPlain("The unit of this answer is no product of whole powers of base units.")
-    unit = " ".join(f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers)
+    unit = " ".join(
+        f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers
+    )
     return sympy.Add(*terms), unit or "1"
 
 
@@ -608,7 +720,9 @@ def _in_order(parts):
 
 
 def _connected(frames):
-    """All frames that are connected with those given, found through SymPy's own record of neighbours."""
+    """All frames that are connected with those given, found through SymPy's own record of
+    neighbours.
+    """
     found = list(dict.fromkeys(frames))
     for frame in found:
         found.extend(other for other in frame._dcm_dict if other not in found)
@@ -618,7 +732,9 @@ def _connected(frames):
 
 
 _DIGITS = re.compile(rf"-?[0-9]{{1,{LONGEST_INTEGER + 10}}}")
-_FLOAT = re.compile(r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,40})?|[-+]?inf|[-+]?nan", re.I)
+_FLOAT = re.compile(
+    r"[-+]?([0-9]{1,60}\.?[0-9]{0,60}|\.[0-9]{1,60})(e[-+]?[0-9]{1,40})?|[-+]?inf|[-+]?nan", re.I
+)
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
@@ -635,11 +751,17 @@ def read_plain(data: Any) -> Plain:
         if not condition:
             raise NotPlain("The data of this answer is damaged.")
 
-    demand(isinstance(data, dict) and set(data) == {"value", "nodes"} and isinstance(data["nodes"], list))
+    demand(
+        isinstance(data, dict)
+        and set(data) == {"value", "nodes"}
+        and isinstance(data["nodes"], list)
+    )
     nodes = data["nodes"]
     demand(len(nodes) <= MOST_NODES)
     for position, node in enumerate(nodes):
-        demand(isinstance(node, list) and node and isinstance(node[0], str) and len(node) <= MOST_NODES)
+        demand(
+            isinstance(node, list) and node and isinstance(node[0], str) and len(node) <= MOST_NODES
+        )
         operation, rest = node[0], node[1:]
         if operation in ("integer", "rational"):
             demand(len(rest) == (1 if operation == "integer" else 2))
@@ -669,7 +791,11 @@ def read_plain(data: Any) -> Plain:
         elif kind == "matrix":
             rows, columns, entries = rest
             demand(type(rows) is int and type(columns) is int and isinstance(entries, list))
-            demand(0 <= rows <= MOST_PARTS and 0 <= columns <= MOST_PARTS and len(entries) == rows * columns)
+            demand(
+                0 <= rows <= MOST_PARTS
+                and 0 <= columns <= MOST_PARTS
+                and len(entries) == rows * columns
+            )
             demand(len(entries) <= MOST_PARTS)
             for entry in entries:
                 count(entry)

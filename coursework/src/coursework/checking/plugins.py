@@ -7,18 +7,20 @@ A plug-in is a module that an installed distribution names in its entry points:
     [project.entry-points."coursework.plugins"]
     orientation = "orientation_course"
 
-Its folder ``sealed``, if it has one, holds sealed questions. These names in it are read, each if it is there:
+Its folder ``sealed``, if it has one, holds sealed questions. These names in it are read, each if it
+is there:
 
 ``KINDS``
     A :class:`coursework.checking.kind.Kind` for each further kind of question, by its name.
 ``DEEDS``
-    What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave the conjugate"``.
+    What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave
+    the conjugate"``.
 ``PACKAGES``
     Names of the packages that the course's notebooks import, so that grading has them at hand.
 ``FORMAT_3``
-    Of a course that handed out sealed files of format 3 and has kinds of its own: by the name of the kind, the
-    notes of its mistakes of that time in their order, each with what its details could be. Without it, the order
-    of today counts.
+    Of a course that handed out sealed files of format 3 and has kinds of its own: by the name of
+    the kind, the notes of its mistakes of that time in their order, each with what its details
+    could be. Without it, the order of today counts.
 """
 
 import functools
@@ -51,9 +53,14 @@ def plugins() -> list[ModuleType]:
         try:
             found.append(entry.load())
         except Exception as error:
-            brought = f", which {entry.dist.name} {entry.dist.version} brings for coursework," if entry.dist else ""
+            brought = (
+                f", which {entry.dist.name} {entry.dist.version} brings for coursework,"
+                if entry.dist
+                else ""
+            )
             raise RuntimeError(
-                f"The plug-in {entry.name!r} ({entry.value}){brought} cannot be loaded: {type(error).__name__}: {error}"
+                f"The plug-in {entry.name!r} ({entry.value}){brought} cannot be loaded: "
+                f"{type(error).__name__}: {error}"
             ) from error
     return found
 
@@ -65,20 +72,27 @@ def kinds() -> dict[str, Kind]:
     for plugin in plugins():
         for name, kind in getattr(plugin, "KINDS", {}).items():
             if name in found:
-                raise RuntimeError(f"{plugin.__name__} brings a kind of question {name!r}; there is one already.")
+                raise RuntimeError(
+                    f"{plugin.__name__} brings a kind of question {name!r}; there is one already."
+                )
             found[name] = kind
     return found
 
 
 def catalogue_of_format_3(kind: str) -> Sequence[tuple[str, Mapping[str, Any]]]:
-    """The mistakes that a plug-in's kind had in sealed files of format 3, in their order, with their details."""
+    """The mistakes that a plug-in's kind had in sealed files of format 3, in their order, with
+    their details.
+    """
     for plugin in plugins():
         if kind in getattr(plugin, "FORMAT_3", {}):
             frozen: Sequence[tuple[str, Mapping[str, Any]]] = plugin.FORMAT_3[kind]
             return frozen
     messages, details = kinds()[kind].messages, kinds()[kind].details
     return [
-        (note, {name: details.get(name, ()) for name in list(inspect.signature(words).parameters)[1:]})
+        (
+            note,
+            {name: details.get(name, ()) for name in list(inspect.signature(words).parameters)[1:]},
+        )
         for note, words in messages.items()
     ]
 
@@ -89,7 +103,9 @@ def kind_of_values(question: Question) -> Kind:
 
 
 def packages() -> list[str]:
-    """Names of the packages that the notebooks of the installed courses import, and of the plug-ins."""
+    """Names of the packages that the notebooks of the installed courses import, and of the
+    plug-ins.
+    """
     found = []
     for plugin in plugins():
         found += [plugin.__name__.partition(".")[0], *getattr(plugin, "PACKAGES", ())]

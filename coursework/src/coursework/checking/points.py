@@ -13,10 +13,12 @@ from typing import Any
 from .evaluate import MP
 from .question import Question
 
-#: So many that each angle has been in all four quadrants, and no two signs of sines and cosines always agree.
+#: So many that each angle has been in all four quadrants, and no two signs of sines and cosines
+#: always agree.
 POINTS = 5
-#: Where an angle is sampled if its question says nothing: in all four quadrants, so that no root is taken for
-#: the cosine it equals in the first one, and within a half turn, where half-angle forms hold.
+#: Where an angle is sampled if its question says nothing: in all four quadrants, so that no root is
+#: taken for the cosine it equals in the first one, and within a half turn, where half-angle forms
+#: hold.
 ANGLES = (-3.0, 3.0)
 #: Letters that SymPy has two of and handwriting one.
 TWINS = {"phi": "varphi", "varphi": "phi", "epsilon": "varepsilon", "varepsilon": "epsilon"}
@@ -63,12 +65,18 @@ def _points(asked: str) -> list[dict[str, Any]]:
 
 
 def _placed(salt: str, ranges: list[tuple[float, float]]) -> list[tuple[Any, ...]]:
-    """Rows of values, one for each point, such that no two signs of sines and cosines agree at all of them."""
+    """Rows of values, one for each point, such that no two signs of sines and cosines agree at all
+    of them.
+    """
     best: list[list[Any]] = []
     most = -1
     for attempt in range(MOST_TRIES):
-        columns = [_column(f"{salt} {attempt} {order}", *limits) for order, limits in enumerate(ranges)]
-        signs = [_signs(function, column) for column in columns for function in (math.sin, math.cos)]
+        columns = [
+            _column(f"{salt} {attempt} {order}", *limits) for order, limits in enumerate(ranges)
+        ]
+        signs = [
+            _signs(function, column) for column in columns for function in (math.sin, math.cos)
+        ]
         changing = [sign for sign in signs if len(set(sign)) > 1]
         different = len(set(changing))
         if different > most:
@@ -88,7 +96,10 @@ def _column(seed: str, low: float, high: float) -> list[Any]:
     """One value for each point, in every quadrant that the range has a part in."""
     first, last = MP.mpf(low), MP.mpf(high)
     quarter = MP.pi / 2
-    inner = [number * quarter for number in range(int(MP.ceil(first / quarter)), int(MP.floor(last / quarter)) + 1)]
+    inner = [
+        number * quarter
+        for number in range(int(MP.ceil(first / quarter)), int(MP.floor(last / quarter)) + 1)
+    ]
     edges = [first, *(edge for edge in inner if first < edge < last), last]
     parts = list(zip(edges, edges[1:]))
     parts.sort(key=lambda part: _share(f"{seed} part {MP.nstr(part[0], 8)}"))

@@ -1,8 +1,10 @@
-"""What is written down beside a notebook: how far its student is with each question, and with whose numbers.
+"""What is written down beside a notebook: how far its student is with each question, and with whose
+numbers.
 
-Never an answer, and never a hint: where hints can be read again. The file may hold anything, since it is the student's:
-what is no record is none, and what a newer version has added to an entry stays in it. The pages of a book keep the same
-entries (``store.js`` of their scripts), and know from them, without Python, what was solved with other numbers.
+Never an answer, and never a hint: where hints can be read again. The file may hold anything, since
+it is the student's: what is no record is none, and what a newer version has added to an entry stays
+in it. The pages of a book keep the same entries (``store.js`` of their scripts), and know from
+them, without Python, what was solved with other numbers.
 """
 
 from __future__ import annotations
@@ -15,7 +17,20 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from .fields import Fields, Json, Misread, Reader, Some, anything, by_name, many, number, text, whole, written
+from .fields import (
+    Fields,
+    Json,
+    Misread,
+    Reader,
+    Some,
+    anything,
+    by_name,
+    many,
+    number,
+    text,
+    whole,
+    written,
+)
 from .question import Place
 
 #: Where it lies: beside the notebook, and nowhere else.
@@ -35,7 +50,8 @@ class Entry:
     answers : tuple of str
         The different wrong answers, hashed.
     help : str
-        The help that was had before the answer was right, a key of :data:`coursework.checking.reply.HELP`.
+        The help that was had before the answer was right, a key of
+        :data:`coursework.checking.reply.HELP`.
     page : Place or None
         Where the hints of the last mistake stand.
     mistake : str
@@ -44,9 +60,11 @@ class Entry:
         Hints that other questions have opened for this one: these, and where they stand.
     variant : int
     numbers : str
-        What these numbers are called, whatever their place among the variants; empty where a question has no others.
+        What these numbers are called, whatever their place among the variants; empty where a
+        question has no others.
     whose : str or None
-        Whose numbers they were, empty for everybody's; ``None`` where all have the same, and in older records.
+        Whose numbers they were, empty for everybody's; ``None`` where all have the same, and in
+        older records.
     others : tuple of Entry
         What is known with other numbers.
     more : mapping
@@ -100,7 +118,20 @@ class Entry:
         """What :meth:`from_json` reads; what is empty is left out."""
         found: dict[str, Json] = dict(self.more)
         for name, value in vars(self).items():
-            if name in ("outcome", "note", "answers", "help", "mistake", "mistake_at", "variant", "numbers") and value:
+            if (
+                name
+                in (
+                    "outcome",
+                    "note",
+                    "answers",
+                    "help",
+                    "mistake",
+                    "mistake_at",
+                    "variant",
+                    "numbers",
+                )
+                and value
+            ):
                 found[name.replace("_", " ")] = written(value)
         if self.page:
             found["page"] = [self.page.page, self.page.key]
@@ -110,7 +141,9 @@ class Entry:
         return found | ({OTHERS: _by_variant(self.others)} if self.others else {})
 
     def has(self, variant: int, numbers: str) -> bool:
-        """Whether it is of these numbers. Older entries know their place among the variants alone."""
+        """Whether it is of these numbers. Older entries know their place among the variants
+        alone.
+        """
         return self.numbers == numbers if self.numbers and numbers else self.variant == variant
 
     def with_numbers(self, variant: int, numbers: str) -> Entry:
@@ -124,7 +157,9 @@ class Entry:
         return replace(own, variant=variant, numbers=numbers, after=after, others=others)
 
 
-FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"others", "more"} | {OTHERS}
+FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"others", "more"} | {
+    OTHERS
+}
 
 
 def _opened(found: object, where: str) -> tuple[str, Place]:
@@ -133,7 +168,9 @@ def _opened(found: object, where: str) -> tuple[str, Place]:
 
 
 def _by_variant(entries: Iterable[Entry]) -> dict[str, Json]:
-    """Entries by the number of their variant; where two editions have other numbers under one, by these, too."""
+    """Entries by the number of their variant; where two editions have other numbers under one, by
+    these, too.
+    """
     found: dict[str, Json] = {}
     for one in entries:
         name = str(one.variant)
@@ -162,7 +199,9 @@ class Progress:
         return Entry.from_json(self.entries.get(name))
 
     def put(self, entries: Mapping[str, Entry]) -> None:
-        """Write some entries; a folder that cannot be written to costs the record and nothing else."""
+        """Write some entries; a folder that cannot be written to costs the record and nothing
+        else.
+        """
         self.entries |= {name: entry.as_json() for name, entry in entries.items()}
         with suppress(OSError):
             KEPT.parent.mkdir(exist_ok=True)
@@ -171,11 +210,17 @@ class Progress:
             draft.replace(KEPT)
 
     def right_for_others(self, student: str) -> dict[str, list[str]]:
-        """The questions that are right with other numbers, and not with those of a student: by whose they were."""
+        """The questions that are right with other numbers, and not with those of a student: by
+        whose they were.
+        """
         found: dict[str, list[str]] = {}
         for name in sorted(self.entries):
             entry = self.entry(name)
-            known = {one.whose: one.outcome == "correct" for one in (*entry.others, entry) if one.whose is not None}
+            known = {
+                one.whose: one.outcome == "correct"
+                for one in (*entry.others, entry)
+                if one.whose is not None
+            }
             if not known.get(student):
                 for whose in [whose for whose, right in known.items() if right][:1]:
                     found.setdefault(whose, []).append(name)

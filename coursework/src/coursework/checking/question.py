@@ -1,7 +1,9 @@
-"""A question as a student's computer knows it, and what is locked up with it: the data, and how it is read and written.
+"""A question as a student's computer knows it, and what is locked up with it: the data, and how it
+is read and written.
 
-JSON calls a field as Python does, with spaces for underscores: ``either_sign`` is ``"either sign"``. What is empty is
-left out. The files of sealed questions are read by :mod:`coursework.checking.questions`.
+JSON calls a field as Python does, with spaces for underscores: ``either_sign`` is ``"either
+sign"``. What is empty is left out. The files of sealed questions are read by
+:mod:`coursework.checking.questions`.
 """
 
 from __future__ import annotations
@@ -27,7 +29,8 @@ from .fields import (
     written,
 )
 
-#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue, is read, too.
+#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue,
+#: is read, too.
 FORMAT = 4
 #: What an answer that a question knows may be, by its number in a locker.
 OUTCOMES = ("correct", "mistake")
@@ -105,7 +108,8 @@ class Question:
     kind : str
         A key of :func:`coursework.checking.plugins.kinds`.
     salt : str
-        From which the points and the edges of the cells follow, and with which fingerprints are hashed.
+        From which the points and the edges of the cells follow, and with which fingerprints are
+        hashed.
     frames : tuple of str
         The target and the source; of a vector the frame of its components.
     symbols : mapping of str to (float, float)
@@ -116,7 +120,8 @@ class Question:
     length : int or None
     options : tuple of str
     tolerance, relative : float or None
-        What the answer may be off by, absolutely, and as a share of itself; it is exact if there is no tolerance.
+        What the answer may be off by, absolutely, and as a share of itself; it is exact if there is
+        no tolerance.
     calls : tuple of lists
         The arguments of each call of a function.
     takes : str or None
@@ -220,7 +225,9 @@ class Question:
 
 
 class Place(NamedTuple):
-    """Where something is locked up: the number of a page, its key, and what is to be put into the words there."""
+    """Where something is locked up: the number of a page, its key, and what is to be put into the
+    words there.
+    """
 
     page: int
     key: str
@@ -313,7 +320,9 @@ class Locker:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """What is known of the answers; the solution and its place are sealed by :mod:`coursework.authoring.author`."""
+        """What is known of the answers; the solution and its place are sealed by
+        :mod:`coursework.authoring.author`.
+        """
         cases: dict[str, Json] = {"cases": [answer.as_json() for answer in self.answers]}
         return cases | ({"after": written(self.after)} if self.after else {})
 
@@ -335,10 +344,12 @@ class Sealed:
     lockers : str
         As :func:`coursework.checking.sealing.pack` packs them.
     pages, ladder : tuple of str
-        As :func:`coursework.checking.sealing.seal` seals them: the ladder are the hints that every question has.
+        As :func:`coursework.checking.sealing.seal` seals them: the ladder are the hints that every
+        question has.
     others : (str, str) or None
-        The salt that all variants have in common, and the names under which it is known that an answer is right in one
-        of them, as :func:`coursework.checking.sealing.pack_names` packs them; with the first variant.
+        The salt that all variants have in common, and the names under which it is known that an
+        answer is right in one of them, as :func:`coursework.checking.sealing.pack_names` packs
+        them; with the first variant.
     format : int
         Of the file.
     """
@@ -378,7 +389,11 @@ class Sealed:
         more = {"answer": self.answer, "pages": written(self.pages), "ladder": written(self.ladder)}
         more["others"] = written(self.others)
         sealed: dict[str, Json] = {"lockers": self.lockers, "worth": self.worth}
-        return self.question.as_json() | sealed | {name: value for name, value in more.items() if value}
+        return (
+            self.question.as_json()
+            | sealed
+            | {name: value for name, value in more.items() if value}
+        )
 
 
 #: The fields of a sealed question that are no arguments of its kind alone.

@@ -1,7 +1,8 @@
 """The sealed questions, found by name.
 
-A name is ``'notebook/question'``; the questions of one notebook lie in one file, ``sealed/notebook.json``. The
-folder ``sealed`` stands beside the notebook, or in the package of a plug-in.
+A name is ``'notebook/question'``; the questions of one notebook lie in one file,
+``sealed/notebook.json``. The folder ``sealed`` stands beside the notebook, or in the package of a
+plug-in.
 """
 
 import functools
@@ -29,33 +30,40 @@ from .reading import Reading, canonical, distance, fault, fingerprint, read, tol
 from .reply import Reply
 from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
-#: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's Python has such a file.
+#: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's
+#: Python has such a file.
 ELSEWHERE = "elsewhere.txt"
 #: In a folder of sealed questions: the names that questions had in earlier editions.
 MOVED = "moved.json"
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 NOT_IN_THIS_CATALOGUE = (
-    "This is a mistake that others have made, too, and this version of coursework has no words for it: install the "
+    "This is a mistake that others have made, too, and this version of coursework has no words for "
+    "it: install the "
     "package that came with the notebook."
 )
 #: Faults of the form that no right value makes good.
 ALWAYS_WRONG = ("not unit length",)
-#: Up to so many tolerances from the right answer, its locker opens, and one is told that it is close.
+#: Up to so many tolerances from the right answer, its locker opens, and one is told that it is
+#: close.
 NEARLY = 3
-#: The note of an answer that is right for another variant, here and in the marks, and what is said of it, by whether
-#: that is the one that everybody sees.
+#: The note of an answer that is right for another variant, here and in the marks, and what is said
+#: of it, by whether that is the one that everybody sees.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = {
-    True: "This is right for the numbers that everybody sees. Since you have said who you are, yours are others: they ",
+    True: "This is right for the numbers that everybody sees. Since you have said who "
+    "you are, yours "
+    "are others: they ",
     False: "This is right for other numbers than yours, those of another student. Yours ",
 }
 WHERE_ONES_OWN_ARE = "stand in the text of the question, as its cell shows it once it has run."
-#: As far from it one is told so where the locker has opened all the same: its cell is wider for several numbers.
+#: As far from it one is told so where the locker has opened all the same: its cell is wider for
+#: several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
 COARSE = 0.005
-#: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and one with all of them.
+#: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and
+#: one with all of them.
 SMALL, LARGE = 64, 1000
 
 
@@ -89,7 +97,9 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
             about = _on_the_first(questions[name], about) if variant else about
             found[name] = Sealed.from_json(about, f"The sealed question {name}", format)
     except Misread as error:
-        raise RuntimeError(f"{error} Unpack the exercises again; what you have written is kept.") from None
+        raise RuntimeError(
+            f"{error} Unpack the exercises again; what you have written is kept."
+        ) from None
     return found
 
 
@@ -98,11 +108,16 @@ def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Jso
     if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
         return FORMAT, {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
-    content = next((file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None)
+    content = next(
+        (file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None
+    )
     if content is None and variant:
         from .elsewhere import fetched
 
-        content = next((fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()), None)
+        content = next(
+            (fetched(file, name) for folder in places() if (file := folder / ELSEWHERE).is_file()),
+            None,
+        )
     if content is None:
         return FORMAT, {}
     about = Fields(json.loads(content), f"The sealed questions of {notebook}")
@@ -111,7 +126,8 @@ def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Jso
         from .. import __version__
 
         raise RuntimeError(
-            f"The sealed questions of {notebook} are of format {format}, and this is coursework {__version__}, "
+            f"The sealed questions of {notebook} are of format {format}, and this is coursework "
+            f"{__version__}, "
             f"which reads formats 3 and {FORMAT}. Install the package that came with the notebook: "
             "`python -m coursework update exercises.zip` says how."
         )
@@ -120,13 +136,20 @@ def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Jso
 
 def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[str, Json]:
     """A variant, of which only what differs from the first one is kept, as :func:`beside` does."""
-    pages = [page for one in (first, own) if isinstance(found := one.get("pages"), list) for page in found]
+    pages = [
+        page
+        for one in (first, own)
+        if isinstance(found := one.get("pages"), list)
+        for page in found
+    ]
     whole_of_it = {**first, **own, "pages": pages or None}
     return {name: value for name, value in whole_of_it.items() if value is not None}
 
 
 def places() -> list[Traversable]:
-    """Where sealed questions may lie: the folder ``sealed`` beside the notebook, and those of plug-ins."""
+    """Where sealed questions may lie: the folder ``sealed`` beside the notebook, and those of
+    plug-ins.
+    """
     beside = Path("sealed")
     return [*([beside] if beside.is_dir() else []), *sealed_folders()]
 
@@ -140,7 +163,8 @@ def find_question(name: str, student: str) -> Sealed:
     """
     if not isinstance(name, str):
         raise NoSuchQuestion(
-            "The name of a question is a text and comes first: `check('notebook/question', answer)`. "
+            "The name of a question is a text and comes first: `check('notebook/question', "
+            "answer)`. "
             f"This is of type `{type(name).__name__[:40]}`."
         )
     notebook, _, _ = name.partition("/")
@@ -149,27 +173,40 @@ def find_question(name: str, student: str) -> Sealed:
     if asked in questions:
         siblings = siblings_of(asked, questions[asked].question.variants)
         if order > len(siblings):
-            there = f"its siblings are {' and '.join(siblings)}" if siblings else "it has no other numbers"
+            there = (
+                f"its siblings are {' and '.join(siblings)}"
+                if siblings
+                else "it has no other numbers"
+            )
             raise NoSuchQuestion(f"There is no '{name[:80]}': of '{asked}', {there}.")
         number = own_variant(student, asked, questions[asked].question, order)
         return notebook_questions(notebook, number)[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
-            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with this notebook is "
+            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with "
+            "this notebook is "
             "not "
             f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
         )
     if now := _moved().get(asked):
-        raise NoSuchQuestion(f"'{asked}' is called '{now}' in this edition: write that name into `check(...)`.")
-    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED)
+        raise NoSuchQuestion(
+            f"'{asked}' is called '{now}' in this edition: write that name into `check(...)`."
+        )
+    notebooks = sorted(
+        file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED
+    )
     if name in notebooks:
-        raise NoSuchQuestion(f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}.")
+        raise NoSuchQuestion(
+            f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}."
+        )
     import difflib  # needed here alone
 
     named = questions or notebook_questions(notebook.lower())
     near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
-    raise NoSuchQuestion(f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else ""))
+    raise NoSuchQuestion(
+        f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
+    )
 
 
 def _moved() -> dict[str, str]:
@@ -187,7 +224,8 @@ def variant(name: str) -> Given:
     Parameters
     ----------
     name : str
-        The question, as its check names it; with ``/sibling`` after it, the same question with other numbers.
+        The question, as its check names it; with ``/sibling`` after it, the same question with
+        other numbers.
 
     Returns
     -------
@@ -205,10 +243,11 @@ def variant(name: str) -> Given:
 
 
 def own_numbers(name: str, student: str) -> tuple[int, str]:
-    """The variant in which a student finds a question, or a sibling, and what its numbers are called.
+    """The variant in which a student finds a question, or a sibling, and what its numbers are
+    called.
 
-    0 and nothing where there is only one, and for a question of another release; no name where the variant cannot be
-    had, as without a network.
+    0 and nothing where there is only one, and for a question of another release; no name where the
+    variant cannot be had, as without a network.
     """
     (asked, order), notebook = without_sibling(name), name.partition("/")[0]
     number = 0
@@ -227,21 +266,29 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
     >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, {'kind': 'vector', 'salt': 'a', 'ladder': []})
     {'salt': 'b', 'shown': {'arm': '2'}, 'ladder': None}
     """
-    return {name: question.get(name) for name in {**question, **first} if question.get(name) != first.get(name)}
+    return {
+        name: question.get(name)
+        for name in {**question, **first}
+        if question.get(name) != first.get(name)
+    }
 
 
 def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
     """Compare an answer, as plain data, with what is sealed; the reply holds what it opened.
 
-    What a classmate has answered is looked for where somebody has said who works here: it costs a slow hash, and those
-    who have not hear in each reply that these are nobody's numbers.
+    What a classmate has answered is looked for where somebody has said who works here: it costs a
+    slow hash, and those who have not hear in each reply that these are nobody's numbers.
     """
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
-    for_others = functools.partial(is_right_for_others, sealed, plain) if student and sealed.others else None
+    for_others = (
+        functools.partial(is_right_for_others, sealed, plain) if student and sealed.others else None
+    )
     reply = compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
     if reply.note == OTHER_NUMBERS:
-        reply.messages = [FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE]
+        reply.messages = [
+            FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE
+        ]
     return reply
 
 
@@ -251,7 +298,9 @@ def salt_of_all(name: str) -> str:
 
 
 def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
-    """Whether a wrong answer is right in some other variant of the question, as a classmate's pasted one is."""
+    """Whether a wrong answer is right in some other variant of the question, as a classmate's
+    pasted one is.
+    """
     if not sealed.others:
         return False
     salt, names = sealed.others
@@ -278,7 +327,9 @@ def code_text(code: str) -> str:
 
 
 def rung_key(question: Question, number: int) -> bytes:
-    """The key of a step of the ladder of hints: no secret, it only keeps the step from being read in passing."""
+    """The key of a step of the ladder of hints: no secret, it only keeps the step from being read
+    in passing.
+    """
     seed = f"step {number} for {question.kind}"
     return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
 
@@ -295,7 +346,10 @@ def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
     if sealed.format == 3:
         notes = format_3.mistakes_in(inside, sealed.question)
     else:
-        known, unknown = by_short_name(sealed.question), Note("authored", {"text": NOT_IN_THIS_CATALOGUE})
+        known, unknown = (
+            by_short_name(sealed.question),
+            Note("authored", {"text": NOT_IN_THIS_CATALOGUE}),
+        )
         notes = [known.get(name, unknown) for name in sealing.mistakes_in(inside)]
     return Locker((KnownAnswer(OUTCOMES[outcome], tuple(notes)),))
 
@@ -308,7 +362,8 @@ def open_page(sealed: Sealed, place: Place) -> object:
 def solution_on(sealed: Sealed, solution: Place | str) -> str:
     """The worked solution as HTML, from where it stands.
 
-    That of a variant is what differs from words that all variants have in common, on a page of their own.
+    That of a variant is what differs from words that all variants have in common, on a page of
+    their own.
     """
     if isinstance(solution, str):
         return solution
@@ -319,7 +374,11 @@ def solution_on(sealed: Sealed, solution: Place | str) -> str:
 
 
 def compare(
-    name: str, question: Question, plain: Plain, find: Find | None, for_others: Callable[[], bool] | None = None
+    name: str,
+    question: Question,
+    plain: Plain,
+    find: Find | None,
+    for_others: Callable[[], bool] | None = None,
 ) -> Reply:
     """Compare an answer, as plain data, with what is known of a question. Gives the reply.
 
@@ -329,17 +388,20 @@ def compare(
     question : Question
     plain : dict
     find : function or None
-        ``None`` where there is nothing to compare with, as in an exam: then only the form of the answer is looked at.
-        It gives the locker of a fingerprint, or ``None``.
+        ``None`` where there is nothing to compare with, as in an exam: then only the form of the
+        answer is looked at. It gives the locker of a fingerprint, or ``None``.
     for_others : function, optional
-        It says of an answer that is not known whether it is right for other numbers. It is asked at once, beside
-        ``find``, where two things can be done at a time.
+        It says of an answer that is not known whether it is right for other numbers. It is asked at
+        once, beside ``find``, where two things can be done at a time.
     """
     try:
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
             words = len((reading.text or "").split())
-            said = f"A person will read this text of {words} {'word' if words == 1 else 'words'} and decide."
+            said = (
+                f"A person will read this text of {words} "
+                f"{'word' if words == 1 else 'words'} and decide."
+            )
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
         if find is None:
@@ -349,12 +411,20 @@ def compare(
         reply.answer = hashlib.sha256(text.encode()).hexdigest()[:12]
         return reply
     except Blank:
-        return Reply(name, "not attempted", "", ["Put your answer in place of the `...` and run the cells again."])
+        return Reply(
+            name,
+            "not attempted",
+            "",
+            ["Put your answer in place of the `...` and run the cells again."],
+        )
     except Fault as found:
         return Reply(name, "invalid", found.note, [found.message])
     except Undecidable as found:
         return Reply(
-            name, "undecided", "undecidable", [f"{found} Try another form, or ask your instructor to look at it."]
+            name,
+            "undecided",
+            "undecidable",
+            [f"{found} Try another form, or ask your instructor to look at it."],
         )
 
 
@@ -367,7 +437,8 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
         "recorded",
         "",
         [
-            "Your answer can be read, and has the right form. It is marked later: nothing that you have "
+            "Your answer can be read, and has the right form. It is marked later: nothing "
+            "that you have "
             "tells whether it is right."
         ],
     )
@@ -391,30 +462,47 @@ def _compare(
         said = ""
         if wrong_form.note != "stray symbol":
             said = _decimals(question, plain, reading) or _coarse(question, reading)
-        return Reply(name, "invalid", wrong_form.note, [said, wrong_form.message] if said else [wrong_form.message])
+        return Reply(
+            name,
+            "invalid",
+            wrong_form.note,
+            [said, wrong_form.message] if said else [wrong_form.message],
+        )
     if known is None:
         reply = _not_known(name, question, plain, reading, find, locker, for_others)
         slip, _, mistake = reply.note.partition(", and ")
-        # What is right once a slip is undone twice is the right answer itself, but for the last digits.
+        # What is right once a slip is undone twice is the right answer itself, but for the last
+        # digits.
         return _close(name, question) if mistake and slip == mistake else reply
     if known.outcome == "correct":
         return Reply(name, "correct", opened=locker)
     note, details = known.notes[0]
-    return Reply(name, "wrong", note, [message(question, note, details)], opened=locker, known=known, details=details)
+    return Reply(
+        name,
+        "wrong",
+        note,
+        [message(question, note, details)],
+        opened=locker,
+        known=known,
+        details=details,
+    )
 
 
 def _close(name: str, question: Question) -> Reply:
     """The reply to an answer that rounding has made wrong, or seems to have."""
     allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
     said = (
-        f"This is close, but off by more than{allowed} allowed. Was it rounded too far, here or on the way? "
+        f"This is close, but off by more than{allowed} allowed. Was it rounded too far, here or on "
+        "the way? "
         "Keep all digits until the end."
     )
     return Reply(name, "wrong", "rounded too far", [said])
 
 
 def _known_in(question: Question, reading: Reading, locker: Locker | None) -> KnownAnswer | None:
-    """Which of the answers of a locker this is: the nearest, if that is near enough; or ``None``."""
+    """Which of the answers of a locker this is: the nearest, if that is near enough; or
+    ``None``.
+    """
     if locker is None or not locker.answers:
         return None
     far = [_far(question, reading, known) for known in locker.answers]
@@ -425,7 +513,9 @@ def _known_in(question: Question, reading: Reading, locker: Locker | None) -> Kn
 def _far(question: Question, reading: Reading, known: KnownAnswer) -> Number:
     if not known.numbers:
         return MP.zero
-    return distance(question, canonical(question, reading), [MP.mpf(number) for number in known.numbers])
+    return distance(
+        question, canonical(question, reading), [MP.mpf(number) for number in known.numbers]
+    )
 
 
 def _not_known(
@@ -439,11 +529,13 @@ def _not_known(
 ) -> Reply:
     """The reply to an answer that is neither right nor a mistake of the catalogue."""
     if locker is not None and any(
-        known.outcome == "correct" and _far(question, reading, known) <= CLOSE for known in locker.answers
+        known.outcome == "correct" and _far(question, reading, known) <= CLOSE
+        for known in locker.answers
     ):
         return _close(name, question)
     decimals = _decimals(question, plain, reading)
-    # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known mistake to the digit.
+    # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known
+    # mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
     others = [] if rounded else list(other_readings(question, reading))
@@ -457,7 +549,8 @@ def _not_known(
             "wrong",
             "rounded too far",
             [
-                "This agrees with the exact answer to about three digits, but the question asks for an exact answer.",
+                "This agrees with the exact answer to about three digits, but the question asks "
+                "for an exact answer.",
                 decimals,
             ],
         )
@@ -475,7 +568,9 @@ def _not_known(
 
 
 def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
-    """Begin some work in a thread, since the slow hash lets others run; what it gives comes when it is asked for."""
+    """Begin some work in a thread, since the slow hash lets others run; what it gives comes when it
+    is asked for.
+    """
     from concurrent.futures import ThreadPoolExecutor  # needed here alone
 
     threads = ThreadPoolExecutor(1)
@@ -488,17 +583,24 @@ def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
 
 
 def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """What is known of each fingerprint; the slow hash lets other threads run: all is looked up at once."""
+    """What is known of each fingerprint; the slow hash lets other threads run: all is looked up at
+    once.
+    """
     if len(texts) > 1:
         from concurrent.futures import ThreadPoolExecutor
 
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:  # a browser's Python has no threads
+        with (
+            suppress(RuntimeError),
+            ThreadPoolExecutor(len(texts)) as threads,
+        ):  # a browser's Python has no threads
             return list(threads.map(find, texts))
     return [find(text) for text in texts]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
-    """The answer with one common slip undone, by what is said of the slip: it may be a known mistake then."""
+    """The answer with one common slip undone, by what is said of the slip: it may be a known
+    mistake then.
+    """
     if reading.text is None:
         for name, (said, undo) in kind_of_values(question).slips.items():
             numbers = [undo(question, numbers) for numbers in reading.numbers]
@@ -511,13 +613,18 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
     if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
-    return f"It holds decimal fractions, but the question asks for an exact answer: write {exact_forms}."
+    return (
+        "It holds decimal fractions, but the question asks for an exact answer: write "
+        f"{exact_forms}."
+    )
 
 
 def _few_digits(question: Question, plain: Plain) -> str:
-    """What is said of numbers that are given to fewer places than the answer may be off by: they may be rounded.
+    """What is said of numbers that are given to fewer places than the answer may be off by: they
+    may be rounded.
 
-    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the right answer.
+    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the
+    right answer.
     """
     if question.tolerance is None:
         return ""
@@ -529,21 +636,27 @@ def _few_digits(question: Question, plain: Plain) -> str:
             if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"Was this rounded? `{float(node[1]):g}` has {count} after the point, and an answer may be off by "
+                    f"Was this rounded? `{float(node[1]):g}` has {count} after the point, and an "
+                    "answer may be off by "
                     f"{allowed:.1g} at most: if so, keep all digits until the end."
                 )
     return ""
 
 
 def _coarse(question: Question, reading: Reading) -> str:
-    """What is said of numbers that do not fit together, and would if fewer of their digits counted."""
+    """What is said of numbers that do not fit together, and would if fewer of their digits
+    counted.
+    """
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
-    return "The numbers nearly fit together. Were they rounded too far? Keep all digits until the end."
+    return (
+        "The numbers nearly fit together. Were they rounded too far? Keep all digits until the end."
+    )
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
-    """Of the decimal fractions of an answer: whether each is plainly exact, and whether one of them is plainly rounded.
+    """Of the decimal fractions of an answer: whether each is plainly exact, and whether one of them
+    is plainly rounded.
 
     >>> numbers = lambda *texts: {"nodes": [["float", text] for text in texts]}
     >>> _precision(numbers("0.5", "0.8660254037844386")), _precision(numbers("0.5", "0.866"))
@@ -555,8 +668,13 @@ def _precision(plain: Plain) -> tuple[bool, bool]:
             size = abs(float(node[1]))
             short = float(f"{size:.8g}") == size
             most = SMALL if short else LARGE
-            numbers = [size] if short else [size, size * size]  # a root of a fraction has all of its digits
-            if not any(abs(one - Fraction(one).limit_denominator(most)) <= 1e-13 * max(1, one) for one in numbers):
+            numbers = (
+                [size] if short else [size, size * size]
+            )  # a root of a fraction has all of its digits
+            if not any(
+                abs(one - Fraction(one).limit_denominator(most)) <= 1e-13 * max(1, one)
+                for one in numbers
+            ):
                 precise, rounded = False, rounded or short
     return precise, rounded
 

@@ -1,16 +1,18 @@
 """How an answer is read into numbers, and its fingerprint.
 
-An answer is *read* into real numbers: its entries at the points of the question. Those numbers, rounded to
-whole cells, are its fingerprint; all ways of writing one answer share it. What has several equally right
-values is first turned into something that has one: a quaternion and its negative, the many Euler angles of
-one orientation.
+An answer is *read* into real numbers: its entries at the points of the question. Those numbers,
+rounded to whole cells, are its fingerprint; all ways of writing one answer share it. What has
+several equally right values is first turned into something that has one: a quaternion and its
+negative, the many Euler angles of one orientation.
 
-Where the cells begin follows from the salt and from nothing else, so it tells nothing of the answer. An answer
-near the edge of a cell has a locker for the cell beyond it too. Cells are several tolerances wide: what the
-fingerprint opens holds the right numbers, and with those an answer is compared to the digit.
+Where the cells begin follows from the salt and from nothing else, so it tells nothing of the
+answer. An answer near the edge of a cell has a locker for the cell beyond it too. Cells are several
+tolerances wide: what the fingerprint opens holds the right numbers, and with those an answer is
+compared to the digit.
 
-The same reading serves the student's check, which compares fingerprints through a slow hash, and the
-grading, which compares them as they are. It sees only the plain data of :mod:`coursework.checking.plain`.
+The same reading serves the student's check, which compares fingerprints through a slow hash, and
+the grading, which compares them as they are. It sees only the plain data of
+:mod:`coursework.checking.plain`.
 """
 
 import functools
@@ -33,14 +35,17 @@ from .units import UnknownUnit, unit
 EXACT = MP.mpf(10) ** -12
 #: Width of its cells in that unit: far below every real difference.
 EXACT_WIDTH = 1000
-#: What an answer may be off by that is said to be nearly right where an exact one is asked for: three digits.
+#: What an answer may be off by that is said to be nearly right where an exact one is asked for:
+#: three digits.
 NEAR = MP.mpf("2e-3")
 #: What two units that measure something else are apart, in tolerances.
 FAR = 10**6
 
 
 class Reading(NamedTuple):
-    """An answer as numbers: ``numbers`` is a list for each point; ``text`` is set for words instead."""
+    """An answer as numbers: ``numbers`` is a list for each point; ``text`` is set for words
+    instead.
+    """
 
     numbers: list[list[Number]]
     text: str | None = None
@@ -86,7 +91,9 @@ def read(question: Question, plain: Plain) -> Reading:
     for point in points(question):
         results = values(plain["nodes"], point)
         numbers.append([_number(question, results[leaf]) for leaf in leaves])
-    return Reading(_with_units(question, value, numbers) if question.kind == "measurement" else numbers)
+    return Reading(
+        _with_units(question, value, numbers) if question.kind == "measurement" else numbers
+    )
 
 
 def fingerprint(question: Question, reading: Reading, near: bool = False) -> str:
@@ -103,7 +110,8 @@ def fingerprint(question: Question, reading: Reading, near: bool = False) -> str
 def fingerprints(
     question: Question, reading: Reading, reach: float = 1, near: bool = False, most: int = 6
 ) -> list[str]:
-    """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and those beside it.
+    """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and
+    those beside it.
 
     Of more than ``most`` edges that are as near as that, the nearest are taken.
     """
@@ -119,7 +127,9 @@ def fingerprints(
 def edges_near(
     question: Question, numbers: Sequence[Number], reach: float = 1, near: bool = False
 ) -> list[tuple[Number, int, int]]:
-    """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell beyond."""
+    """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell
+    beyond.
+    """
     margin = MP.mpf(reach) / _width(question, len(numbers), near)
     edges = []
     for order, place in enumerate(_places(question, numbers, near)):
@@ -135,28 +145,42 @@ def _text_of(cells: Iterable[int], near: bool) -> str:
 
 
 def tolerances(question: Question) -> tuple[Number, Number]:
-    """What each number of an answer may be off by: an absolute part, and a share of the right number."""
+    """What each number of an answer may be off by: an absolute part, and a share of the right
+    number.
+    """
     if question.tolerance is None:
         return EXACT, EXACT
-    return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(str(question.relative or 0))
+    return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(
+        str(question.relative or 0)
+    )
 
 
 def distance(question: Question, numbers: Sequence[Number], right: Sequence[Number]) -> Number:
     """How far an answer is from the right one, in tolerances: up to 1 it is right."""
     absolute, relative = tolerances(question)
-    return max(abs(number - other) / (absolute + relative * abs(other)) for number, other in zip(numbers, right))
+    return max(
+        abs(number - other) / (absolute + relative * abs(other))
+        for number, other in zip(numbers, right)
+    )
 
 
-def within(question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1) -> bool:
-    """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where it is not."""
+def within(
+    question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1
+) -> bool:
+    """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where
+    it is not.
+    """
     absolute, relative = tolerances(question)
     return all(
-        abs(number - other) <= share * (absolute + relative * abs(other)) for number, other in zip(numbers, right)
+        abs(number - other) <= share * (absolute + relative * abs(other))
+        for number, other in zip(numbers, right)
     )
 
 
 def _width(question: Question, count: int, near: bool) -> int:
-    """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is near stay few."""
+    """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is
+    near stay few.
+    """
     if near:
         return 4 * count
     return EXACT_WIDTH if question.tolerance is None else 3 * count
@@ -186,7 +210,9 @@ def offsets(salt: str, count: int) -> list[Number]:
 
 
 def canonical(question: Question, reading: Reading) -> list[Number]:
-    """The numbers of a reading with what is a matter of taste removed, all points one after another."""
+    """The numbers of a reading with what is a matter of taste removed, all points one after
+    another.
+    """
     unique = kind_of_values(question).unique
     if not unique:
         return [number for numbers in reading.numbers for number in numbers]
@@ -208,7 +234,9 @@ def fault(question: Question, reading: Reading) -> Fault | None:
 
 
 def _entries(question: Question, value: list[Any]) -> Sequence[int]:
-    """The nodes of the entries of an answer; every kind whose answers are no words says which they are."""
+    """The nodes of the entries of an answer; every kind whose answers are no words says which they
+    are.
+    """
     entries = kinds()[question.kind].entries
     assert entries is not None
     found: Sequence[int] = entries(question, value)
@@ -221,16 +249,26 @@ def _number(question: Question, result: Any) -> Number:
     except UnknownSymbol as error:
         name = error.args[0][:40]
         given = list(question.symbols)
-        wanted = f"this question has the symbols {listed(given)}" if given else "this question has no symbols"
+        wanted = (
+            f"this question has the symbols {listed(given)}"
+            if given
+            else "this question has no symbols"
+        )
         raise Fault("stray symbol", f"The answer holds `{name}`; {wanted}.") from None
     except Undefined as error:
-        raise Fault("undefined", f"The answer has no finite value for some values of its symbols: {error}.") from None
+        raise Fault(
+            "undefined", f"The answer has no finite value for some values of its symbols: {error}."
+        ) from None
     except TooLarge as error:
         raise Fault("too large", f"The answer is not worked out: {error}.") from None
     except NotSupported as error:
-        raise Undecidable(f"The answer holds {error}, whose value is not worked out here.") from None
+        raise Undecidable(
+            f"The answer holds {error}, whose value is not worked out here."
+        ) from None
     except ValueError:
-        raise Fault("not real", "The answer has an imaginary part; the question asks for something real.") from None
+        raise Fault(
+            "not real", "The answer has an imaginary part; the question asks for something real."
+        ) from None
 
 
 def _imaginary_rest(question: Question, result: Any) -> Number:
@@ -241,7 +279,9 @@ def _imaginary_rest(question: Question, result: Any) -> Number:
     return max(absolute, EXACT) + max(relative, EXACT) * abs(result.real)
 
 
-def _with_units(question: Question, value: list[Any], numbers: list[list[Number]]) -> list[list[Number]]:
+def _with_units(
+    question: Question, value: list[Any], numbers: list[list[Number]]
+) -> list[list[Number]]:
     """The number in base units, in terms of the question's scale, and which these are.
 
     The unit is part of the answer: another one differs from it by more than any tolerance.
@@ -252,7 +292,8 @@ def _with_units(question: Question, value: list[Any], numbers: list[list[Number]
     except UnknownUnit as error:
         raise Fault(
             "unknown unit",
-            f"`{error}` is no unit that is known here. Write products with a space and quotients with a stroke: "
+            f"`{error}` is no unit that is known here. Write products with a space and quotients "
+            "with a stroke: "
             "`kN m`, `m/s^2`, `J/(kg K)`.",
         ) from None
     absolute, _ = tolerances(question)
@@ -271,7 +312,8 @@ def _read_function(question: Question, plain: Plain) -> Reading:
             raise Blank  # the body of the function is still empty
         raise Fault(
             "returned nothing",
-            "The function works something out and returns nothing. End it with a line that begins with `return`.",
+            "The function works something out and returns nothing. End it with a line that begins "
+            "with `return`.",
         )
     if any(result[0] == "printed" for result in value[1]):
         raise Fault(
@@ -290,7 +332,9 @@ def _read_function(question: Question, plain: Plain) -> Reading:
         try:
             numbers.append([_number(inner, results[leaf]) for leaf in _entries(inner, result)])
         except Fault as found:
-            raise Fault(found.note, f"{which} did not return what the question wants. {found.message}") from None
+            raise Fault(
+                found.note, f"{which} did not return what the question wants. {found.message}"
+            ) from None
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")
     return Reading(numbers)

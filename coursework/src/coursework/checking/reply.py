@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable, Mapping
 from .fields import Json
 from .question import KnownAnswer, Locker
 
-#: Each outcome with its sign and its word: the word is for those who do not see the sign or its colour.
+#: Each outcome with its sign and its word: the word is for those who do not see the sign or its
+#: colour.
 OUTCOMES = {
     "correct": ("✓", "Correct", "#1a7f37"),
     "wrong": ("✗", "Not yet", "#b54708"),
@@ -103,16 +104,21 @@ class Reply:
         # The book's pages make a button of it.
         known += f' data-sibling="{html.escape(self.sibling)}"' if self.sibling else ""
         formula = {} if tex_is_typeset() else {"formula": mathml}
-        paragraphs = "".join(f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>' for message in self.messages)
+        paragraphs = "".join(
+            f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>'
+            for message in self.messages
+        )
         solution = (
-            f"<details><summary>The worked solution</summary><div>{for_this_front_end(self.solution)}</div></details>"
+            "<details><summary>The worked "
+            f"solution</summary><div>{for_this_front_end(self.solution)}</div></details>"
             if self.solution
             else ""
         )
         return (
             f'<div class="coursework-reply" role="status" data-outcome="{self.outcome}"{known} '
             f'style="border-left:.3em solid {colour};padding:.2em .8em">'
-            f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> {word}</strong> '
+            f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> '
+            f"{word}</strong> "
             f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{solution}</div>'
         )
 
@@ -121,12 +127,15 @@ class Reply:
 
 
 def tex_is_typeset() -> bool:
-    """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do not."""
+    """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do
+    not.
+    """
     return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
 
 
 def mathml(source: str, display: str = "inline") -> str:
-    """A formula as MathML, which every browser shows by itself; TeX in a box where there is no converter.
+    """A formula as MathML, which every browser shows by itself; TeX in a box where there is no
+    converter.
 
     >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
     ('<math xmlns="http://www.w3.org/1998/Math', False)
@@ -135,7 +144,9 @@ def mathml(source: str, display: str = "inline") -> str:
         from latex2mathml.converter import convert
 
         return str(convert(source, display=display))
-    except Exception:  # no converter, or one that does not know a command: a reply is never lost for that
+    except (
+        Exception
+    ):  # no converter, or one that does not know a command: a reply is never lost for that
         return f"<code>{html.escape(source)}</code>"
 
 
@@ -143,7 +154,9 @@ def for_this_front_end(page: str) -> str:
     """The HTML of a worked solution, with its formulas in the way in which they will be seen."""
     if tex_is_typeset():
         return page
-    blocks = re.sub(r"\$\$([^$]+)\$\$", lambda found: mathml(html.unescape(found[1]), "block"), page)
+    blocks = re.sub(
+        r"\$\$([^$]+)\$\$", lambda found: mathml(html.unescape(found[1]), "block"), page
+    )
     return re.sub(r"\$([^$]+)\$", lambda found: mathml(html.unescape(found[1])), blocks)
 
 
@@ -152,7 +165,10 @@ MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
 def to_html(
-    message: str, formula: Callable[[str], str] = lambda source: f'<span class="math">${html.escape(source)}$</span>'
+    message: str,
+    formula: Callable[[str], str] = lambda source: (
+        f'<span class="math">${html.escape(source)}$</span>'
+    ),
 ) -> str:
     """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
 

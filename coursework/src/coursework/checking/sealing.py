@@ -1,14 +1,16 @@
 """Locks that only an answer opens.
 
-The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a locker, which
-can be looked up, and it opens what lies inside: the short names of the mistakes in the catalogue, or the key of a
-page where there is more to say. Lockers are all of one size, whether they hold the right answer, a mistake or
-the cell beside one, so the data that a student receives tells neither the answer, nor which mistakes are known.
+The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a
+locker, which can be looked up, and it opens what lies inside: the short names of the mistakes in
+the catalogue, or the key of a page where there is more to say. Lockers are all of one size, whether
+they hold the right answer, a mistake or the cell beside one, so the data that a student receives
+tells neither the answer, nor which mistakes are known.
 
 The key of a page follows from the slow hash too: nothing in a file can be tried more quickly.
 
-What can be checked without a server can also be tried without one. The slow hash makes each try cost about
-12 ms; an answer with few possibilities stays guessable, and the author's report says which those are.
+What can be checked without a server can also be tried without one. The slow hash makes each try
+cost about 12 ms; an answer with few possibilities stays guessable, and the author's report says
+which those are.
 """
 
 import base64
@@ -23,7 +25,8 @@ from typing import Any
 ROUNDS = 40_000
 #: Pages are filled up to a multiple of this, so that their length tells little.
 BLOCK = 48
-#: Bytes of the name of a locker, of what lies in it, of its tag, of the key of a page and of the tag of one.
+#: Bytes of the name of a locker, of what lies in it, of its tag, of the key of a page and of the
+#: tag of one.
 NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
 #: Bytes of the short name of a mistake.
@@ -45,7 +48,9 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     >>> portable_pbkdf2(b'password', b'salt', 2).hex()[:16]
     'ae4d0c95af6b46d3'
     """
-    inner, outer = (hashlib.sha256(bytes(byte ^ pad for byte in _block(password))) for pad in (0x36, 0x5C))
+    inner, outer = (
+        hashlib.sha256(bytes(byte ^ pad for byte in _block(password))) for pad in (0x36, 0x5C)
+    )
 
     def authenticate(message: bytes) -> bytes:
         first, second = inner.copy(), outer.copy()
@@ -77,10 +82,18 @@ else:
 
 
 def locker(
-    key: bytes, outcome: int, mistakes: Iterable[bytes] = (), page: int = NO_PAGE, page_key: bytes = b""
+    key: bytes,
+    outcome: int,
+    mistakes: Iterable[bytes] = (),
+    page: int = NO_PAGE,
+    page_key: bytes = b"",
 ) -> bytes:
-    """Make a locker: one of two outcomes, and up to two short names of mistakes, or a page with its key."""
-    inside = bytes([outcome, page]) + (b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key)
+    """Make a locker: one of two outcomes, and up to two short names of mistakes, or a page with its
+    key.
+    """
+    inside = bytes([outcome, page]) + (
+        b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key
+    )
     hidden = _mask(inside, key, "locker")
     return _name(key) + hidden + _tag(hidden, key, "locker")[:TAG]
 
@@ -91,7 +104,8 @@ def pack(lockers: Iterable[bytes]) -> str:
 
 
 def pages_filled_up(pages: Iterable[str], count: int) -> list[str]:
-    """Sealed pages with empty ones after them, ``count`` in all: as long as the others, and opened by no key.
+    """Sealed pages with empty ones after them, ``count`` in all: as long as the others, and opened
+    by no key.
 
     >>> [len(page) for page in pages_filled_up([seal("a", bytes(8)), seal("b" * 99, bytes(8))], 4)]
     [70, 70, 70, 70]
@@ -102,7 +116,10 @@ def pages_filled_up(pages: Iterable[str], count: int) -> list[str]:
     seed = "".join(pages)
     return [
         *pages,
-        *(_text(hashlib.shake_256(f"{seed} {order}".encode()).digest(size)) for order, size in enumerate(empty)),
+        *(
+            _text(hashlib.shake_256(f"{seed} {order}".encode()).digest(size))
+            for order, size in enumerate(empty)
+        ),
     ]
 
 
@@ -112,7 +129,8 @@ def count_of(lockers: str) -> int:
 
 
 def filled_up(lockers: str, count: int, secret: str) -> str:
-    """The text of some lockers with empty ones among them, ``count`` in all: only the secret tells them apart.
+    """The text of some lockers with empty ones among them, ``count`` in all: only the secret tells
+    them apart.
 
     >>> few = pack([locker(bytes(32), 0)])
     >>> many = filled_up(few, 8, "a secret")
@@ -121,15 +139,18 @@ def filled_up(lockers: str, count: int, secret: str) -> str:
     """
     data = base64.b85decode(lockers)
     full = [data[start : start + LOCKER] for start in range(0, len(data), LOCKER)]
-    empty = [hashlib.shake_256(f"{secret} {order}".encode()).digest(LOCKER) for order in range(count - len(full))]
+    empty = [
+        hashlib.shake_256(f"{secret} {order}".encode()).digest(LOCKER)
+        for order in range(count - len(full))
+    ]
     return pack(full + empty)
 
 
 def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | None:
     """Open the locker of a key: its outcome, its page, and the key of that; or give ``None``.
 
-    A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place of its key says
-    which mistakes they are: :func:`mistakes_in` reads it.
+    A page tells the mistakes itself. Where there is none, it is ``None``, and what stands in place
+    of its key says which mistakes they are: :func:`mistakes_in` reads it.
 
     Raises
     ------
@@ -139,7 +160,10 @@ def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | Non
     data, name = base64.b85decode(lockers), _name(key)
     for start in range(0, len(data), LOCKER):
         if data[start : start + NAME] == name:
-            hidden, tag = data[start + NAME : start + NAME + INSIDE], data[start + NAME + INSIDE : start + LOCKER]
+            hidden, tag = (
+                data[start + NAME : start + NAME + INSIDE],
+                data[start + NAME + INSIDE : start + LOCKER],
+            )
             if not hmac.compare_digest(tag, _tag(hidden, key, "locker")[:TAG]):
                 raise ValueError("The sealed data was changed.")
             inside = _mask(hidden, key, "locker")
@@ -166,7 +190,8 @@ def name_of(key: bytes) -> bytes:
 
 
 def pack_names(names: Iterable[bytes], together: int) -> str:
-    """The text of some names in an order that tells nothing, with others among them up to a multiple of ``together``.
+    """The text of some names in an order that tells nothing, with others among them up to a
+    multiple of ``together``.
 
     >>> packed = pack_names([name_of(bytes(32))], 8)
     >>> len(base64.b85decode(packed)) // NAME, is_among(packed, bytes(32)), is_among(packed, b"1" * 32)
@@ -174,7 +199,10 @@ def pack_names(names: Iterable[bytes], together: int) -> str:
     """
     names = sorted(set(names))
     seed = b"".join(names)
-    empty = [hashlib.shake_256(seed + bytes([order])).digest(NAME) for order in range(-len(names) % together)]
+    empty = [
+        hashlib.shake_256(seed + bytes([order])).digest(NAME)
+        for order in range(-len(names) % together)
+    ]
     return _text(b"".join(sorted([*names, *empty])))
 
 

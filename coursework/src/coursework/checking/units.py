@@ -1,7 +1,8 @@
-"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is, and of which base units it is made.
+"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is, and of which base
+units it is made.
 
-Only the names of the International System, and those that it accepts beside its own (brochure of the BIPM, 9th
-edition, tables 1 to 8).
+Only the names of the International System, and those that it accepts beside its own (brochure of
+the BIPM, 9th edition, tables 1 to 8).
 """
 
 import re

@@ -1,7 +1,7 @@
 """A newer archive of exercises beside a student's work, which stays as it is.
 
-An archive holds a manifest: what was handed out, by name, each file with a digest. So what nobody has changed since
-is known, and a newer one takes its place.
+An archive holds a manifest: what was handed out, by name, each file with a digest. So what nobody
+has changed since is known, and a newer one takes its place.
 """
 
 import hashlib
@@ -18,7 +18,8 @@ from .fields import Fields, by_name, text, whole
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
 REQUIREMENTS = "requirements.txt"
-#: The folder of the sealed questions: no student changes them, so a newer one takes the place of the older one.
+#: The folder of the sealed questions: no student changes them, so a newer one takes the place of
+#: the older one.
 SEALED = "sealed/"
 
 
@@ -28,7 +29,9 @@ FORMAT = 1
 
 
 class ArchiveRefused(ValueError):
-    """The archive is older than the folder, or the folder is of a newer coursework; the message says which."""
+    """The archive is older than the folder, or the folder is of a newer coursework; the message
+    says which.
+    """
 
 
 def manifest(files: Mapping[str, bytes]) -> str:
@@ -45,11 +48,15 @@ def _as_text(digests: Mapping[str, str]) -> str:
 
 
 def digest_of(name: str, data: bytes) -> str:
-    """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to change it."""
+    """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to
+    change it.
+    """
     if name.endswith(".ipynb"):
         try:
             cells = json.loads(data)["cells"]
-            data = json.dumps([[cell["cell_type"], "".join(cell["source"])] for cell in cells]).encode()
+            data = json.dumps(
+                [[cell["cell_type"], "".join(cell["source"])] for cell in cells]
+            ).encode()
         except (ValueError, KeyError, TypeError):
             pass  # no notebook: its bytes count
     return hashlib.sha256(data).hexdigest()[:32]
@@ -58,8 +65,9 @@ def digest_of(name: str, data: bytes) -> str:
 def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     """Unpack a newer archive of exercises beside a student's work.
 
-    What nobody has changed since it was handed out is replaced. What somebody has changed is left as it is, and what
-    is new is put beside it under a new name. The package takes the place of the older one.
+    What nobody has changed since it was handed out is replaced. What somebody has changed is left
+    as it is, and what is new is put beside it under a new name. The package takes the place of the
+    older one.
 
     Parameters
     ----------
@@ -68,7 +76,8 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     Returns
     -------
     list of str
-        A line for each file, and at the end how to install the package, if another one is installed.
+        A line for each file, and at the end how to install the package, if another one is
+        installed.
 
     Raises
     ------
@@ -117,14 +126,22 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             said.append(f"kept yours  {name}; the new one is {beside}")
     (folder / MANIFEST).write_text(_as_text({**before, **now}), "utf8")
     if to_install:
-        command = ["python" if sys.platform == "win32" else sys.executable, "-m", "pip", "install", *to_install]
+        command = [
+            "python" if sys.platform == "win32" else sys.executable,
+            "-m",
+            "pip",
+            "install",
+            *to_install,
+        ]
         line = " ".join(f'"{word}"' if " " in word else word for word in command)
         said.append(f"Now run this:\n\n    {line}\n")
     return said
 
 
 def _place(entry: str) -> str:
-    """Where an entry of the archive goes: sealed questions into a folder of their own, other files into the folder."""
+    """Where an entry of the archive goes: sealed questions into a folder of their own, other files
+    into the folder.
+    """
     path = Path(entry)
     if path.parent.name == "variants":
         return f"{SEALED}variants/{path.name}"
@@ -155,7 +172,11 @@ def _older(folder: Path, name: str) -> list[Path]:
     package, new = _package_in(name)
     found = []
     for path in sorted(folder.glob("*.whl")):
-        if WHEEL.fullmatch(path.name) and _package_in(path.name)[0] == package and path.name != name:
+        if (
+            WHEEL.fullmatch(path.name)
+            and _package_in(path.name)[0] == package
+            and path.name != name
+        ):
             present = _package_in(path.name)[1]
             if _order(present) > _order(new):
                 raise ArchiveRefused(
@@ -189,7 +210,9 @@ def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
 
 
 def _handed_out(folder: Path) -> dict[str, str]:
-    """What was handed out into a folder, by name: the digest of each file. Nothing, if that was before manifests."""
+    """What was handed out into a folder, by name: the digest of each file. Nothing, if that was
+    before manifests.
+    """
     try:
         about = Fields(json.loads((folder / MANIFEST).read_text("utf8")), MANIFEST)
         format, files = about.get("format", whole), about.get("files", by_name(text))
@@ -197,7 +220,8 @@ def _handed_out(folder: Path) -> dict[str, str]:
         return {}  # what is not known to be as it was handed out is the student's
     if format != FORMAT:
         raise ArchiveRefused(
-            f"{MANIFEST} in this folder is of format {format}, and the coursework that is installed reads {FORMAT}: "
+            f"{MANIFEST} in this folder is of format {format}, and the coursework that is "
+            f"installed reads {FORMAT}: "
             "install the package that lies in this folder, and run this again. Nothing was changed."
         )
     return files

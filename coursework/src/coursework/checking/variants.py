@@ -1,11 +1,14 @@
-"""A question in several variants: each student gets one, found from who the student is, with no server.
+"""A question in several variants: each student gets one, found from who the student is, with no
+server.
 
-The variants of a question differ in their numbers, axes or names, and are sealed one by one. Which one is a student's
-follows from the student's identity, the question and the edition of the course by a hash, so the same student meets
-the same one in every notebook, on every machine and in the grader. Without an identity it is variant 0.
+The variants of a question differ in their numbers, axes or names, and are sealed one by one. Which
+one is a student's follows from the student's identity, the question and the edition of the course
+by a hash, so the same student meets the same one in every notebook, on every machine and in the
+grader. Without an identity it is variant 0.
 
-The variants that come next are its siblings: who had help with a question earns the rest of its points with one of
-them. A sibling has a name, ``'levers/see-saw/sibling'``, and is shown, checked and graded by it.
+The variants that come next are its siblings: who had help with a question earns the rest of its
+points with one of them. A sibling has a name, ``'levers/see-saw/sibling'``, and is shown, checked
+and graded by it.
 """
 
 import base64
@@ -36,13 +39,15 @@ def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
     student = plain_identity(student)
     if not student or count < 2:
         return 0
-    # JSON and the like could be read in two ways only if a part held a line break: names and editions hold none.
+    # JSON and the like could be read in two ways only if a part held a line break: names and
+    # editions hold none.
     digest = hashlib.sha256(f"{edition}\n{name}\n{student}".encode()).digest()
     return int.from_bytes(digest[:8], "big") % count
 
 
 def names_of_variants(variants: Iterable[Variant]) -> list[str]:
-    """What variants are called, whatever their numbers: it follows from what is given and shown in each.
+    """What variants are called, whatever their numbers: it follows from what is given and shown in
+    each.
 
     Parameters
     ----------
@@ -64,11 +69,13 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
 
 
 def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -> list[int]:
-    """The numbers of all variants in a student's own order: first the student's own, then its siblings.
+    """The numbers of all variants in a student's own order: first the student's own, then its
+    siblings.
 
-    A course that names its variants gives them by these names (rendezvous hashing): each student has an order of all
-    names that there could be, so that one that is taken out moves only those who had it, to the one that came next.
-    Without names the number follows from how many there are, and all others from it.
+    A course that names its variants gives them by these names (rendezvous hashing): each student
+    has an order of all names that there could be, so that one that is taken out moves only those
+    who had it, to the one that came next. Without names the number follows from how many there are,
+    and all others from it.
 
     Parameters
     ----------
@@ -103,7 +110,10 @@ def siblings_of(name: str, count: int) -> list[str]:
     >>> siblings_of('levers/see-saw', 16)
     ['levers/see-saw/sibling', 'levers/see-saw/sibling-2']
     """
-    return [f"{name}/sibling" + (f"-{order}" if order > 1 else "") for order in range(1, min(SIBLINGS + 1, count))]
+    return [
+        f"{name}/sibling" + (f"-{order}" if order > 1 else "")
+        for order in range(1, min(SIBLINGS + 1, count))
+    ]
 
 
 def without_sibling(name: str) -> tuple[str, int]:
@@ -128,16 +138,24 @@ def shown(text: str, written: Mapping[str, str]) -> str:
 
 
 def image(picture: str, alt: str) -> str:
-    """A picture, given as SVG, as Markdown: on white paper of its own, with its text for those who do not see it."""
+    """A picture, given as SVG, as Markdown: on white paper of its own, with its text for those who
+    do not see it.
+    """
     (width,) = re.findall(r'width="(\S+)"', picture)[:1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
-    # As HTML: Markdown readers that are careful refuse this kind of address in an image of their own.
-    return f'<p><img alt="{html.escape(alt)}" width="{width}" src="data:image/svg+xml;base64,{data}"></p>'
+    # As HTML: Markdown readers that are careful refuse this kind of address in an image of their
+    # own.
+    return (
+        f'<p><img alt="{html.escape(alt)}" width="{width}" '
+        f'src="data:image/svg+xml;base64,{data}"></p>'
+    )
 
 
 def packed(picture: str, alt: str) -> str:
     """A picture as short text: pictures are most of what the variants of a question differ in."""
-    return base64.b85encode(zlib.compress(json.dumps([picture, alt]).encode("utf8"), 9)).decode("ascii")
+    return base64.b85encode(zlib.compress(json.dumps([picture, alt]).encode("utf8"), 9)).decode(
+        "ascii"
+    )
 
 
 def text_of(variant: Variant) -> str:
@@ -149,7 +167,9 @@ def text_of(variant: Variant) -> str:
     """
     written = dict(variant.shown)
     if variant.picture:
-        picture, alt = pair(text)(json.loads(zlib.decompress(base64.b85decode(variant.picture))), "A picture")
+        picture, alt = pair(text)(
+            json.loads(zlib.decompress(base64.b85decode(variant.picture))), "A picture"
+        )
         written["picture"] = image(picture, alt)
     return shown(variant.text, written)
 
@@ -172,11 +192,15 @@ class Given:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._parameters:
-            raise AttributeError(f"This question gives {', '.join(self._parameters)}, and no {name}.")
+            raise AttributeError(
+                f"This question gives {', '.join(self._parameters)}, and no {name}."
+            )
         return self._parameters[name]
 
     def __repr__(self) -> str:
-        text = re.sub(r'<p><img alt="([^"]*)"[^>]*></p>', lambda found: html.unescape(found[1]), self._text)
+        text = re.sub(
+            r'<p><img alt="([^"]*)"[^>]*></p>', lambda found: html.unescape(found[1]), self._text
+        )
         return re.sub(r"[*`$]", "", text)
 
     def _repr_markdown_(self) -> str:

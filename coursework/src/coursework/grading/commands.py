@@ -10,7 +10,9 @@ import tempfile
 def add_commands(commands):
     """Add these commands to those of ``coursework``."""
     grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
-    grade.add_argument("submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook")
+    grade.add_argument(
+        "submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook"
+    )
     grade.add_argument("--out", required=True, help="folder for marks, feedback and reports")
     grade.add_argument("--solutions", help="folder of the notebooks with solutions")
     grade.add_argument(
@@ -21,7 +23,9 @@ def add_commands(commands):
         help="grade this assignment only; with = the notebooks of the exercises that make it up",
     )
     grade.add_argument(
-        "--roster", metavar="FILE.csv", help="who is in the course: a table, or the gradebook your system exports"
+        "--roster",
+        metavar="FILE.csv",
+        help="who is in the course: a table, or the gradebook your system exports",
     )
     grade.add_argument("--student", help="the one student who handed all of it in")
     grade.add_argument(
@@ -30,15 +34,24 @@ def add_commands(commands):
         action="store_true",
         help="say whose each file is, how that is known, and how many would be run; run nothing",
     )
-    grade.add_argument("--workers", type=int, help="how many notebooks are run at a time (one for each processor)")
     grade.add_argument(
-        "--scheduler", metavar="ADDRESS", help="run on this Dask cluster instead, such as tls://host:8786"
+        "--workers", type=int, help="how many notebooks are run at a time (one for each processor)"
     )
-    grade.add_argument("--keys", metavar="FOLDER", help="the keys of that cluster, as `coursework cluster` made them")
+    grade.add_argument(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="run on this Dask cluster instead, such as tls://host:8786",
+    )
+    grade.add_argument(
+        "--keys",
+        metavar="FOLDER",
+        help="the keys of that cluster, as `coursework cluster` made them",
+    )
     grade.add_argument(
         "--allow-weak-isolation",
         action="store_true",
-        help="run student code although this machine cannot keep it apart; only on a machine you can lose",
+        help="run student code although this machine cannot keep it apart; only on a machine you "
+        "can lose",
     )
     grade.add_argument(
         "--as-listed",
@@ -50,49 +63,87 @@ def add_commands(commands):
     )
     regrade.add_argument("out", metavar="DIR")
     regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
-    regrade.add_argument("--dry-run", action="store_true", help="say which marks would move, and move none")
-    regrade.add_argument("--yes", action="store_true", help="go on without asking, whoever gains or loses")
     regrade.add_argument(
-        "--never-lower", action="append", default=[], metavar="QUESTION", help="nobody loses by this question's mending"
+        "--dry-run", action="store_true", help="say which marks would move, and move none"
+    )
+    regrade.add_argument(
+        "--yes", action="store_true", help="go on without asking, whoever gains or loses"
+    )
+    regrade.add_argument(
+        "--never-lower",
+        action="append",
+        default=[],
+        metavar="QUESTION",
+        help="nobody loses by this question's mending",
     )
     regrade.add_argument(
         "--full-credit",
         action="append",
         default=[],
         metavar="QUESTION[@VARIANT]",
-        help="all have its points, or all with a variant: its name, or taken-out for those that the source has no more",
+        help="all have its points, or all with a variant: its name, or taken-out for "
+        "those that the "
+        "source has no more",
     )
     regrade.add_argument(
-        "--void", action="append", default=[], metavar="QUESTION", help="this question counts for nobody"
+        "--void",
+        action="append",
+        default=[],
+        metavar="QUESTION",
+        help="this question counts for nobody",
     )
-    review = commands.add_parser("review", help="judge answers on a page that this machine alone sees")
+    review = commands.add_parser(
+        "review", help="judge answers on a page that this machine alone sees"
+    )
     review.add_argument("out", metavar="DIR")
     review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
     review.add_argument(
-        "--share", default="1/1", metavar="K/N", help="the K-th of N shares, if several people judge: 2/3"
+        "--share",
+        default="1/1",
+        metavar="K/N",
+        help="the K-th of N shares, if several people judge: 2/3",
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument("--port", type=int, default=0, help="the port; any that is free if it is not said")
+    review.add_argument(
+        "--port", type=int, default=0, help="the port; any that is free if it is not said"
+    )
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
     merge.add_argument("out", metavar="DIR")
     merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
-    merge.add_argument("--dry-run", action="store_true", help="say what would be taken in, and take in nothing")
-    term = commands.add_parser("term", help="what a whole course comes to: due dates, weights, statistics")
+    merge.add_argument(
+        "--dry-run", action="store_true", help="say what would be taken in, and take in nothing"
+    )
+    term = commands.add_parser(
+        "term", help="what a whole course comes to: due dates, weights, statistics"
+    )
     term.add_argument("out", metavar="DIR")
     term.add_argument(
-        "--rules", required=True, metavar="FILE.toml", help="due dates, extensions, weights: see the book"
+        "--rules",
+        required=True,
+        metavar="FILE.toml",
+        help="due dates, extensions, weights: see the book",
     )
     term.add_argument(
-        "--earlier", nargs="+", default=[], metavar="counts.json", help="the counts of other years, to compare"
+        "--earlier",
+        nargs="+",
+        default=[],
+        metavar="counts.json",
+        help="the counts of other years, to compare",
     )
-    term.add_argument("--dry-run", action="store_true", help="print the table of the course, and keep nothing")
+    term.add_argument(
+        "--dry-run", action="store_true", help="print the table of the course, and keep nothing"
+    )
     export = commands.add_parser("export", help="hand the marks on")
     export.add_argument("out", metavar="DIR")
     export.add_argument(
-        "--lms", metavar="FILE.csv", help="the gradebook that you exported from Canvas, Moodle or Brightspace"
+        "--lms",
+        metavar="FILE.csv",
+        help="the gradebook that you exported from Canvas, Moodle or Brightspace",
     )
     export.add_argument(
-        "--filled", metavar="FILE.csv", help="where the filled gradebook goes; FILE-filled.csv if not said"
+        "--filled",
+        metavar="FILE.csv",
+        help="where the filled gradebook goes; FILE-filled.csv if not said",
     )
     export.add_argument("--column", help="the column to fill, by its name or the beginning of it")
     export.add_argument(
@@ -100,13 +151,18 @@ def add_commands(commands):
         action="append",
         default=[],
         metavar="OURS=THEIRS",
-        help="what a column is called there, in a gradebook of another language: --name 'identifier=ID'",
+        help="what a column is called there, in a gradebook of another language: --name "
+        "'identifier=ID'",
     )
     export.add_argument(
-        "--rules", metavar="FILE.toml", help="the rules of the term: what is late costs points, who is excused has none"
+        "--rules",
+        metavar="FILE.toml",
+        help="the rules of the term: what is late costs points, who is excused has none",
     )
     export.add_argument(
-        "--as-graded", action="store_true", help="hand on the points as graded, although the term has rules"
+        "--as-graded",
+        action="store_true",
+        help="hand on the points as graded, although the term has rules",
     )
     export.add_argument(
         "--as-of",
@@ -114,7 +170,9 @@ def add_commands(commands):
         type=_moment,
         help="by what was decided and due then, such as 2026-12-01T12:00; now, if it is not said",
     )
-    export.add_argument("--dry-run", action="store_true", help="say what would be filled in, and write nothing")
+    export.add_argument(
+        "--dry-run", action="store_true", help="say what would be filled in, and write nothing"
+    )
     export.add_argument(
         "--overwrite",
         action="append",
@@ -122,38 +180,62 @@ def add_commands(commands):
         metavar="STUDENT",
         help="fill in also where somebody entered another mark for this student; an excuse stays",
     )
-    export.add_argument("--assignment", help="the assignment whose points are handed on, if there are several")
     export.add_argument(
-        "--feedback", metavar="FILE.zip", help="write the pages of feedback, named for your system to take them back"
+        "--assignment", help="the assignment whose points are handed on, if there are several"
+    )
+    export.add_argument(
+        "--feedback",
+        metavar="FILE.zip",
+        help="write the pages of feedback, named for your system to take them back",
     )
     export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
     export.add_argument(
-        "--gradescope", metavar="results.json", help="write the results of a Gradescope autograder, for one student"
+        "--gradescope",
+        metavar="results.json",
+        help="write the results of a Gradescope autograder, for one student",
     )
     export.add_argument("--student", help="the student for --gradescope, if there are several")
-    gradescope = commands.add_parser("gradescope", help="make an autograder of one assignment for Gradescope")
+    gradescope = commands.add_parser(
+        "gradescope", help="make an autograder of one assignment for Gradescope"
+    )
     gradescope.add_argument("--out", required=True, metavar="FILE.zip")
     gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
     gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
-    gradescope.add_argument("--roster", metavar="FILE.csv", help="who is in the course, with their addresses")
-    cluster = commands.add_parser("cluster", help="start the scheduler of a cluster, or a machine that works for it")
-    cluster.add_argument("--keys", required=True, metavar="FOLDER", help="its keys; they are made if there are none")
-    cluster.add_argument("--host", help="the address of this machine at which the others reach the scheduler")
+    gradescope.add_argument(
+        "--roster", metavar="FILE.csv", help="who is in the course, with their addresses"
+    )
+    cluster = commands.add_parser(
+        "cluster", help="start the scheduler of a cluster, or a machine that works for it"
+    )
+    cluster.add_argument(
+        "--keys", required=True, metavar="FOLDER", help="its keys; they are made if there are none"
+    )
+    cluster.add_argument(
+        "--host", help="the address of this machine at which the others reach the scheduler"
+    )
     cluster.add_argument("--port", type=int, default=8786)
     cluster.add_argument(
-        "--worker", metavar="ADDRESS", help="work for the scheduler at this address, such as tls://..."
+        "--worker",
+        metavar="ADDRESS",
+        help="work for the scheduler at this address, such as tls://...",
     )
-    cluster.add_argument("--workers", type=int, help="how many notebooks at a time (one for each processor)")
+    cluster.add_argument(
+        "--workers", type=int, help="how many notebooks at a time (one for each processor)"
+    )
     sample = commands.add_parser("sample-class", help="make a class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
     sample.add_argument("--students", type=int, default=200)
     sample.add_argument("--seed", type=int, default=1)
     sample.add_argument(
-        "--notebooks", default="", help="the exercises to hand in, separated by commas; they become one notebook"
+        "--notebooks",
+        default="",
+        help="the exercises to hand in, separated by commas; they become one notebook",
     )
     sample.add_argument("--solutions", help="folder of the notebooks with solutions")
     sample.add_argument(
-        "--layout", default="folders", choices=("folders", "canvas", "moodle", "brightspace", "nbgrader")
+        "--layout",
+        default="folders",
+        choices=("folders", "canvas", "moodle", "brightspace", "nbgrader"),
     )
 
 
@@ -175,7 +257,8 @@ class NeedsLinux(RuntimeError):
 
     def __str__(self):
         return (
-            "this judges what strangers wrote, apart from all else and by means of Linux that this system has not. Run "
+            "this judges what strangers wrote, apart from all else and by means of Linux that this "
+            "system has not. Run "
             "it in WSL or in a container; review, merge, term and export run here, too."
         )
 
@@ -202,7 +285,12 @@ def grade(assignment, **options):
 
     try:
         grade_class(assignments=_named(assignment), **options)
-    except (InUse, WeakIsolation, WorkerDied, ValueError) as error:  # NothingToGrade and BadRoster are such
+    except (
+        InUse,
+        WeakIsolation,
+        WorkerDied,
+        ValueError,
+    ) as error:  # NothingToGrade and BadRoster are such
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
@@ -220,7 +308,9 @@ def regrade(out, solutions, dry_run, yes, never_lower, full_credit, void):
             from .grade import regrade as regrade_class
         # What a table of decisions says wrongly is said once.
         unheard = None if dry_run else io.StringIO()
-        laboratory = regrade_class(out, solutions=solutions, policies=policies, dry_run=True, show=unheard)
+        laboratory = regrade_class(
+            out, solutions=solutions, policies=policies, dry_run=True, show=unheard
+        )
         for line in laboratory.lines():
             print(line)
         if laboratory.changes and (dry_run or not yes):
@@ -229,7 +319,10 @@ def regrade(out, solutions, dry_run, yes, never_lower, full_credit, void):
             _say_moved(laboratory.by_people)
             return
         if laboratory.changes and not yes:
-            if not sys.stdin.isatty() or input("Shall these marks move? yes or no: ").strip().casefold() != "yes":
+            if (
+                not sys.stdin.isatty()
+                or input("Shall these marks move? yes or no: ").strip().casefold() != "yes"
+            ):
                 sys.exit("No mark has moved. To go on, say --yes.")
         _say_moved(regrade_class(out, solutions=solutions, policies=policies))
     except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
@@ -256,13 +349,22 @@ def review(out, grader, share, hide_names, port):
     found = re.fullmatch(r"(\d+)/(\d+)", share)
     mine, shares = map(int, found.groups()) if found else (0, 0)
     if not 1 <= mine <= shares:
-        sys.exit(f"coursework review: a share is one of several, such as 2/3, and this is {share!r}.")
+        sys.exit(
+            f"coursework review: a share is one of several, such as 2/3, and this is {share!r}."
+        )
 
     def say(address):
         print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
 
     try:
-        serve(out, grader or getpass.getuser(), share=(mine, shares), hide_names=hide_names, port=port, say=say)
+        serve(
+            out,
+            grader or getpass.getuser(),
+            share=(mine, shares),
+            hide_names=hide_names,
+            port=port,
+            say=say,
+        )
     except ValueError as error:
         sys.exit(f"coursework review: {error}")
     except KeyboardInterrupt:
@@ -286,7 +388,8 @@ def merge(out, ledgers, dry_run):
     missing = [path for path in ledgers if not Path(path).is_file()]
     if missing:
         sys.exit(
-            f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no ledger: leave it out."
+            f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no "
+            "ledger: leave it out."
         )
     for path in ledgers:
         try:
@@ -294,15 +397,28 @@ def merge(out, ledgers, dry_run):
         except (OSError, ValueError) as error:
             sys.exit(f"coursework merge: {error}")
         decisions = [one for one in new if isinstance(one, Decision)]
-        others = f", and {len(new) - len(decisions)} on appeals and rubrics" if len(new) > len(decisions) else ""
-        print(f"{len(decisions)} decisions{others} from {path}{' would be taken in' if dry_run else ''}.")
+        others = (
+            f", and {len(new) - len(decisions)} on appeals and rubrics"
+            if len(new) > len(decisions)
+            else ""
+        )
+        print(
+            f"{len(decisions)} decisions{others} from "
+            f"{path}{' would be taken in' if dry_run else ''}."
+        )
         foreign = [one for one in decisions if not _is_here(store, one)]
         if foreign:
-            whose = ", ".join(in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign))
-            print(f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no mark.")
+            whose = ", ".join(
+                in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign)
+            )
+            print(
+                f"  {len(foreign)} of them are on answers that are not here: {whose}. They change "
+                "no mark."
+            )
         for first, second in differing:
             print(
-                f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, {second.who} gave "
+                f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
+                f"{second.who} gave "
                 f"{second.credit}; the later one counts."
             )
 
@@ -325,8 +441,15 @@ def term(out, rules, earlier, dry_run):
     try:
         if dry_run:
             with tempfile.TemporaryDirectory() as folder:
-                said = write_course(Store(out), read_rules(rules), earlier=earlier, folder=Path(folder))
-                print(*said, Path(folder, "course.csv").read_text("utf8"), "Nothing was kept.", sep="\n")
+                said = write_course(
+                    Store(out), read_rules(rules), earlier=earlier, folder=Path(folder)
+                )
+                print(
+                    *said,
+                    Path(folder, "course.csv").read_text("utf8"),
+                    "Nothing was kept.",
+                    sep="\n",
+                )
             return
         said = write_course(Store(out), read_rules(rules), earlier=earlier)
         keep_rules(Store(out), rules)
@@ -357,13 +480,16 @@ def export(
     from .store import Store
 
     if not (lms or feedback or nbgrader or gradescope):
-        sys.exit("coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope.")
+        sys.exit(
+            "coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope."
+        )
     try:
         store = Store(out)
         known = None if as_graded else rules or rules_of(store)
         if known and not rules and (lms or nbgrader):
             raise gradebooks.CannotExport(
-                f"The term has rules, {known}, and these would be the points before them. Say --rules {known}, or "
+                f"The term has rules, {known}, and these would be the points before them. Say "
+                f"--rules {known}, or "
                 "--as-graded."
             )
         marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
@@ -391,7 +517,10 @@ def gradescope(out, solutions, assignment, roster):
         stems = write_autograder(out, _named([assignment]), solutions=solutions, roster=roster)
     except (OSError, ValueError) as error:
         sys.exit(f"coursework gradescope: {error}")
-    print(f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and show it to nobody.")
+    print(
+        f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and "
+        "show it to nobody."
+    )
 
 
 def cluster(keys, host, port, worker, workers):
@@ -408,13 +537,15 @@ def cluster(keys, host, port, worker, workers):
         else:
             if not host:
                 sys.exit(
-                    "coursework cluster: say at which address of this machine the others reach it: --host 192.0.2.7."
+                    "coursework cluster: say at which address of this machine the others reach it: "
+                    "--host 192.0.2.7."
                 )
             made = cluster_keys.make_keys(keys)
             command = cluster_keys.scheduler(keys, host, port)
             address = f"tls://{host}:{port}"
             print(
-                f"{'New keys are' if made else 'The keys are'} in {keys}: whoever has them runs code on this cluster.\n"
+                f"{'New keys are' if made else 'The keys are'} in {keys}: whoever has them runs "
+                "code on this cluster.\n"
                 f"On each machine that is to work, with a copy of that folder:\n"
                 f"  coursework cluster --keys {keys.name} --worker {address}\n"
                 f"Then, where the notebooks are:\n"
@@ -430,7 +561,9 @@ def cluster(keys, host, port, worker, workers):
 def sample_class(out, students, seed, notebooks, solutions, layout):
     from .sample_class import make_class
 
-    made = make_class(out, students, seed, [name for name in notebooks.split(",") if name], solutions, layout)
+    made = make_class(
+        out, students, seed, [name for name in notebooks.split(",") if name], solutions, layout
+    )
     print(f"{students} students in {made}")
 
 

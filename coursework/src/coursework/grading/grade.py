@@ -1,8 +1,10 @@
-"""Grades a class: from what was handed in to a record of each student's work, and reports of all records.
+"""Grades a class: from what was handed in to a record of each student's work, and reports of all
+records.
 
-A record is written as soon as a student's work on an assignment is graded. Its key follows from everything
-that it depends on: the bytes of the notebooks, the questions, the limits, the versions of the software. A
-run that finds a record with the right key leaves it alone, so a run that was killed goes on where it was.
+A record is written as soon as a student's work on an assignment is graded. Its key follows from
+everything that it depends on: the bytes of the notebooks, the questions, the limits, the versions
+of the software. A run that finds a record with the right key leaves it alone, so a run that was
+killed goes on where it was.
 """
 
 from __future__ import annotations
@@ -43,7 +45,9 @@ from .tables import in_a_line, lines
 from .versions import software
 from .workers import processors, side_by_side
 
-if TYPE_CHECKING:  # what runs code takes a while to be loaded, and where nothing is graded it is not needed
+if (
+    TYPE_CHECKING
+):  # what runs code takes a while to be loaded, and where nothing is graded it is not needed
     from .execution.sandbox import Job, Limits
 
 #: The questions of an assignment, each in all its variants, by name.
@@ -63,7 +67,9 @@ class NothingToGrade(ValueError):
 
 
 class Work(NamedTuple):
-    """What one student handed in for one assignment: the notebooks that count, and those that do not."""
+    """What one student handed in for one assignment: the notebooks that count, and those that do
+    not.
+    """
 
     student: str
     assignment: str
@@ -87,7 +93,9 @@ class Course:
     """
 
     def __init__(
-        self, solutions: str | Path | None = None, assignments: Mapping[str, Sequence[str]] | None = None
+        self,
+        solutions: str | Path | None = None,
+        assignments: Mapping[str, Sequence[str]] | None = None,
     ) -> None:
         folder = self.folder = Path(solutions or find_course().sources)
         self.edition = edition_of(folder)
@@ -95,7 +103,9 @@ class Course:
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
         self.assignments = assignments or {stem: [stem] for stem in self.sources}
-        unknown = sorted({stem for stems in self.assignments.values() for stem in stems} - set(self.sources))
+        unknown = sorted(
+            {stem for stems in self.assignments.values() for stem in stems} - set(self.sources)
+        )
         if unknown:
             raise NothingToGrade(
                 f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
@@ -107,13 +117,16 @@ class Course:
         }
 
     def assignments_of(self, notebook: Notebook) -> list[str]:
-        """The assignments that a notebook answers, by the names in its cells, or else by its own name."""
+        """The assignments that a notebook answers, by the names in its cells, or else by its own
+        name.
+        """
         by_cell = {name.replace("/", "-"): name for names in self.names.values() for name in names}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
         counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
         most = max(counts.values())
         if most:
-            # The one it names most of; and any other of which it names half: some work in a single notebook.
+            # The one it names most of; and any other of which it names half: some work in a single
+            # notebook.
             first = next(assignment for assignment, count in counts.items() if count == most)
             return [
                 assignment
@@ -128,23 +141,34 @@ class Course:
 
     def questions(self, assignments: Iterable[str], kept: Path) -> dict[str, Questions]:
         """The questions of some assignments, by assignment and name."""
-        stems = sorted({stem for assignment in assignments for stem in self.assignments[assignment]})
+        stems = sorted(
+            {stem for assignment in assignments for stem in self.assignments[assignment]}
+        )
         secret = secret_beside(self.folder)
-        found = marking.load_questions([self.sources[stem] for stem in stems], kept, secret, self.edition)
-        return {assignment: {name: found[name] for name in self.names[assignment]} for assignment in assignments}
+        found = marking.load_questions(
+            [self.sources[stem] for stem in stems], kept, secret, self.edition
+        )
+        return {
+            assignment: {name: found[name] for name in self.names[assignment]}
+            for assignment in assignments
+        }
 
 
 def sort_work(notebooks: Iterable[Notebook], course: Course, refused: list[Refused]) -> list[Work]:
     """Sort notebooks by student and assignment; say of each which counts.
 
-    Of several notebooks for one assignment the newest counts, and older ones only for questions that no newer
-    one has: an assignment may be handed in as several notebooks.
+    Of several notebooks for one assignment the newest counts, and older ones only for questions
+    that no newer one has: an assignment may be handed in as several notebooks.
     """
     handed_in: dict[tuple[str, str], list[Notebook]] = {}
     for notebook in notebooks:
         assignments = course.assignments_of(notebook)
         if not assignments:
-            refused.append(Refused(notebook.file, notebook.student, "No question of any assignment is named in it."))
+            refused.append(
+                Refused(
+                    notebook.file, notebook.student, "No question of any assignment is named in it."
+                )
+            )
         for assignment in assignments:
             handed_in.setdefault((notebook.student, assignment), []).append(notebook)
     found = []
@@ -159,7 +183,14 @@ def sort_work(notebooks: Iterable[Notebook], course: Course, refused: list[Refus
             else:
                 counting.append(notebook)
                 taken |= names
-        found.append(Work(student, assignment, sorted(counting, key=lambda notebook: notebook.file), superseded))
+        found.append(
+            Work(
+                student,
+                assignment,
+                sorted(counting, key=lambda notebook: notebook.file),
+                superseded,
+            )
+        )
     return found
 
 
@@ -202,7 +233,8 @@ def grade(
     student : str, optional
         The one student who handed all of it in.
     dry_run : bool
-        Say whose each file is, and how many would be run; run nothing, and leave every record as it is.
+        Say whose each file is, and how many would be run; run nothing, and leave every record as it
+        is.
     workers : int, optional
         How many notebooks run at a time; as many as there are processors if it is not said.
     scheduler : str, optional
@@ -230,9 +262,14 @@ def grade(
 
     workers = processors() if workers is None else workers
     if workers < 1:
-        raise ValueError(f"At least one notebook is run at a time; the number of workers is {workers}.")
+        raise ValueError(
+            f"At least one notebook is run at a time; the number of workers is {workers}."
+        )
     if scheduler and importlib.util.find_spec("distributed") is None:
-        raise ValueError("To give notebooks to a cluster, install what speaks to it: python -m pip install distributed")
+        raise ValueError(
+            "To give notebooks to a cluster, install what speaks to it: python -m pip install "
+            "distributed"
+        )
     folder_of_keys = Path(keys) if keys else None
     if scheduler:
         demand_keys(scheduler, folder_of_keys)
@@ -245,16 +282,22 @@ def grade(
         course = Course(solutions, assignments)
         _demand_submissions(Path(submissions), course)
         try:
-            notebooks, refused = intake.take_in(submissions, course.assignments, people, student, store.folder)
+            notebooks, refused = intake.take_in(
+                submissions, course.assignments, people, student, store.folder
+            )
         except intake.Unfit as error:
             raise NothingToGrade(str(error)) from None
         if not notebooks and not refused:
-            raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
+            raise NothingToGrade(
+                f"There is nothing in {submissions}: no notebook, and no other file."
+            )
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, people, store, show)
         foreign = _say_foreign(work, course, show)
         _demand_a_class(work, people, student)
-        questions = course.questions(sorted({one.assignment for one in work}), store.folder / "questions")
+        questions = course.questions(
+            sorted({one.assignment for one in work}), store.folder / "questions"
+        )
         if not as_listed:
             _demand_own_numbers(work, questions, foreign, people)
         ledger = Ledger(store.folder)
@@ -263,17 +306,27 @@ def grade(
         if not dry_run:
             if people:
                 write(store.folder / ROSTER, as_text(sorted(people.people)))
-            write(store.folder / COURSE, as_text(dict(_assignments_kept(store), **course.assignments)))
+            write(
+                store.folder / COURSE, as_text(dict(_assignments_kept(store), **course.assignments))
+            )
             _take_in_decisions(ledger, store, show)
 
-        standing, contracts, policies = ledger.standing(), Contracts(store.folder), Policies.of(store.folder)
+        standing, contracts, policies = (
+            ledger.standing(),
+            Contracts(store.folder),
+            Policies.of(store.folder),
+        )
 
         def before(one: Work) -> Record | None:
-            """The record of the same student before, from which it is known which variants are whose."""
+            """The record of the same student before, from which it is known which variants are
+            whose.
+            """
             return store.read(one.student, one.assignment)
 
         def key(one: Work) -> str:
-            own, _ = marking.of_student(questions[one.assignment], one.student, before(one), contracts)
+            own, _ = marking.of_student(
+                questions[one.assignment], one.student, before(one), contracts
+            )
             asked = marking.asked_of_sandbox(marking.with_second_chances(own))
             return key_of(one, asked, limits, allow_weak_isolation)
 
@@ -282,12 +335,16 @@ def grade(
         for one in work:
             (kept if _is_done(store, one, key(one)) else waiting).append(one)
         print(
-            f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, {len(refused)} files refused.",
+            f"{len(work)} to grade, {len(work) - len(waiting)} of them graded before, "
+            f"{len(refused)} files refused.",
             file=show,
         )
         if dry_run:
             return {"graded": 0, "kept": len(kept), "refused": len(refused)}
-        store.log(f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on {platform.node()}")
+        store.log(
+            f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on "
+            f"{platform.node()}"
+        )
         jobs = _Jobs(waiting, questions, store, contracts, before)
         judge = closing.enter_context(Judge(questions, contracts, store.log))
 
@@ -299,7 +356,11 @@ def grade(
             of_student, cases = marking.of_student(asked, one.student, old, contracts)
             record = record_of(one, results, key(one), of_student, limits)
             # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
-            same = {name: mark for name, mark in old.marks.items() if _is_same(old, record, name)} if old else {}
+            same = (
+                {name: mark for name, mark in old.marks.items() if _is_same(old, record, name)}
+                if old
+                else {}
+            )
             record = replace(
                 record,
                 marks=same,
@@ -310,7 +371,16 @@ def grade(
 
         progress = _Progress(len(waiting), show)
         finished = (
-            _on_cluster(jobs, finish, workers, scheduler, folder_of_keys, limits, allow_weak_isolation, store)
+            _on_cluster(
+                jobs,
+                finish,
+                workers,
+                scheduler,
+                folder_of_keys,
+                limits,
+                allow_weak_isolation,
+                store,
+            )
             if scheduler
             else _here(jobs, finish, workers, limits, allow_weak_isolation, store)
         )
@@ -324,7 +394,10 @@ def grade(
             if again and again != found:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
-        strengths = dict(store.said(reports.STRENGTHS, by_name(text)) or {}, **_strengths(course.folder, questions))
+        strengths = dict(
+            store.said(reports.STRENGTHS, by_name(text)) or {},
+            **_strengths(course.folder, questions),
+        )
         write(store.folder / reports.STRENGTHS, as_text(strengths))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
@@ -337,15 +410,25 @@ def grade(
 
 
 def _demand_submissions(submissions: Path, course: Course) -> None:
-    """Refuse the folder of the course, or of results, where that of the students' work is asked for."""
+    """Refuse the folder of the course, or of results, where that of the students' work is asked
+    for.
+    """
     if course.folder.resolve().is_relative_to(submissions.resolve()):
-        raise NothingToGrade(f"{submissions} holds the notebooks with solutions: name the folder that was handed in.")
+        raise NothingToGrade(
+            f"{submissions} holds the notebooks with solutions: name the folder that was handed in."
+        )
     if (submissions / "records").is_dir() and (submissions / COURSE).is_file():
-        raise NothingToGrade(f"{submissions} holds results of grading: name the folder that was handed in.")
+        raise NothingToGrade(
+            f"{submissions} holds results of grading: name the folder that was handed in."
+        )
 
 
 def _say_whose(
-    work: Sequence[Work], refused: Sequence[Refused], roster: Roster | None, store: Store, show: TextIO
+    work: Sequence[Work],
+    refused: Sequence[Refused],
+    roster: Roster | None,
+    store: Store,
+    show: TextIO,
 ) -> None:
     """Say before anything is run whose each file is, and how that is known."""
 
@@ -354,13 +437,25 @@ def _say_whose(
             for notebook in (*one.notebooks, *one.superseded):
                 yield one.student, one.assignment, notebook.file, notebook.matched, notebook.says
 
-    write(store.folder / WHOSE, lines(("student", "assignment", "file", "known by", "says it is of"), rows()))
-    around = {one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks} - {""}
+    write(
+        store.folder / WHOSE,
+        lines(("student", "assignment", "file", "known by", "says it is of"), rows()),
+    )
+    around = {
+        one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks
+    } - {""}
     if len(around) == 1:
         (folder,) = around
-        print(f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's name.", file=show)
+        print(
+            f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for "
+            "nobody's name.",
+            file=show,
+        )
     for student, assignment, file, matched, _ in itertools.islice(rows(), MOST_SHOWN):
-        print(f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})", file=show)
+        print(
+            f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})",
+            file=show,
+        )
     more = sum(len(one.notebooks) + len(one.superseded) for one in work) - MOST_SHOWN
     if more > 0:
         print(f"  ... and {more} more: {store.folder / WHOSE}", file=show)
@@ -368,16 +463,23 @@ def _say_whose(
     for one in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
     if roster:
-        damaged = {one.student for one in refused} & set(roster.people) - {one.student for one in work}
+        damaged = {one.student for one in refused} & set(roster.people) - {
+            one.student for one in work
+        }
         missing = sorted(set(roster.people) - {one.student for one in work} - damaged)
-        for names, what in ((missing, "handed in nothing"), (sorted(damaged), "handed in what cannot be graded")):
+        for names, what in (
+            (missing, "handed in nothing"),
+            (sorted(damaged), "handed in what cannot be graded"),
+        ):
             if names:
                 shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
                 print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
 
 
 def _say_foreign(work: Sequence[Work], course: Course, show: TextIO) -> list[Foreign]:
-    """Say which notebooks say that they are of somebody else than whose they are graded as; give these."""
+    """Say which notebooks say that they are of somebody else than whose they are graded as; give
+    these.
+    """
     foreign = [
         (one, notebook)
         for one in work
@@ -386,7 +488,8 @@ def _say_foreign(work: Sequence[Work], course: Course, show: TextIO) -> list[For
     ]
     for one, notebook in foreign[:MOST_SHOWN]:
         print(
-            f"  ! {in_a_line(notebook.file, 120)} says that it is of {in_a_line(notebook.says, 60)!r}, and is graded "
+            f"  ! {in_a_line(notebook.file, 120)} says that it is of "
+            f"{in_a_line(notebook.says, 60)!r}, and is graded "
             f"as that of {in_a_line(one.student, 60)!r}",
             file=show,
         )
@@ -400,67 +503,109 @@ FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
 
 
 def _demand_own_numbers(
-    work: Sequence[Work], questions: Mapping[str, Questions], foreign: Sequence[Foreign], roster: Roster | None
+    work: Sequence[Work],
+    questions: Mapping[str, Questions],
+    foreign: Sequence[Foreign],
+    roster: Roster | None,
 ) -> None:
-    """Numbers follow from who one is: where many say to be somebody else, all would be judged by wrong numbers."""
-    varied = {name for name, asked in questions.items() if any(len(variants) > 1 for variants in asked.values())}
-    saying = sum(bool(notebook.says) for one in work if one.assignment in varied for notebook in one.notebooks)
+    """Numbers follow from who one is: where many say to be somebody else, all would be judged by
+    wrong numbers.
+    """
+    varied = {
+        name
+        for name, asked in questions.items()
+        if any(len(variants) > 1 for variants in asked.values())
+    }
+    saying = sum(
+        bool(notebook.says)
+        for one in work
+        if one.assignment in varied
+        for notebook in one.notebooks
+    )
     wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
     if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
         return
     (one, notebook), *_ = wrong
     why = (
-        "The roster knows them by another word than they wrote: of `student`, `email` and `name` the first column that "
+        "The roster knows them by another word than they wrote: of `student`, `email` and `name` "
+        "the first column that "
         "it has is the one that their numbers follow from."
         if roster
         else "Give the --roster in which they are called as they wrote, or name their folders so."
     )
     raise NothingToGrade(
-        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else than they are graded "
-        f"as: {notebook.says!r} as {one.student!r}, say. Each student's numbers follow from that word, so their "
-        f"answers would be judged by other numbers than they were given. {why} If all of it is right as it is listed: "
+        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else "
+        "than they are graded "
+        f"as: {notebook.says!r} as {one.student!r}, say. Each student's numbers follow from that "
+        "word, so their "
+        f"answers would be judged by other numbers than they were given. {why} If all of it is "
+        "right as it is listed: "
         "--as-listed."
     )
 
 
-#: From this share of the answers to questions with variants on, right answers to other numbers are no accident.
+#: From this share of the answers to questions with variants on, right answers to other numbers are
+#: no accident.
 MANY_OTHER_NUMBERS = 0.1
 
 
-def _say_other_numbers(store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO) -> None:
-    """Say it where many answers are right for other numbers than those that their authors are believed to have had."""
+def _say_other_numbers(
+    store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO
+) -> None:
+    """Say it where many answers are right for other numbers than those that their authors are
+    believed to have had.
+    """
     for assignment, asked in questions.items():
         varied = {name for name, variants in asked.items() if len(variants) > 1}
         given = other = 0
         for one in work:
-            record = store.read(one.student, assignment) if varied and one.assignment == assignment else None
+            record = (
+                store.read(one.student, assignment)
+                if varied and one.assignment == assignment
+                else None
+            )
             for name, mark in record.marks.items() if record else ():
                 given += name in varied and mark.outcome != "not attempted"
                 other += mark.note == "other numbers"
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
-                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for other numbers than "
-                "those of the student whose they are, and earn nothing. Are the students called here as they have "
-                "written into their notebooks? If not, grade again with the right --roster: nothing is lost.",
+                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
+                "other numbers than "
+                "those of the student whose they are, and earn nothing. Are the students called "
+                "here as they have "
+                "written into their notebooks? If not, grade again with the right --roster: "
+                "nothing is lost.",
                 file=show,
             )
 
 
 def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
-    """Everything from one student is a question, not a result: a folder around it may have been taken for one."""
+    """Everything from one student is a question, not a result: a folder around it may have been
+    taken for one.
+    """
     students = {one.student for one in work}
-    doubtful = [notebook for one in work for notebook in one.superseded if not notebook.claim.given_by_system]
+    doubtful = [
+        notebook
+        for one in work
+        for notebook in one.superseded
+        if not notebook.claim.given_by_system
+    ]
     if len(students) == 1 and doubtful and roster is None and student is None:
         (only,) = students
         raise NothingToGrade(
-            f"The notebooks would all be of one student, {only!r}, and all but the newest would not count. If that is "
-            f"so, say --student {only!r}; if not, name the folder in which each student has one of their own, or "
+            f"The notebooks would all be of one student, {only!r}, and all but the newest would "
+            "not count. If that is "
+            f"so, say --student {only!r}; if not, name the folder in which each student has one of "
+            "their own, or "
             "give a --roster."
         )
 
 
-def _put_renamed_aside(store: Store, work: Sequence[Work], ledger: Ledger, dry_run: bool = False) -> Iterator[str]:
-    """Move the record of a student away whose very notebooks are now another's: the folder was renamed.
+def _put_renamed_aside(
+    store: Store, work: Sequence[Work], ledger: Ledger, dry_run: bool = False
+) -> Iterator[str]:
+    """Move the record of a student away whose very notebooks are now another's: the folder was
+    renamed.
 
     What people decided on the answers is entered for the new name too.
     """
@@ -479,8 +624,13 @@ def _put_renamed_aside(store: Store, work: Sequence[Work], ledger: Ledger, dry_r
             owners.setdefault((one.assignment, digests), []).append(one)
     for student, assignment, files in absent:
         fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
-        # Of equal notebooks, those that lie where they lay: then a roster has given the student another name.
-        there = [one for one in fitting if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}]
+        # Of equal notebooks, those that lie where they lay: then a roster has given the student
+        # another name.
+        there = [
+            one
+            for one in fitting
+            if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}
+        ]
         names = [one.student for one in there or fitting]
         if names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
@@ -508,7 +658,9 @@ def _take_in_decisions(ledger: Ledger, store: Store, show: TextIO) -> None:
 
 
 def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
-    """What waits for people beside undecided answers: appeals, and decisions on what has changed since."""
+    """What waits for people beside undecided answers: appeals, and decisions on what has changed
+    since.
+    """
     appeals: list[str] = []
     changed: list[str] = []
     contracts = Contracts(store.folder)
@@ -522,31 +674,51 @@ def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
         (appeals, ("appeal is open", "appeals are open"), "with an open appeal"),
         (
             changed,
-            ("decision is on an answer or a question that has", "decisions are on answers or questions that have"),
+            (
+                "decision is on an answer or a question that has",
+                "decisions are on answers or questions that have",
+            ),
             "decided, and changed since",
         ),
     ):
         if names:
             since = " changed since" if names is changed else ""
-            whose = ", ".join(in_a_line(name, 60) for name in list(dict.fromkeys(names))[:MOST_SHOWN])
-            yield f"{len(names)} {what[len(names) > 1]}{since} ({whose}): `coursework review` shows them as {shown!r}."
+            whose = ", ".join(
+                in_a_line(name, 60) for name in list(dict.fromkeys(names))[:MOST_SHOWN]
+            )
+            yield (
+                f"{len(names)} {what[len(names) > 1]}{since} ({whose}): `coursework review` shows "
+                f"them as {shown!r}."
+            )
 
 
 def _strengths(folder: Path, questions: Mapping[str, Questions]) -> dict[str, str]:
-    """What the author's attack says of the points of each assignment; nothing of one that was not attacked."""
+    """What the author's attack says of the points of each assignment; nothing of one that was not
+    attacked.
+    """
     measured = measured_questions(folder)
-    of_each = {name: {one: measured[one] for one in asked if one in measured} for name, asked in questions.items()}
+    of_each = {
+        name: {one: measured[one] for one in asked if one in measured}
+        for name, asked in questions.items()
+    }
     return {name: f"{said_beyond(found)}." for name, found in of_each.items() if found}
 
 
-def _say_guessable(questions: Mapping[str, Questions], strengths: Mapping[str, str], show: TextIO) -> None:
-    """Say which points a script could have guessed: whoever tries answers in the check earns them."""
+def _say_guessable(
+    questions: Mapping[str, Questions], strengths: Mapping[str, str], show: TextIO
+) -> None:
+    """Say which points a script could have guessed: whoever tries answers in the check earns
+    them.
+    """
     for assignment, asked in questions.items():
         if assignment in strengths:
             print(f"{assignment}: {strengths[assignment]}", file=show)
         cheap = {name: first for name, (first, *_) in asked.items() if first.guessable is not None}
         if cheap:
-            tries = ", ".join(f"{name} after {contract.guessable} tries" for name, contract in sorted(cheap.items()))
+            tries = ", ".join(
+                f"{name} after {contract.guessable} tries"
+                for name, contract in sorted(cheap.items())
+            )
             print(f"{assignment}: the others were guessed ({tries}).", file=show)
 
 
@@ -571,14 +743,20 @@ def _is_same(record: Record, other: Record, name: str) -> bool:
 
 
 def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) -> str:
-    """What of a record depends on running the work, as one short text; it is judged again without that.
+    """What of a record depends on running the work, as one short text; it is judged again without
+    that.
 
-    ``asked`` is what the sandbox is told of the questions: with a call that was mended just those are run again.
+    ``asked`` is what the sandbox is told of the questions: with a call that was mended just those
+    are run again.
     """
     depends = [
         FORMAT,
         [
-            [notebook.digest, notebook.handed_in, [[one.name, one.digest] for one in notebook.beside]]
+            [
+                notebook.digest,
+                notebook.handed_in,
+                [[one.name, one.digest] for one in notebook.beside],
+            ]
             for notebook in work.notebooks
         ],
         [notebook.digest for notebook in work.superseded],
@@ -592,7 +770,9 @@ def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) ->
 
 
 def reply_of(work: Work) -> str:
-    """How the name of a page begins that goes back to the student: what the system wrote of the newest notebook."""
+    """How the name of a page begins that goes back to the student: what the system wrote of the
+    newest notebook.
+    """
     return max((*work.notebooks, *work.superseded), key=_by_age).claim.reply
 
 
@@ -624,9 +804,13 @@ class _Jobs:
         """The jobs of one student's work."""
         one = self.work[order]
         named = {name for notebook in one.notebooks for name in notebook.named}
-        own, _ = marking.of_student(self.questions[one.assignment], one.student, self.before(one), self.contracts)
+        own, _ = marking.of_student(
+            self.questions[one.assignment], one.student, self.before(one), self.contracts
+        )
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
-        for_a_person = any(kinds()[asked.contract.question.kind].by_a_person for asked in own.values())
+        for_a_person = any(
+            kinds()[asked.contract.question.kind].by_a_person for asked in own.values()
+        )
         for part, notebook in enumerate(one.notebooks):
             cells = notebook.cells
             self.store.keep_work(notebook.digest, [cell["source"] for cell in cells])
@@ -658,21 +842,32 @@ MARKING_ENDED = "The process that ran and judged it ended again and again."
 
 
 def _here(
-    jobs: _Jobs, finish: Finish, workers: int, limits: Limits, allow_weak_isolation: bool, store: Store
+    jobs: _Jobs,
+    finish: Finish,
+    workers: int,
+    limits: Limits,
+    allow_weak_isolation: bool,
+    store: Store,
 ) -> Iterator[Finished]:
-    """Run and judge on this machine: each process has a sandbox, and does one student's work after another."""
+    """Run and judge on this machine: each process has a sandbox, and does one student's work after
+    another.
+    """
     from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
 
     first = None
 
     def prepare(stack: contextlib.ExitStack) -> Callable[[int], Finished]:
         store.in_copy_of_process()
-        sandbox = stack.enter_context(Sandbox(limits, allow_weak_isolation=allow_weak_isolation, like=first))
+        sandbox = stack.enter_context(
+            Sandbox(limits, allow_weak_isolation=allow_weak_isolation, like=first)
+        )
 
         def run(job: Job) -> Result:
             try:
                 return sandbox.run(job)
-            except WorkerDied as error:  # it costs only the notebook under which the sandbox dies again and again
+            except (
+                WorkerDied
+            ) as error:  # it costs only the notebook under which the sandbox dies again and again
                 return given_up(job, str(error))
 
         return lambda order: finish(order, [run(job) for job in jobs.of(order)])
@@ -711,7 +906,9 @@ def _on_cluster(
         # Not before the processes are there, which are to have no part in the connection.
         if jobs.work:
             yield from jobs.whole(
-                run_on_cluster(jobs, scheduler, limits, keys=keys, allow_weak_isolation=allow_weak_isolation)
+                run_on_cluster(
+                    jobs, scheduler, limits, keys=keys, allow_weak_isolation=allow_weak_isolation
+                )
             )
 
     def lost(task: tuple[int, list[Result]]) -> Finished:
@@ -724,7 +921,12 @@ def record_of(
     work: Work, results: Sequence[Result], key: str, questions: Mapping[str, Asked], limits: Limits
 ) -> Record:
     """The record of a student's work, before it is judged."""
-    ran, given = zip(*(read_result(result, one.file) for result, one in zip(results, work.notebooks, strict=True)))
+    ran, given = zip(
+        *(
+            read_result(result, one.file)
+            for result, one in zip(results, work.notebooks, strict=True)
+        )
+    )
     known = marking.with_second_chances(questions)
     answers = {}
     for name in given[0]:
@@ -766,10 +968,16 @@ def _says_little(answer: Answer) -> int:
     return 4 if answer.outcome == "missing" else 2
 
 
-def marked(record: Record, judge: Judge, standing: Standing | None = None, policies: Policies | None = None) -> Record:
-    """A record with the verdicts on its answers; what a person decided on an answer stands above them."""
+def marked(
+    record: Record, judge: Judge, standing: Standing | None = None, policies: Policies | None = None
+) -> Record:
+    """A record with the verdicts on its answers; what a person decided on an answer stands above
+    them.
+    """
     questions = judge.questions[record.assignment]
-    own, cases = marking.of_student(judge.questions[record.assignment], record.student, record, judge.contracts)
+    own, cases = marking.of_student(
+        judge.questions[record.assignment], record.student, record, judge.contracts
+    )
     for asked in own.values():
         for one in (asked.contract, asked.before, *asked.second_chances.values()):
             if one is not None:
@@ -779,11 +987,15 @@ def marked(record: Record, judge: Judge, standing: Standing | None = None, polic
     for name, asked in own.items():
         before = record.marks.get(name)
         taken_out = cases[name].own.variant not in variants_of(questions[name])
-        mark = (policies or Policies()).applied(name, found[name], before and before.judged, cases[name], taken_out)
+        mark = (policies or Policies()).applied(
+            name, found[name], before and before.judged, cases[name], taken_out
+        )
         # What the lines of a rubric are worth, where its author said so.
         rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
         marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
-    return with_decisions(replace(record, format=FORMAT, cases=cases, marks=marks), standing or Standing())
+    return with_decisions(
+        replace(record, format=FORMAT, cases=cases, marks=marks), standing or Standing()
+    )
 
 
 class _Progress:
@@ -805,7 +1017,8 @@ class _Progress:
         now = time.monotonic()
         on_screen = self.show.isatty()
         if self.done == 1:
-            # What comes before the first is the start of the sandboxes, which takes no longer for more.
+            # What comes before the first is the start of the sandboxes, which takes no longer for
+            # more.
             self.first = self.last = now
         if self.done == self.total or now - self.last > (0.2 if on_screen else 10):
             self.last = now
@@ -858,7 +1071,8 @@ def regrade(
     list of Moved
         For a dry run a :class:`Laboratory`.
 
-    Nothing is run. A question that was added since has no answers in the records; grade again for that.
+    Nothing is run. A question that was added since has no answers in the records; grade again for
+    that.
     """
     from .reporting import reports
 
@@ -872,7 +1086,8 @@ def regrade(
         unknown = sorted(set(names) - set(known))
         if unknown:
             raise NothingToGrade(
-                f"{store.folder / COURSE} does not say which notebooks make up {', '.join(map(repr, unknown))}; "
+                f"{store.folder / COURSE} does not say which notebooks make up "
+                f"{', '.join(map(repr, unknown))}; "
                 "grade again with --assignment."
             )
         course = Course(solutions, {name: known[name] for name in names})

@@ -1,6 +1,8 @@
-"""The record of one student's work on one assignment, as it is stored: what was handed in, asked, answered and marked.
+"""The record of one student's work on one assignment, as it is stored: what was handed in, asked,
+answered and marked.
 
-JSON calls a field as Python does, with spaces for underscores. A record of an earlier format lacks what came later.
+JSON calls a field as Python does, with spaces for underscores. A record of an earlier format lacks
+what came later.
 """
 
 from __future__ import annotations
@@ -24,8 +26,13 @@ from ..checking.fields import (
 from ..checking.plain import Plain
 
 FORMAT = 3
-#: How a case came to be known: by the rule when the work was graded, or later from a record that did not hold it.
-AS_GRADED, FROM_THE_VERSION, BY_THE_RULE = "as graded", "from the version in an older record", "by the rule of today"
+#: How a case came to be known: by the rule when the work was graded, or later from a record that
+#: did not hold it.
+AS_GRADED, FROM_THE_VERSION, BY_THE_RULE = (
+    "as graded",
+    "from the version in an older record",
+    "by the rule of today",
+)
 
 
 @dataclass(frozen=True)
@@ -46,8 +53,8 @@ class Answer:
     cell : int or None
         The number of the cell that gave it.
     secret : mapping or None
-        What a function gave for arguments that no student knows: ``"plain"`` or ``"unreadable"``, and the digest of its
-        ``"calls"``.
+        What a function gave for arguments that no student knows: ``"plain"`` or ``"unreadable"``,
+        and the digest of its ``"calls"``.
     more : mapping
         What else is known of how it was stopped.
     """
@@ -64,14 +71,20 @@ class Answer:
     @property
     def is_blank(self) -> bool:
         """Whether what was answered is the blank that the exercise came with."""
-        return self.outcome == "recorded" and self.plain is not None and self.plain["value"] == ["blank"]
+        return (
+            self.outcome == "recorded"
+            and self.plain is not None
+            and self.plain["value"] == ["blank"]
+        )
 
     @classmethod
     def from_json(cls, found: object, where: str = "an answer") -> Answer:
         about = Fields(found, where)
         return cls(
             about.get("outcome", text),
-            cast("Plain | None", about.maybe("plain", anything)),  # read_plain looks at it where it is judged
+            cast(
+                "Plain | None", about.maybe("plain", anything)
+            ),  # read_plain looks at it where it is judged
             about.maybe("why", text),
             about.maybe("error", text),
             about.maybe("from", text),
@@ -101,7 +114,8 @@ class Remembered:
     tried : tuple of str
         A few digits of each that was wrong.
     help : str
-        The help that was had before it was right, a key of :data:`coursework.checking.reply.HELP`; or nothing.
+        The help that was had before it was right, a key of :data:`coursework.checking.reply.HELP`;
+        or nothing.
     """
 
     tries: int = 0
@@ -112,7 +126,9 @@ class Remembered:
     def from_json(cls, found: object, where: str) -> Remembered:
         about = Fields(found, where)
         return cls(
-            about.maybe("tries", whole) or 0, about.maybe("tried", many(text)) or (), about.maybe("help", text) or ""
+            about.maybe("tries", whole) or 0,
+            about.maybe("tried", many(text)) or (),
+            about.maybe("help", text) or "",
         )
 
     def as_json(self) -> dict[str, Json]:
@@ -146,7 +162,8 @@ class Case:
     siblings : mapping of str to Place
         The other variants that may make good for help, by the names of the siblings.
     rule : str
-        How the variant was found: ``"number 3 of 8"``, ``"by name, of 8"``, or empty where there is only one.
+        How the variant was found: ``"number 3 of 8"``, ``"by name, of 8"``, or empty where there is
+        only one.
     edition : str
         Of the course: another one draws afresh.
     known : str
@@ -218,7 +235,8 @@ class Mark:
     Attributes
     ----------
     outcome : str
-        ``"correct"``, ``"wrong"``, ``"invalid"``, ``"undecided"``, ``"not attempted"`` or ``"decided"``.
+        ``"correct"``, ``"wrong"``, ``"invalid"``, ``"undecided"``, ``"not attempted"`` or
+        ``"decided"``.
     note : str
         The mistake, or the fault of the form, in a few words; empty where there is none.
     details : mapping
@@ -296,7 +314,9 @@ class Mark:
     def as_json(self) -> dict[str, Json]:
         """What :meth:`from_json` reads."""
         found: dict[str, Json] = {
-            name: written(value) for name, value in vars(self).items() if name not in OF_SOME_MARKS or value
+            name: written(value)
+            for name, value in vars(self).items()
+            if name not in OF_SOME_MARKS or value
         }
         return found | ({"before": self.before.as_json()} if self.before else {})
 
@@ -332,9 +352,10 @@ class Cell:
 
     def as_json(self) -> dict[str, Json]:
         found: dict[str, Json] = {"error": self.error, "line": self.line}
-        return {"outcome": self.outcome, **{name: value for name, value in found.items() if value is not None}} | dict(
-            self.more
-        )
+        return {
+            "outcome": self.outcome,
+            **{name: value for name, value in found.items() if value is not None},
+        } | dict(self.more)
 
 
 @dataclass(frozen=True)
@@ -439,7 +460,10 @@ class RunNotebook:
 
     def as_json(self) -> dict[str, Json]:
         found = {name.replace("_", " "): written(value) for name, value in vars(self).items()}
-        return found | {"cells": [cell.as_json() for cell in self.cells], "isolation": self.isolation.as_json()}
+        return found | {
+            "cells": [cell.as_json() for cell in self.cells],
+            "isolation": self.isolation.as_json(),
+        }
 
 
 @dataclass(frozen=True)
@@ -557,7 +581,8 @@ class Record:
         format = about.maybe("format", whole) or 1
         if format > FORMAT:
             raise ValueError(
-                f"{where} is of format {format}, and this coursework reads formats up to {FORMAT}: a later one made "
+                f"{where} is of format {format}, and this coursework reads formats up to {FORMAT}: "
+                "a later one made "
                 "it. Install that one."
             )
         finished = about.maybe("finished", truth)

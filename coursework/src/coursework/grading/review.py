@@ -1,9 +1,10 @@
 """A page to judge in: answer by answer, or all equal answers at once; on this machine only.
 
-It is made from the records, and what is decided goes into the ledger (:mod:`coursework.grading.judging.ledger`);
-nothing is uploaded. Whoever knows the address may decide, so it holds a secret, and a request that another page or
-another name for this machine sent is refused. What a student wrote is shown as text and mathematics; a policy forbids
-the browser to run, load or send anything that is in it.
+It is made from the records, and what is decided goes into the ledger
+(:mod:`coursework.grading.judging.ledger`); nothing is uploaded. Whoever knows the address may
+decide, so it holds a secret, and a request that another page or another name for this machine sent
+is refused. What a student wrote is shown as text and mathematics; a policy forbids the browser to
+run, load or send anything that is in it.
 """
 
 import hashlib
@@ -52,13 +53,15 @@ from .tables import number, readable
 
 ALONE = "127.0.0.1"
 POLICY = (
-    "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; "
+    "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; "
+    "base-uri 'none'; "
     "frame-ancestors 'none'; require-trusted-types-for 'script'"
 )
 HEADERS = {
     "Content-Security-Policy": POLICY,
     "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "same-origin",  # with none at all, a browser hides the origin of the own form, too
+    # with none at all, a browser hides the origin of the own form, too
+    "Referrer-Policy": "same-origin",
     "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
 }
@@ -130,39 +133,54 @@ class Class:
         self.questions = {
             name: about
             for path in sorted(
-                (self.store.folder / "questions").glob("*.json"), key=lambda path: path.stat().st_mtime_ns
+                (self.store.folder / "questions").glob("*.json"),
+                key=lambda path: path.stat().st_mtime_ns,
             )
             for name, (about, *_) in questions_in(path).items()
         }
         self.contracts = Contracts(self.store.folder)
         self.records = list(self.store.all())
-        self.aliases = {student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)}
+        self.aliases = {
+            student: f"student {order}" for order, student in enumerate(self._shuffled(), 1)
+        }
         self._know_names()
         hints = hints_of(self.records, self.store.work)
         groups: defaultdict[tuple[str, ...], list[Record]] = defaultdict(list)
         for record in self.records:
             for question, mark in record.marks.items():
                 judged = mark.judged
-                # An answer that has a fingerprint is equal to those that share it; another one to its very copies.
+                # An answer that has a fingerprint is equal to those that share it; another one to
+                # its very copies.
                 same = mark.group or digest_of_answer(record, question)
-                # Equal words to other numbers are another answer: each variant has a right answer of its own.
-                groups[record.assignment, question, mark.version, judged.outcome, judged.note, same].append(record)
+                # Equal words to other numbers are another answer: each variant has a right answer
+                # of its own.
+                groups[
+                    record.assignment, question, mark.version, judged.outcome, judged.note, same
+                ].append(record)
         self.clusters = {}
         for key, members in groups.items():
             name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
             if int(name, 16) % share[1] == share[0] - 1:
-                found = [(one.student, said) for one in members for said in hints.get((one.student, key[1]), ())]
+                found = [
+                    (one.student, said)
+                    for one in members
+                    for said in hints.get((one.student, key[1]), ())
+                ]
                 self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
     def contract(self, cluster: Cluster) -> Contract | None:
-        """The question by which the answers of a cluster were judged: these students' own variant; or nothing."""
+        """The question by which the answers of a cluster were judged: these students' own variant;
+        or nothing.
+        """
         return self.contracts.of(cluster.mark.version)
 
     def without_names(self, text: str) -> str:
         """A text in which who wrote it, and everybody else in the class, is called by a number."""
         if not text:
             return text
-        said = SAYS.sub(lambda found: found[0].replace(found["who"], self._alias(found["who"])), text)
+        said = SAYS.sub(
+            lambda found: found[0].replace(found["who"], self._alias(found["who"])), text
+        )
         return self._names.sub(lambda found: self._alias(found[0]), said)
 
     def _alias(self, name: str) -> str:
@@ -175,7 +193,10 @@ class Class:
         for record in self.records:
             called = record.identity.called
             email = called.get("email", "")
-            names = [record.student, *(called.get(kind, "") for kind in ("name", "canvas", "moodle"))]
+            names = [
+                record.student,
+                *(called.get(kind, "") for kind in ("name", "canvas", "moodle")),
+            ]
             names += [email, email.partition("@")[0], *(record.identity.own or ()), *record.says]
             for name in names:
                 if len(name) >= SHORTEST_NAME:
@@ -187,7 +208,9 @@ class Class:
 
         def any_of(names: Iterable[str]) -> str:
             longest_first = sorted(names, key=len, reverse=True)
-            return "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first) or "(?!)"
+            return (
+                "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first) or "(?!)"
+            )
 
         self._names = re.compile(rf"(?<!\w)(?:(?i:{any_of(self._known)})|{any_of(parts)})(?!\w)")
         for part, alias in parts.items():
@@ -196,7 +219,9 @@ class Class:
     def _shuffled(self) -> list[str]:
         """The students in an order that follows from their names, and does not tell them."""
         students = {record.student for record in self.records}
-        return sorted(students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest())
+        return sorted(
+            students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest()
+        )
 
     def read(self) -> None:
         """Read what was decided in the meantime."""
@@ -205,7 +230,11 @@ class Class:
 
     def outcome(self, cluster: Cluster) -> tuple[str, list[str]]:
         """What counts for a cluster now, and who decided: decided only if all of it is."""
-        decided = [one for each in cluster.members if (one := self.standing.decision(each, cluster.question))]
+        decided = [
+            one
+            for each in cluster.members
+            if (one := self.standing.decision(each, cluster.question))
+        ]
         if len(decided) == len(cluster.members):
             return "decided", sorted({one.who for one in decided})
         return cluster.mark.judged.outcome, []
@@ -235,16 +264,28 @@ class Class:
     def is_shown(self, cluster: Cluster, what: str) -> bool:
         if what in ("appeals", "earlier"):
             if what == "appeals":
-                return any(one.is_open for record in cluster.members for one in self.appeals(cluster, record))
+                return any(
+                    one.is_open
+                    for record in cluster.members
+                    for one in self.appeals(cluster, record)
+                )
             return any(self.earlier(cluster, record) for record in cluster.members)
         if what == "waiting":
             return self.waits(cluster) > 0
-        return what in ("all", self.outcome(cluster)[0]) or (what == "hints" and bool(cluster.hints))
+        return what in ("all", self.outcome(cluster)[0]) or (
+            what == "hints" and bool(cluster.hints)
+        )
 
-    def lines(self, cluster: Cluster, record: Record) -> list[tuple[str, float | None, float | None, int]]:
-        """The lines of the rubric of a question: what each is worth now, what the source says, how many used it."""
+    def lines(
+        self, cluster: Cluster, record: Record
+    ) -> list[tuple[str, float | None, float | None, int]]:
+        """The lines of the rubric of a question: what each is worth now, what the source says, how
+        many used it.
+        """
         source = record.marks[cluster.question].rubric or {}
-        found = dict.fromkeys(self.questions[cluster.question].rubric if cluster.question in self.questions else ())
+        found = dict.fromkeys(
+            self.questions[cluster.question].rubric if cluster.question in self.questions else ()
+        )
         found |= dict.fromkeys(source)
         used: Counter[str] = Counter()
         for one in self.ledger.decisions:
@@ -253,9 +294,16 @@ class Class:
         for one in self.standing.decisions.values():
             if one.question == cluster.question:
                 used.update(set(one.rubric))
-        found |= {line: None for question, line in self.standing.worths if question == cluster.question}
+        found |= {
+            line: None for question, line in self.standing.worths if question == cluster.question
+        }
         return [
-            (line, self.standing.worth(cluster.question, line, source.get(line)), source.get(line), used[line])
+            (
+                line,
+                self.standing.worth(cluster.question, line, source.get(line)),
+                source.get(line),
+                used[line],
+            )
             for line in found
         ]
 
@@ -272,23 +320,39 @@ class Class:
             if text and text not in self.searchable(cluster, hide_names):
                 continue
             found.append(cluster)
-        return sorted(found, key=lambda one: (one.assignment, orders.get(one.question, 0), -len(one.members), one.id))
+        return sorted(
+            found,
+            key=lambda one: (
+                one.assignment,
+                orders.get(one.question, 0),
+                -len(one.members),
+                one.id,
+            ),
+        )
 
     def searchable(self, cluster: Cluster, hide_names: bool = False) -> str:
         names = self.aliases if hide_names else {}
         students = " ".join(names.get(record.student, record.student) for record in cluster.members)
         said = " ".join(cluster.mark.messages)
         answer = pages.answer_as_text(cluster.answer.plain, 2_000)
-        return f"{students} {cluster.question} {cluster.mark.title} {cluster.mark.note} {said} {answer}".casefold()
+        return (
+            f"{students} {cluster.question} {cluster.mark.title} {cluster.mark.note} {said} "
+            f"{answer}"
+        ).casefold()
 
-    def cells(self, cluster: Cluster, record: Record) -> tuple[Sequence[str], list[int], dict[int, tuple[str, ...]]]:
-        """The code of one student's notebook, which of its cells come first, and the pictures that it keeps.
+    def cells(
+        self, cluster: Cluster, record: Record
+    ) -> tuple[Sequence[str], list[int], dict[int, tuple[str, ...]]]:
+        """The code of one student's notebook, which of its cells come first, and the pictures that
+        it keeps.
 
-        First come the cell of the answer and those above it, up to the check of another; of several notebooks the one
-        in which it is asked.
+        First come the cell of the answer and those above it, up to the check of another; of several
+        notebooks the one in which it is asked.
         """
         cell = record.answer(cluster.question).cell
-        kept = [(notebook.sha256, self.store.work(notebook.sha256)) for notebook in record.notebooks]
+        kept = [
+            (notebook.sha256, self.store.work(notebook.sha256)) for notebook in record.notebooks
+        ]
         kept = [(digest, cells) for digest, cells in kept if cells]
         kept.sort(key=lambda one: not any(cluster.question in source for source in one[1]))
         for digest, cells in kept:
@@ -304,8 +368,8 @@ class Class:
 def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
     """What a person may want to look at, by student and question; never a mark.
 
-    Equal unusual wrong answers, also among those that were tried on the way, equal code that few share, and what a
-    notebook tried that no exercise needs.
+    Equal unusual wrong answers, also among those that were tried on the way, equal code that few
+    share, and what a notebook tried that no exercise needs.
     """
     found: Hints = defaultdict(list)
     students = len({record.student for record in records})
@@ -333,13 +397,19 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
     for (question, _), same in wrong.items():
         if 2 <= len(same) <= few:
             for one in same:
-                shared = max(together[min(one, other), max(one, other)] for other in same if other != one)
+                shared = max(
+                    together[min(one, other), max(one, other)] for other in same if other != one
+                )
                 again = f", and {shared} such answers in all" if shared > 1 else ""
-                found[one, question].append(f"the same unusual wrong answer as {len(same) - 1} other{again}")
+                found[one, question].append(
+                    f"the same unusual wrong answer as {len(same) - 1} other{again}"
+                )
     for (question, _), same in code.items():
         if 2 <= len(same) <= few:
             for one in same:
-                found[one, question].append(f"the same code, sign by sign, as {len(same) - 1} other")
+                found[one, question].append(
+                    f"the same code, sign by sign, as {len(same) - 1} other"
+                )
     _note_shared_tries(found, {key: same for key, same in tried.items() if 2 <= len(same) <= few})
     for record in records:
         for said in dict.fromkeys(said for notebook in record.notebooks for said in notebook.tried):
@@ -349,7 +419,9 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
 
 
 def _note_shared_tries(found: Hints, tried: Mapping[tuple[str, str], set[str]]) -> None:
-    """Note who tried the same wrong answers as one other, if they were several: one may be chance."""
+    """Note who tried the same wrong answers as one other, if they were several: one may be
+    chance.
+    """
     together: Counter[tuple[str, str]] = Counter()
     where: defaultdict[tuple[str, str], set[str]] = defaultdict(set)
     for (question, _), same in tried.items():
@@ -360,7 +432,9 @@ def _note_shared_tries(found: Hints, tried: Mapping[tuple[str, str], set[str]]) 
     for (one, other), many in together.items():
         if many > 1:
             for question in sorted(where[one, other]):
-                said = f"{many} unusual wrong answers were tried on the way that one other tried, too"
+                said = (
+                    f"{many} unusual wrong answers were tried on the way that one other tried, too"
+                )
                 if said not in found[one, question]:
                     found[one, question].append(said)
 
@@ -389,7 +463,10 @@ class _Page(web.RequestHandler):
         if not hmac.compare_digest(self.path_args[0].encode(), settings["secret"].encode()):
             raise web.HTTPError(404)
         if self.request.method != "GET":
-            origin, site = self.request.headers.get("Origin"), self.request.headers.get("Sec-Fetch-Site")
+            origin, site = (
+                self.request.headers.get("Origin"),
+                self.request.headers.get("Sec-Fetch-Site"),
+            )
             if origin not in settings["origins"] or site not in (None, "same-origin"):
                 raise web.HTTPError(403, "another page")
 
@@ -420,7 +497,9 @@ class _Page(web.RequestHandler):
                 shown=SHOWN,
                 name_of=name_of,
                 hidden=self.graded.without_names if names else lambda text: text,
-                query=lambda **changed: urlencode({key: value for key, value in changed.items() if value}),
+                query=lambda **changed: urlencode(
+                    {key: value for key, value in changed.items() if value}
+                ),
                 **about,
             )
         )
@@ -432,7 +511,9 @@ class _Overview(_Page):
         graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
-        guessable = {name: about for name, about in graded.questions.items() if about.guessable is not None}
+        guessable = {
+            name: about for name, about in graded.questions.items() if about.guessable is not None
+        }
         clusters = graded.clusters.values()
         self.show(
             "overview.html",
@@ -456,7 +537,9 @@ class _Answer(_Page):
             raise web.HTTPError(404)
         self.show_cluster(cluster, self.filters())
 
-    def show_cluster(self, cluster: Cluster, filters: Mapping[str, str], collision: Collision | None = None) -> None:
+    def show_cluster(
+        self, cluster: Cluster, filters: Mapping[str, str], collision: Collision | None = None
+    ) -> None:
         """Show an answer; after a collision with everything that was typed."""
         graded, name = self.graded, cluster.id
         graded.read()
@@ -480,7 +563,9 @@ class _Answer(_Page):
             mark=cluster.mark,
             judged=judged,
             # What an author says stands below, word for word.
-            deed=deed(judged) if judged.outcome == "wrong" and judged.note not in ("", "authored") else "",
+            deed=deed(judged)
+            if judged.outcome == "wrong" and judged.note not in ("", "authored")
+            else "",
             record=record,
             number=number,
             cells=cells,
@@ -490,7 +575,10 @@ class _Answer(_Page):
             seen=" ".join(one.id if one else NONE for one in seen),
             typed={one: self.get_body_argument(one, "") for one in TYPED},
             ticked=self.get_body_arguments("rubric"),
-            decisions={one.student: graded.standing.decision(one, cluster.question) for one in cluster.members},
+            decisions={
+                one.student: graded.standing.decision(one, cluster.question)
+                for one in cluster.members
+            },
             points_of=lambda one: graded.standing.points(one, cluster.mark),
             earlier={one.student: graded.earlier(cluster, one) for one in cluster.members},
             before={one.student: graded.decision_on(cluster, one) for one in cluster.members},
@@ -516,7 +604,12 @@ class _Answer(_Page):
             following=order[place + 1] if place is not None and place + 1 < len(order) else None,
             previous=order[place - 1] if place else None,
             rubric=[
-                (line, worth, used, worths[key].id if (key := (cluster.question, line)) in worths else NONE)
+                (
+                    line,
+                    worth,
+                    used,
+                    worths[key].id if (key := (cluster.question, line)) in worths else NONE,
+                )
                 for line, worth, _, used in lines
             ],
             by_rubric=any(worth is not None for _, worth, *_ in lines),
@@ -528,7 +621,11 @@ class _Answer(_Page):
         if cluster is None:
             raise web.HTTPError(404)
         graded.read()
-        deed_of_form = {"decision": self.decide, "appeal": self.appeal, "worths": self.change_worths}
+        deed_of_form = {
+            "decision": self.decide,
+            "appeal": self.appeal,
+            "worths": self.change_worths,
+        }
         if self.get_argument("form", "decision") not in deed_of_form:
             raise web.HTTPError(400, "no such form")
         comment, why, *_ = typed = [self.get_argument(one, "").strip() for one in TYPED]
@@ -550,17 +647,25 @@ class _Answer(_Page):
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
 
     def decide(self, cluster: Cluster, comment: str, why: str) -> bool:
-        """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay at it."""
+        """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay
+        at it.
+        """
         graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
         worth, only = cluster.mark.worth, self.get_argument("only", "")
-        seen = dict(zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False))
-        members = [(place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))]
+        seen = dict(
+            zip(range(len(cluster.members)), self.get_argument("seen", "").split(), strict=False)
+        )
+        members = [
+            (place, one) for place, one in enumerate(cluster.members) if only in ("", str(place))
+        ]
         if not members:
             raise web.HTTPError(400, "no such student")
         if said == "back":
             graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
             return bool(only)
-        rubric = list(dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip()))
+        rubric = list(
+            dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip())
+        )
         lines = {line: points for line, points, *_ in graded.lines(cluster, cluster.members[0])}
         made: list[Event] = []
         if new := self.get_argument("new", "").strip():
@@ -600,7 +705,9 @@ class _Answer(_Page):
         if not number.isdecimal() or int(number) >= len(cluster.members):
             raise web.HTTPError(400, "no such student")
         record, state = cluster.members[int(number)], self.get_argument("state")
-        of = {one.id: one for one in self.graded.appeals(cluster, record)}.get(self.get_argument("of", ""))
+        of = {one.id: one for one in self.graded.appeals(cluster, record)}.get(
+            self.get_argument("of", "")
+        )
         if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
             raise web.HTTPError(400, "no such step")
         try:
@@ -623,7 +730,9 @@ class _Answer(_Page):
         """Say what lines of the rubric are worth; all that used them is scored anew."""
         changes: dict[str, tuple[float, str]] = {}
         now = {line: points for line, points, *_ in self.graded.lines(cluster, cluster.members[0])}
-        for line, said, step in zip(*map(self.get_arguments, ("line", "points", "step")), strict=False):
+        for line, said, step in zip(
+            *map(self.get_arguments, ("line", "points", "step")), strict=False
+        ):
             if line not in now:
                 raise web.HTTPError(400, "no such line")
             if said.strip():
@@ -653,17 +762,30 @@ class _Answer(_Page):
 
     @staticmethod
     def source_of(cluster: Cluster) -> dict[str, float]:
-        return {line: points for line, points in (cluster.mark.rubric or {}).items() if points is not None}
+        return {
+            line: points
+            for line, points in (cluster.mark.rubric or {}).items()
+            if points is not None
+        }
 
 
-def _history(events: Iterable[Event], cluster: Cluster, students: Collection[str]) -> list[tuple[str, ...]]:
-    """What was decided on the answers of a cluster, said of them, and said of its rubric, in words."""
+def _history(
+    events: Iterable[Event], cluster: Cluster, students: Collection[str]
+) -> list[tuple[str, ...]]:
+    """What was decided on the answers of a cluster, said of them, and said of its rubric, in
+    words.
+    """
     said: list[tuple[str, ...]] = []
     for one in events:
         if isinstance(one, Worth):
             if one.question == cluster.question:
-                said.append((one.when, one.who, "", f"“{one.line}” is worth {number(one.points)}", ""))
-        elif (one.assignment, one.question) == (cluster.assignment, cluster.question) and one.student in students:
+                said.append(
+                    (one.when, one.who, "", f"“{one.line}” is worth {number(one.points)}", "")
+                )
+        elif (one.assignment, one.question) == (
+            cluster.assignment,
+            cluster.question,
+        ) and one.student in students:
             if isinstance(one, Appeal):
                 said.append((one.when, one.who, one.student, f"appeal {one.state}", one.words))
             elif one.credit is None:
@@ -671,7 +793,9 @@ def _history(events: Iterable[Event], cluster: Cluster, students: Collection[str
                 said.append((one.when, one.who, one.student, words, one.why))
             else:
                 words = f"{number(one.credit * cluster.mark.worth)} points"
-                words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(one.appeal)
+                words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(
+                    one.appeal
+                )
                 said.append((one.when, one.who, one.student, words, one.why))
     return said
 
@@ -683,7 +807,9 @@ NONE = "-"
 
 
 def _as_asked(contract: Contract | None) -> str:
-    """The text of a question as these students saw it, with their numbers; its author is trusted."""
+    """The text of a question as these students saw it, with their numbers; its author is
+    trusted.
+    """
     if not contract:
         return ""
     return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)

@@ -1,7 +1,7 @@
 """Makes a class to try grading on: right, mistaken, unfinished, broken and hostile notebooks.
 
-What went into each notebook is written down beside them in ``expected.json``, so that what comes out of grading
-can be held against it. Nobody in it is real, and the same seed makes the same class.
+What went into each notebook is written down beside them in ``expected.json``, so that what comes
+out of grading can be held against it. Nobody in it is real, and the same seed makes the same class.
 """
 
 import ast
@@ -23,27 +23,38 @@ from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source
 from ..checking.question import Variant
 from ..checking.variants import numbers_of_variants
 
-#: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns anything; and
-#: none does damage if it succeeds, since somebody may try this class where students' code is not kept apart.
+#: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns
+#: anything; and none does damage if it succeeds, since somebody may try this class where students'
+#: code is not kept apart.
 HOSTILE = {
-    "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: 'Correct'",
+    "replaces the check": "import coursework\ncoursework.check = check = lambda *answers: "
+    "'Correct'",
     "leaves": "import os\nos._exit(0)",
     "kills itself": "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)",
     "equals everything": "class Right:\n    def __eq__(self, other):\n        return True\n    def "
     "__hash__(self):\n        return 0\n"
     "sm.Expr.__eq__ = Right.__eq__",
-    "changes json": 'import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: \'{"outcome": "correct"}\'',
+    "changes json": "import json\njson.dumps = json.JSONEncoder.encode = lambda *a, **k: "
+    '\'{"outcome": '
+    '"correct"}\'',
     "reads and writes files": "for place in ('/etc/passwd', '../grades.csv'):\n    try:\n        "
     "print(open(place).read())\n"
-    "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\nexcept OSError:\n    pass",
-    "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\nexcept OSError:\n    pass",
-    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n            os._exit(0)\n  "
+    "    except OSError:\n        pass\ntry:\n    open('/tmp/forged', 'w').write('x')\n"
+    "except OSError:\n    pass",
+    "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\n"
+    "except OSError:\n"
+    "    pass",
+    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n"
+    "            os._exit(0)\n  "
     "  except OSError:\n        pass",
-    "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\nexcept MemoryError:\n    pass",
+    "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\n"
+    "except MemoryError:\n"
+    "    pass",
     "writes much": "for number in range(200_000):\n    print('x' * 100)",
     "a name that is code": 'theta = sm.Symbol(\'__import__("os").system("touch /tmp/forged")\')',
     "a script": "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
-    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n    frame.f_globals['check'] = "
+    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n"
+    "    frame.f_globals['check'] = "
     "frame.f_globals.get('check')\n"
     "    frame = frame.f_back",
     "never ends": "while True:\n    pass",
@@ -66,7 +77,9 @@ class _Exercise:
         self.edition = edition_of(folder)
         paths = [Path(folder) / f"{stem}.ipynb" for stem in stems]
         sources = [read_source(path, edition=self.edition) for path in paths]
-        self.questions = {name: [question] for source in sources for name, question in source.questions.items()}
+        self.questions = {
+            name: [question] for source in sources for name, question in source.questions.items()
+        }
         for path, source in zip(paths, sources, strict=True):
             for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
                 for name, question in read_source(path, number, self.edition).questions.items():
@@ -78,11 +91,17 @@ class _Exercise:
             checked = checked_names(source.notebook)
             owners = {variable: name for name, variable in checked.items()}
             originals = source.notebook.cells
-            handed_out = [cell for number, cell in enumerate(originals) if not shows_variants(originals, number)]
+            handed_out = [
+                cell
+                for number, cell in enumerate(originals)
+                if not shows_variants(originals, number)
+            ]
             for cell, original in zip(notebook.cells, handed_out, strict=True):
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
-                    answered = [owners[variable] for variable in answered_in(original.source, owners)]
+                    answered = [
+                        owners[variable] for variable in answered_in(original.source, owners)
+                    ]
                     if answered:
                         self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
                         self.solved[len(self.cells)] = solved(original.source)
@@ -90,12 +109,16 @@ class _Exercise:
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
-        self.metadata = nbformat.v4.new_notebook(metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}})
+        self.metadata = nbformat.v4.new_notebook(
+            metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
+        )
 
     def variant(self, name, identity):
         """The number of a student's variant of a question."""
         variants = self.questions[name]
-        return numbers_of_variants(identity, name, variants[0].public.variant or Variant(), len(variants))[0]
+        return numbers_of_variants(
+            identity, name, variants[0].public.variant or Variant(), len(variants)
+        )[0]
 
     def notebook(self, cells):
         made = copy.deepcopy(self.metadata)
@@ -104,7 +127,9 @@ class _Exercise:
 
 
 def _symbols(source):
-    """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or ``me.dynamicsymbols``."""
+    """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or
+    ``me.dynamicsymbols``.
+    """
     found = {}
     for node in ast.parse(source).body:
         if (
@@ -115,7 +140,9 @@ def _symbols(source):
             and isinstance(node.value.args[0], ast.Constant)
         ):
             target = node.targets[0]
-            variables = [part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)]
+            variables = [
+                part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)
+            ]
             found.update(zip(str(node.value.args[0].value).replace(",", " ").split(), variables))
     return found
 
@@ -179,7 +206,11 @@ def _forms(question):
     answer = question.answer
     yield answer
     if isinstance(answer, (sympy.MatrixBase, sympy.Expr)):
-        each = answer.applyfunc if isinstance(answer, sympy.MatrixBase) else lambda change: change(answer)
+        each = (
+            answer.applyfunc
+            if isinstance(answer, sympy.MatrixBase)
+            else lambda change: change(answer)
+        )
         if answer.free_symbols:
             yield each(lambda entry: entry.rewrite(sympy.exp))
             yield each(sympy.expand)
@@ -205,7 +236,9 @@ def _slip(question):
     if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], str):
         options = question.public.options or answer
         return [
-            next(option for option in options if option != answer[0]) if len(set(options)) > 1 else answer[0],
+            next(option for option in options if option != answer[0])
+            if len(set(options)) > 1
+            else answer[0],
             *answer[1:],
         ]
     if isinstance(answer, (list, tuple)) and answer and isinstance(answer[0], bool):
@@ -214,7 +247,9 @@ def _slip(question):
 
 
 class _Answers:
-    """Code for right and wrong answers to every question, with what is to come of each; worked out once."""
+    """Code for right and wrong answers to every question, with what is to come of each; worked out
+    once.
+    """
 
     def __init__(self, exercise, dice):
         from .judging.contract import Asked
@@ -222,19 +257,27 @@ class _Answers:
 
         self.right, self.wrong = {}, {}
         for name, variants in exercise.questions.items():
-            known = [contract_of(question, b"any secret: the class is the same with all") for question in variants]
+            known = [
+                contract_of(question, b"any secret: the class is the same with all")
+                for question in variants
+            ]
             order = dice.random()
             for number, question in enumerate(variants):
                 judged = Asked(known[number], siblings=(*known[:number], *known[number + 1 :]))
-                self.right[name, number] = self._with_code(exercise, question, judged, _forms(question))
+                self.right[name, number] = self._with_code(
+                    exercise, question, judged, _forms(question)
+                )
                 mistaken = list(
                     {
-                        (mistake.note, str(mistake.details)): mistake.answer for mistake in reversed(question.mistakes)
+                        (mistake.note, str(mistake.details)): mistake.answer
+                        for mistake in reversed(question.mistakes)
                     }.values()
                 )
                 # A class has its favourite mistakes, also where the numbers of its members differ.
                 random.Random(order).shuffle(mistaken)
-                self.wrong[name, number] = self._with_code(exercise, question, judged, [*mistaken[:6], _slip(question)])
+                self.wrong[name, number] = self._with_code(
+                    exercise, question, judged, [*mistaken[:6], _slip(question)]
+                )
 
     def _with_code(self, exercise, question, judged, answers):
         from .judging.marking import mark
@@ -260,7 +303,9 @@ class _Student:
         self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
-            cell.source = re.sub(r"(student|me)\(''\)", lambda found: f"{found[1]}({identity!r})", cell.source)
+            cell.source = re.sub(
+                r"(student|me)\(''\)", lambda found: f"{found[1]}({identity!r})", cell.source
+            )
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did = []
         skill = dice.betavariate(4, 1.6)
@@ -277,7 +322,9 @@ class _Student:
             return
         name = part.questions[0]
         options = self.answers.wrong[first]
-        code, outcome = self.dice.choices(options, [2.0**-order for order in range(len(options))])[0]
+        code, outcome = self.dice.choices(options, [2.0**-order for order in range(len(options))])[
+            0
+        ]
         self.put(part, code, {name: list(outcome)})
 
     def solve(self, part):
@@ -296,7 +343,11 @@ class _Student:
         variable = self.exercise.questions[part.questions[0]][0].variable
         lines = self.cells[part.cell].source.split("\n")
         blank = next(
-            (order for order, line in enumerate(lines) if line.startswith((f"{variable} = ...", f"def {variable}("))),
+            (
+                order
+                for order, line in enumerate(lines)
+                if line.startswith((f"{variable} = ...", f"def {variable}("))
+            ),
             None,
         )
         if blank is None:
@@ -319,7 +370,9 @@ class _Student:
         moved = self.cells.pop(first)
         self.cells.append(moved)
         moved.execution_count = 1
-        for count, cell in enumerate((cell for cell in self.cells[:-1] if cell.cell_type == "code"), 2):
+        for count, cell in enumerate(
+            (cell for cell in self.cells[:-1] if cell.cell_type == "code"), 2
+        ):
             cell.execution_count = count
 
     def break_a_cell(self):
@@ -365,7 +418,8 @@ HABITS = (
         "prints",
         0.05,
         lambda student: student.add_cell(
-            "import warnings\nwarnings.warn('careful')\nprint(A_C_N) if 'A_C_N' in globals() else None"
+            "import warnings\nwarnings.warn('careful')\n"
+            "print(A_C_N) if 'A_C_N' in globals() else None"
         ),
     ),
 )
@@ -380,13 +434,16 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     students : int
     seed : int
     notebooks : list of str
-        The exercises that are joined into the notebook that is handed in; the first of all if none is named.
+        The exercises that are joined into the notebook that is handed in; the first of all if none
+        is named.
     solutions : path, optional
     layout : {'folders', 'canvas', 'moodle', 'brightspace', 'nbgrader'}
         How the submissions are handed out.
     """
     folder = Path(solutions or find_course().sources)
-    stems = list(notebooks) or [sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]]
+    stems = list(notebooks) or [
+        sorted(path.stem for path in folder.glob("*.ipynb") if path.stem != CHAPTERS)[0]
+    ]
     dice = random.Random(f"class {seed}")
     with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
         exercise = _Exercise(stems, folder)
@@ -394,7 +451,9 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
     files, expected = {}, {}
-    hostile = dict(zip(dice.sample(range(students), min(students // 14 or 1, len(HOSTILE))), HOSTILE))
+    hostile = dict(
+        zip(dice.sample(range(students), min(students // 14 or 1, len(HOSTILE))), HOSTILE)
+    )
     left = [number for number in range(students) if number not in hostile]
     broken = dict(
         zip(
@@ -405,7 +464,9 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     for number in range(students):
         student = f"student-{number + 1:03}"
         # Moodle's worksheet knows a student by the address.
-        work = _Student(exercise, answers, dice, f"{student}@example.org" if layout == "moodle" else student)
+        work = _Student(
+            exercise, answers, dice, f"{student}@example.org" if layout == "moodle" else student
+        )
         for name, share, habit in HABITS:
             if dice.random() < share and number not in hostile:
                 habit(work)
@@ -427,7 +488,9 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
         expected[student] = {"did": work.did, "questions": work.expected}
     (out / "expected.json").write_text(json.dumps(expected, indent=1) + "\n", "utf8")
     (out / "gradebook.csv").write_bytes(
-        _gradebook(layout, list(files), sum(variants[0].worth for variants in exercise.questions.values()))
+        _gradebook(
+            layout, list(files), sum(variants[0].worth for variants in exercise.questions.values())
+        )
     )
     return LAYOUTS[layout](out, files, "-and-".join(stems))
 
@@ -470,7 +533,9 @@ def _zip(out, entries):
 
 def _numbers(files):
     """Each student with an invented number."""
-    return [(student, data, 100_000 + number) for number, (student, data) in enumerate(files.items(), 1)]
+    return [
+        (student, data, 100_000 + number) for number, (student, data) in enumerate(files.items(), 1)
+    ]
 
 
 def _canvas(out, files, name):
@@ -516,15 +581,18 @@ def _gradebook(layout, students, worth):
     """The gradebook that the teacher would export, with a student more who handed in nothing."""
     students = [*students, f"student-{len(students) + 1:03}"]
     numbered = [
-        (student, student.title().replace("-", " "), 100_000 + number) for number, student in enumerate(students, 1)
+        (student, student.title().replace("-", " "), 100_000 + number)
+        for number, student in enumerate(students, 1)
     ]
     if layout == "moodle":
         lines = [
-            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed","Feedback '
+            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be '
+            'changed","Feedback '
             'comments"'
         ]
         lines += [
-            f'"Participant {number}","{name}",{student}@example.org,"Submitted for grading",,{worth}.00,Yes,'
+            f'"Participant {number}","{name}",{student}@example.org,"Submitted for '
+            f'grading",,{worth}.00,Yes,'
             for student, name, number in numbered
         ]
         return "\ufeff".encode() + "\n".join([*lines, ""]).encode()
@@ -533,7 +601,10 @@ def _gradebook(layout, students, worth):
             "OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric "
             f"MaxPoints:{worth}>,End-of-Line Indicator"
         ]
-        lines += [f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#" for student, name, number in numbered]
+        lines += [
+            f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#"
+            for student, name, number in numbered
+        ]
         return "\r\n".join([*lines, ""]).encode()
     lines = [
         "Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score",

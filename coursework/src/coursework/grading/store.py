@@ -1,7 +1,7 @@
 """The folder of results: every file whole or not there at all, and one run at a time.
 
-``records/student/assignment.json`` is written the moment a student's work is graded and holds all that came of
-it; every other file is made from the records and can be made again.
+``records/student/assignment.json`` is written the moment a student's work is graded and holds all
+that came of it; every other file is made from the records and can be made again.
 """
 
 import contextlib
@@ -50,7 +50,9 @@ class Store:
             yield
 
     def in_copy_of_process(self) -> None:
-        """Leave the lock to the process that has it: when that one ends, nobody is kept away any more."""
+        """Leave the lock to the process that has it: when that one ends, nobody is kept away any
+        more.
+        """
         self.lock.close()
 
     def place(self, student: str, assignment: str) -> Path:
@@ -101,7 +103,9 @@ class Store:
         return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
     def put_aside(self, student: str, assignment: str) -> Path:
-        """Move a record, and the page made of it, to where it counts no more; give its new place."""
+        """Move a record, and the page made of it, to where it counts no more; give its new
+        place.
+        """
         place = self.place(student, assignment)
         aside = self.folder / "put-aside" / place.relative_to(self.records)
         aside.parent.mkdir(parents=True, exist_ok=True)
@@ -116,7 +120,8 @@ class Store:
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
                 record = record_in(path)
-                # Not what lies where it would not be written: a copy, or what another version called so.
+                # Not what lies where it would not be written: a copy, or what another version
+                # called so.
                 if path == self.place(record.student, record.assignment):
                     yield record
 
@@ -140,7 +145,9 @@ def record_in(path: Path) -> Record:
 
 
 def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
-    """JSON with a line for each entry of the outermost list or object: short, and still to be read."""
+    """JSON with a line for each entry of the outermost list or object: short, and still to be
+    read.
+    """
     if isinstance(value, Mapping):
         lines = [
             f"{json.dumps(name, ensure_ascii=False)}: {json.dumps(inner, ensure_ascii=False)}"
@@ -150,16 +157,19 @@ def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
     return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
 
 
-#: What Windows keeps for itself, whatever follows a dot: folders of it are what containers there write to.
+#: What Windows keeps for itself, whatever follows a dot: folders of it are what containers there
+#: write to.
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
 
 
 def file_name(name: str) -> str:
-    """A name for a file that a student's name cannot lead astray; different names stay different."""
+    """A name for a file that a student's name cannot lead astray; different names stay
+    different.
+    """
     plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
-    # The letter's case counts too: some file systems do not tell a from A. And what looks like a name with a
-    # digest gets one as well, or somebody could call himself what another is called here. It is as long as it is
-    # because a name of the same digest could be searched for.
+    # The letter's case counts too: some file systems do not tell a from A. And what looks like a
+    # name with a digest gets one as well, or somebody could call himself what another is called
+    # here. It is as long as it is because a name of the same digest could be searched for.
     if RESERVED.fullmatch(plain.lower()):
         plain = ""
     if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{20}$", name):
@@ -168,22 +178,32 @@ def file_name(name: str) -> str:
 
 
 def write(
-    path: str | Path, text: str | bytes | Iterable[str | bytes], lasting: bool = True, private: bool = False
+    path: str | Path,
+    text: str | bytes | Iterable[str | bytes],
+    lasting: bool = True,
+    private: bool = False,
 ) -> None:
-    """Write a file so that it is there whole or not at all; if it is to last, also if the machine goes down.
+    """Write a file so that it is there whole or not at all; if it is to last, also if the machine
+    goes down.
 
-    ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds right answers:
-    nobody else who works on this machine may read it.
+    ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds
+    right answers: nobody else who works on this machine may read it.
     """
     path = Path(path)
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)
     half = path.with_name(f".half-{secrets.token_hex(8)}")
     with open(
-        os.open(half, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600 if private else 0o666),
+        os.open(
+            half,
+            os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0),
+            0o600 if private else 0o666,
+        ),
         "wb",
     ) as file:
         for piece in (text,) if isinstance(text, (str, bytes)) else text:
-            file.write(piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece)
+            file.write(
+                piece.encode("utf8", "backslashreplace") if isinstance(piece, str) else piece
+            )
         if lasting:
             file.flush()
             os.fsync(file.fileno())

@@ -20,13 +20,21 @@ def as_cell(value: object) -> str:
     text = in_a_line(str(value), 2_000)
     # Also what looks the same to some spreadsheets: the wide forms of these signs.
     starts = unicodedata.normalize("NFKC", text[:1])
-    return f"'{text}" if starts.startswith(STARTS_A_FORMULA) or str(value).startswith(STARTS_A_FORMULA) else text
+    return (
+        f"'{text}"
+        if starts.startswith(STARTS_A_FORMULA) or str(value).startswith(STARTS_A_FORMULA)
+        else text
+    )
 
 
 def as_written(cell: str) -> str:
     """The text that :func:`as_cell` marked."""
     plain = cell.removeprefix("'")
-    return plain if plain != cell and unicodedata.normalize("NFKC", plain[:1]).startswith(STARTS_A_FORMULA) else cell
+    return (
+        plain
+        if plain != cell and unicodedata.normalize("NFKC", plain[:1]).startswith(STARTS_A_FORMULA)
+        else cell
+    )
 
 
 def number(value: float) -> str:
@@ -51,12 +59,16 @@ def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[s
 
 
 def in_a_line(text: str, most: int) -> str:
-    """Text of strangers as part of one line: it cannot begin another, which would seem to be ours."""
+    """Text of strangers as part of one line: it cannot begin another, which would seem to be
+    ours.
+    """
     return " ".join(readable(text, most).split())
 
 
 def readable(text: str, most: int = 2_000) -> str:
-    """Text that shows what it holds: without signs that are not seen, or that turn the rest round."""
+    """Text that shows what it holds: without signs that are not seen, or that turn the rest
+    round.
+    """
     if len(text) <= most and text.isascii() and text.isprintable():
         return text
     shown = "".join(

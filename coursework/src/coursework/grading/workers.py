@@ -1,7 +1,7 @@
 """Processes that work side by side: each takes a task, says what came of it, and takes the next.
 
-They are copies of the process that asks, so they know what it knows and only a task and what came of it are sent, as
-JSON. However the process that asks ends, they end with it.
+They are copies of the process that asks, so they know what it knows and only a task and what came
+of it are sent, as JSON. However the process that asks ends, they end with it.
 """
 
 import contextlib
@@ -51,7 +51,8 @@ def side_by_side(
     number : int
         Of processes.
     prepare : function
-        Called once in each process, with an :class:`contextlib.ExitStack`: gives the function that does a task.
+        Called once in each process, with an :class:`contextlib.ExitStack`: gives the function that
+        does a task.
     errors : collection of type
         Exceptions of one text that may come of a task, and are raised here.
     lost : function, optional
@@ -88,7 +89,9 @@ def side_by_side(
                         again.take(worker.task, worker.attempts + 1)
                         continue
                     if lost is None:
-                        raise TaskLost(f"Process after process ended at a task: {worker.task!r:.200}") from None
+                        raise TaskLost(
+                            f"Process after process ended at a task: {worker.task!r:.200}"
+                        ) from None
                     worker, said = again, {"done": lost(worker.task)}
                 if "error" in said:
                     kind, text, trace = said["error"]
@@ -112,7 +115,8 @@ class _Worker(Generic[Task, Done]):
         self.attempts = 0
         asking = os.getpid()
         with warnings.catch_warnings():
-            # The copy uses nothing that another thread of this process may hold: it works on its own things only.
+            # The copy uses nothing that another thread of this process may hold: it works on its
+            # own things only.
             warnings.simplefilter("ignore", DeprecationWarning)
             self.process = multiprocessing.get_context("fork").Process(
                 target=_work, args=(other, prepare, asking), daemon=True
@@ -148,7 +152,9 @@ class _Worker(Generic[Task, Done]):
 
 
 def _work(
-    connection: Connection, prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]], asking: int
+    connection: Connection,
+    prepare: Callable[[contextlib.ExitStack], Callable[[Task], Done]],
+    asking: int,
 ) -> None:
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)

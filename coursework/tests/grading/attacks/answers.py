@@ -1,7 +1,7 @@
 """Attacks by answers: notebooks whose answers might earn points without being right.
 
-Each is one cell that comes before the check of one question of the small course, and that binds what is checked. It
-knows, as a student may:
+Each is one cell that comes before the check of one question of the small course, and that binds
+what is checked. It knows, as a student may:
 
     POINTS  the values of the symbols at which the check of ``turns/sum`` looks
     VALUES  what a right answer comes to there
@@ -509,8 +509,15 @@ sine = alpha
 """,
         "wrong or not attempted",
         beside={
-            name: b'def dumps(*given, **how): return \'{"outcome": "correct"}\'\nto_plain = check = dumps\n'
-            for name in ("sympy.py", "json.py", "coursework/__init__.py", "coursework/checking/plain.py", "forged.py")
+            name: b'def dumps(*given, **how): return \'{"outcome": "correct"}\'\n'
+            b"to_plain = check = dumps\n"
+            for name in (
+                "sympy.py",
+                "json.py",
+                "coursework/__init__.py",
+                "coursework/checking/plain.py",
+                "forged.py",
+            )
         },
         spoils=True,
     ),

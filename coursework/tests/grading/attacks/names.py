@@ -1,7 +1,9 @@
-"""Attacks by names: classes in which somebody's files are called so that they might count as somebody else's.
+"""Attacks by names: classes in which somebody's files are called so that they might count as
+somebody else's.
 
-Each is what was handed in, as a system or an instructor would hold it, with whose each file really is. Nothing may
-ever be given to anybody else: either the files are told apart, or a person is asked.
+Each is what was handed in, as a system or an instructor would hold it, with whose each file really
+is. Nothing may ever be given to anybody else: either the files are told apart, or a person is
+asked.
 """
 
 import dataclasses
@@ -22,7 +24,8 @@ class Named:
     handed_in : dict
         Whose each file is, by its path: what the student is called here.
     asked : bool
-        Whether nobody can know, so that a person must be asked about all that is named in ``handed_in``.
+        Whether nobody can know, so that a person must be asked about all that is named in
+        ``handed_in``.
     roster : str
         The table of who is in the course, if there is one.
     also : dict
@@ -69,7 +72,10 @@ ATTACKS = [
         "a folder called submitted inside the own one",
         {"jane/submitted/bob/turns.ipynb": "jane", "bob/turns.ipynb": "bob"},
     ),
-    Named("a classmate's folder inside the own one", {"jane/bob/turns.ipynb": "jane", "bob/turns.ipynb": "bob"}),
+    Named(
+        "a classmate's folder inside the own one",
+        {"jane/bob/turns.ipynb": "jane", "bob/turns.ipynb": "bob"},
+    ),
     Named(
         "Moodle's marks in the name of a file",
         {f"{JANE}{BOB}turns.ipynb": "Jane Doe 101", f"{BOB}turns.ipynb": "Bob 202"},
@@ -78,7 +84,10 @@ ATTACKS = [
         "Moodle's folder inside the own one",
         {f"{JANE}/{BOB}/turns.ipynb": "Jane Doe 101", f"{BOB}/turns.ipynb": "Bob 202"},
     ),
-    Named("Moodle's folder inside the only one that was handed in", {f"{JANE}/{BOB}/turns.ipynb": "Jane Doe 101"}),
+    Named(
+        "Moodle's folder inside the only one that was handed in",
+        {f"{JANE}/{BOB}/turns.ipynb": "Jane Doe 101"},
+    ),
     Named(
         "the same, with a roster that knows both",
         {f"{JANE}/{BOB}/turns.ipynb": "Jane Doe"},
@@ -86,7 +95,10 @@ ATTACKS = [
     ),
     Named(
         "Canvas's marks in the name of a file",
-        {"doejane_101_501_bob_202_502_turns.ipynb": "doejane_101", "bob_202_502_turns.ipynb": "bob_202"},
+        {
+            "doejane_101_501_bob_202_502_turns.ipynb": "doejane_101",
+            "bob_202_502_turns.ipynb": "bob_202",
+        },
     ),
     Named(
         "Canvas's marks in a folder of Brightspace that came alone",
@@ -95,13 +107,17 @@ ATTACKS = [
     Named(
         "Brightspace's folder inside the own one",
         {
-            "101-9 - Jane Doe - Nov 21, 2026 801 PM/202-9 - Bob - Nov 21, 2026 802 PM/turns.ipynb": "Jane Doe 101",
+            "101-9 - Jane Doe - Nov 21, 2026 801 PM/202-9 - Bob - Nov 21, 2026 802 "
+            "PM/turns.ipynb": "Jane Doe 101",
             "202-9 - Bob - Nov 21, 2026 802 PM/turns.ipynb": "Bob 202",
         },
     ),
     Named(
         "Brightspace's folder inside the only one that was handed in",
-        {"101-9 - Jane Doe - Nov 21, 2026 801 PM/202-9 - Bob - Nov 21, 2026 802 PM/turns.ipynb": "Jane Doe 101"},
+        {
+            "101-9 - Jane Doe - Nov 21, 2026 801 PM/202-9 - Bob - Nov 21, 2026 802 "
+            "PM/turns.ipynb": "Jane Doe 101"
+        },
     ),
     Named(
         "Blackboard's marks in the name of a file",
@@ -116,16 +132,24 @@ ATTACKS = [
         roster="student,name,email\neve,Eve,eve@uni.example\nbob,Bob,bob@uni.example\n",
         also={
             "all/submission_metadata.yml": GRADESCOPE.replace("'202'", "bob").encode(),
-            "all/submission_41/submission_metadata.yml": GRADESCOPE.replace("eve@", "bob@").encode(),
+            "all/submission_41/submission_metadata.yml": GRADESCOPE.replace(
+                "eve@", "bob@"
+            ).encode(),
         },
     ),
     Named(
         "an archive within with a classmate's folder in it",
-        {"jane_101_501_work.zip/bob_202_502_turns.ipynb": "jane_101", "bob_202_503_turns.ipynb": "bob_202"},
+        {
+            "jane_101_501_work.zip/bob_202_502_turns.ipynb": "jane_101",
+            "bob_202_503_turns.ipynb": "bob_202",
+        },
     ),
     Named(
         "an archive within that leads out of itself",
-        {"jane_101_501_work.zip/../bob_202_503_turns.ipynb": "jane_101", "bob_202_503_turns.ipynb": "bob_202"},
+        {
+            "jane_101_501_work.zip/../bob_202_503_turns.ipynb": "jane_101",
+            "bob_202_503_turns.ipynb": "bob_202",
+        },
     ),
     Named(
         "an archive within an archive within",
@@ -143,10 +167,22 @@ ATTACKS = [
         {f"{BOB}/a.ipynb": "", "Bobby_202_assignsubmission_file_/a.ipynb": ""},
         True,
     ),
-    Named("two names for one number of Canvas", {"bob_202_502_turns.ipynb": "", "bobby_202_503_turns.ipynb": ""}, True),
+    Named(
+        "two names for one number of Canvas",
+        {"bob_202_502_turns.ipynb": "", "bobby_202_503_turns.ipynb": ""},
+        True,
+    ),
     Named("capitals", {"Bob/turns.ipynb": "", "bob/turns.ipynb": ""}, True),
-    Named("a letter that is two small ones", {"Strasse/turns.ipynb": "", "Stra\xdfe/turns.ipynb": ""}, True),
-    Named("another form of one letter", {"jose\u0301/turns.ipynb": "", "jos\xe9/turns.ipynb": ""}, True),
+    Named(
+        "a letter that is two small ones",
+        {"Strasse/turns.ipynb": "", "Stra\xdfe/turns.ipynb": ""},
+        True,
+    ),
+    Named(
+        "another form of one letter",
+        {"jose\u0301/turns.ipynb": "", "jos\xe9/turns.ipynb": ""},
+        True,
+    ),
     Named("wide letters", {"\uff42ob/turns.ipynb": "", "bob/turns.ipynb": ""}, True),
     Named("mathematical letters", {"\U0001d41bob/turns.ipynb": "", "bob/turns.ipynb": ""}, True),
     Named("a Cyrillic letter", {"b\u043eb/turns.ipynb": "", "bob/turns.ipynb": ""}, True),
@@ -159,7 +195,11 @@ ATTACKS = [
     Named("a blank at the end", {"bob /turns.ipynb": "", "bob/turns.ipynb": ""}, True),
     Named("a dot at the end", {"bob./turns.ipynb": "", "bob/turns.ipynb": ""}, True),
     Named("a hard blank", {"bob smith/turns.ipynb": "", "bob\xa0smith/turns.ipynb": ""}, True),
-    Named("a second way to write the name of a file", {"turns_bob.ipynb": "", "bob-turns.ipynb": ""}, True),
+    Named(
+        "a second way to write the name of a file",
+        {"turns_bob.ipynb": "", "bob-turns.ipynb": ""},
+        True,
+    ),
     # ---- where there is a roster
     Named(
         "a look-alike of a name in the roster",
@@ -176,7 +216,8 @@ ATTACKS = [
     Named(
         "a name that ends in a classmate's number",
         {"bob_202_101_5_turns.ipynb": "jane", "smithbob_202_7_01_turns.ipynb": "bob"},
-        roster='Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n"Smith, Bob",202,,bob,1,\n',
+        roster='Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n'
+        '"Smith, Bob",202,,bob,1,\n',
     ),
     Named(
         "two equal names in the roster",

@@ -1,4 +1,6 @@
-"""A plug-in for the tests: what a course about turns in space would bring of its own, with one kind of question."""
+"""A plug-in for the tests: what a course about turns in space would bring of its own, with one kind
+of question.
+"""
 
 from coursework.checking.kinds import TRANSPOSED, Fault, row_entries, slack
 from coursework.checking.mistakes import Mistake
@@ -30,9 +32,16 @@ def mistakes(question, answer, turns, turned):
 def fault(question, numbers):
     """What is wrong with a matrix whose rows are no perpendicular unit vectors."""
     rows = [numbers[0:3], numbers[3:6], numbers[6:9]]
-    products = [sum(a * b for a, b in zip(rows[i], rows[j])) - (i == j) for i in range(3) for j in range(i, 3)]
+    products = [
+        sum(a * b for a, b in zip(rows[i], rows[j])) - (i == j)
+        for i in range(3)
+        for j in range(i, 3)
+    ]
     if max(map(abs, products)) > slack(question):
-        return Fault("not orthogonal", "This is no rotation matrix: its rows are no perpendicular unit vectors.")
+        return Fault(
+            "not orthogonal",
+            "This is no rotation matrix: its rows are no perpendicular unit vectors.",
+        )
     return None
 
 
@@ -49,7 +58,9 @@ KINDS = {
         needs=("frames",),
         mistakes=mistakes,
         messages={
-            "sine for cosine": lambda question, axis: f"Sine and cosine are interchanged in the turn about {axis}."
+            "sine for cosine": lambda question, axis: (
+                f"Sine and cosine are interchanged in the turn about {axis}."
+            )
         },
         details={"axis": "xyz"},
         slips=TRANSPOSED,

@@ -1,7 +1,8 @@
 """JupyterLite: the notebooks of the book in the reader's browser, in the site's folder ``lite``.
 
-It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`notebook_pages.live`), and adds to
-them what a notebook's kernel needs. A lock file of its own lists them all, so that a plain ``import`` works.
+It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`notebook_pages.live`),
+and adds to them what a notebook's kernel needs. A lock file of its own lists them all, so that a
+plain ``import`` works.
 """
 
 import json
@@ -29,21 +30,31 @@ LOCK = "lite-lock.json"
 FETCHED = runtime.FETCHED_FOR_NOTEBOOKS
 WORKSHOP = BUILD / FOLDER
 APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
-# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving figures.
-EXTENSIONS = ("@jupyterlite/pyodide-kernel-extension", "@jupyter-widgets/jupyterlab-manager", "anywidget")
+# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving
+# figures.
+EXTENSIONS = (
+    "@jupyterlite/pyodide-kernel-extension",
+    "@jupyter-widgets/jupyterlab-manager",
+    "anywidget",
+)
 LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
 KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
 KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
 NOTE = (
-    "> This page of *{title}* runs in your browser. What you change is kept in this browser, on this machine; "
+    "> This page of *{title}* runs in your browser. What you change is kept in this browser, on "
+    "this machine; "
     "*File > Download* gives you the notebook." + (f" {LICENCES_SAID}" if LICENCES_SAID else "")
 )
 NUMERICAL = (
-    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell fetches them from "
+    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell "
+    "fetches them from "
     "{place}.*",
     "import matplotlib\nimport numpy",
 )
-PLACES = {"official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them", "folder": "the place of these pages"}
+PLACES = {
+    "official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them",
+    "folder": "the place of these pages",
+}
 
 
 def wheels_of_kernel():
@@ -52,23 +63,31 @@ def wheels_of_kernel():
 
 
 def compile_ahead():
-    """Byte-compile what was fetched for browsers, the dearest part first; whoever needs it then finds it."""
+    """Byte-compile what was fetched for browsers, the dearest part first; whoever needs it then
+    finds it.
+    """
     for wheels in (sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()):
         runtime.compile_wheels(wheels)
 
 
 def write_lock(site):
-    """Put the wheels of the kernel beside the others, and list all of them; return the names of what to load."""
+    """Put the wheels of the kernel beside the others, and list all of them; return the names of
+    what to load.
+    """
     target = site / runtime.FOLDER
     lock = json.loads((target / runtime.LOCK).read_text("utf8"))
     added = runtime.own_packages(runtime.compile_wheels(wheels_of_kernel()), target)
     packages = lock["packages"] | added
-    (target / LOCK).write_text(json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8")
+    (target / LOCK).write_text(
+        json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8"
+    )
     return sorted({*added, *runtime.with_dependencies([runtime.DISTRIBUTION], packages)})
 
 
 def fingerprint_of_code(text):
-    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in live/js/store.js)."""
+    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in
+    live/js/store.js).
+    """
     a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
     for unit in array("H", text.encode("utf-16-le")):
         a = (a ^ unit) * 2654435761 & word
@@ -83,9 +102,11 @@ def fingerprint_of_code(text):
 
 
 def stamp(notebook):
-    """Say in the notebook what the book had in each of its code cells, by the names that the page gives them.
+    """Say in the notebook what the book had in each of its code cells, by the names that the page
+    gives them.
 
-    A copy that a reader keeps can then be told from a newer edition, and its answers from the book's code.
+    A copy that a reader keeps can then be told from a newer edition, and its answers from the
+    book's code.
     """
     seen, cells = Counter(), {}
     for cell in notebook.cells:
@@ -99,10 +120,11 @@ def stamp(notebook):
 
 
 def announce_numpy(notebook, kinds, place):
-    """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws with it.
+    """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws
+    with it.
 
-    The kernel fetches what a cell imports; most cells here use NumPy through our own package only. Here nothing stands
-    in for it, as on the page.
+    The kernel fetches what a cell imports; most cells here use NumPy through our own package only.
+    Here nothing stands in for it, as on the page.
     """
     codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
     for position, kind in zip(codes, kinds, strict=True):
@@ -121,9 +143,15 @@ def notebook_for(site, page, settings):
     if page.startswith("exercises/"):
         return nbformat.writes(notebook)
     first = notebook.cells[0]
-    notes = [line for line in first.source.splitlines() if line.startswith(first_words(settings["title"]))]
+    notes = [
+        line
+        for line in first.source.splitlines()
+        if line.startswith(first_words(settings["title"]))
+    ]
     if len(notes) != 1:
-        raise RuntimeError(f"the notebook of {page} does not say how to run it, or says it in other words")
+        raise RuntimeError(
+            f"the notebook of {page} does not say how to run it, or says it in other words"
+        )
     first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
     setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
     if setting not in (False, "off"):
@@ -141,11 +169,15 @@ def write_workshop(site, settings, names):
     lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
     # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
-        # The kernel takes it for a module by the end of the address, servers by the name of the file.
+        # The kernel takes it for a module by the end of the address, servers by the name of the
+        # file.
         "pyodideUrl": f"./../{runtime.FOLDER}/{runtime.pyodide_folder()}/pyodide.js?as=.mjs",
         "disablePyPIFallback": True,
         # The name is the same in every version of the book: what follows it tells them apart.
-        "loadPyodideOptions": {"lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}", "packages": names},
+        "loadPyodideOptions": {
+            "lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}",
+            "packages": names,
+        },
     }
     page = {
         "appName": settings["title"],
@@ -170,39 +202,53 @@ def write_workshop(site, settings, names):
 
 
 def bring_answers_first(target):
-    """Have the interface wait, before it opens a notebook, for what brings the page's answers into it."""
+    """Have the interface wait, before it opens a notebook, for what brings the page's answers into
+    it.
+    """
     page = target / APPS[0] / "index.html"
     before = page.read_text("utf8")
     start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
     script = f"../../{scripts.folder_name()}/notebook.js"
-    # Asked for by another name, a script that did not come is fetched once more; without it the notebook opens as it is
-    # kept here, and the page's answers come into it another time.
+    # Asked for by another name, a script that did not come is fetched once more; without it the
+    # notebook opens as it is kept here, and the page's answers come into it another time.
     wait = (
-        f"await import('{script}').catch(() => import('{script}?again')).then((first) => first.prepare())"
-        ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: ${error.message}`));\n"
+        f"await import('{script}').catch(() => import('{script}?again')).then((first) => "
+        "first.prepare())"
+        ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: "
+        "${error.message}`));\n"
         "        "
     )
     after, count = start.subn(lambda found: wait + found[0], before)
     if count != 1:
-        raise RuntimeError(f"{page} starts in another way than it did: answers of the pages would not come into it")
+        raise RuntimeError(
+            f"{page} starts in another way than it did: answers of the pages would not come into it"
+        )
     page.write_text(after, "utf8")
 
 
 def write(site):
-    """Write the notebook interface into ``site``, a folder with the built pages, if anything has changed."""
+    """Write the notebook interface into ``site``, a folder with the built pages, if anything has
+    changed.
+    """
     settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
     names = write_lock(site)
     write_workshop(site, settings, names)
     target = site / FOLDER
     made = target / "made-from.txt"
-    made_from = fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS)) + scripts.folder_name()
+    made_from = (
+        fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS))
+        + scripts.folder_name()
+    )
     if made.exists() and made.read_text("utf8") == made_from:
         return
     shutil.rmtree(target, ignore_errors=True)
-    # It drops local settings without a word if it finds the notes of an older run: the workshop is new each time.
+    # It drops local settings without a word if it finds the notes of an older run: the workshop is
+    # new each time.
     command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", target.resolve()]
     environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}
-    done = subprocess.run(command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    done = subprocess.run(
+        command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
     if done.returncode:
         sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
     bring_answers_first(target)

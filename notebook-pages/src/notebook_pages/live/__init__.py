@@ -4,10 +4,13 @@ The site's folder ``runtime`` holds all of it, and nothing there is loaded befor
 
 - ``pyodide-<hash>/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
-- ``sealed-<hash>/``: the sealed variants of the book's questions, of which a reader's Python fetches its own;
-- ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file names of
-  wheels in it are relative to the lock file. The same list lies in ``lock-<hash>/``, for the pages of this edition,
-  which may be open when the next one comes. NumPy and Matplotlib are listed as ``numpy_in_the_page`` says;
+- ``sealed-<hash>/``: the sealed variants of the book's questions, of which a reader's Python
+  fetches its own;
+- ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file
+  names of
+  wheels in it are relative to the lock file. The same list lies in ``lock-<hash>/``, for the pages
+  of this edition, which may be open when the next one comes. NumPy and Matplotlib are listed as
+  ``numpy_in_the_page`` says;
 - ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
 
 Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
@@ -40,7 +43,9 @@ def cells_with_code(doctree):
     """How many cells of a page show their code."""
     if doctree is None:
         return 0
-    return sum(node.get("nb_element") == "cell_code_source" for node in doctree.findall(nodes.container))
+    return sum(
+        node.get("nb_element") == "cell_code_source" for node in doctree.findall(nodes.container)
+    )
 
 
 def add_live_code(app, pagename, templatename, context, doctree):
@@ -52,7 +57,8 @@ def add_live_code(app, pagename, templatename, context, doctree):
     kinds = on_the_page(kinds_of_cells()[pagename]) if pagename in kinds_of_cells() else []
     if kinds and len(kinds) != count:
         raise ExtensionError(
-            f"{pagename}: the page shows {count} cells, and {len(kinds)} of its notebook are to be run"
+            f"{pagename}: the page shows {count} cells, and {len(kinds)} of its notebook "
+            "are to be run"
         )
     context["live_data"] = json.dumps(
         {
@@ -67,7 +73,11 @@ def add_live_code(app, pagename, templatename, context, doctree):
             "cells": {
                 index: told
                 for index, kind in enumerate(kinds)
-                if (told := {key: kind[key] for key in ("needs", "skip", "before", "name") if kind[key]})
+                if (
+                    told := {
+                        key: kind[key] for key in ("needs", "skip", "before", "name") if kind[key]
+                    }
+                )
             },
         },
         separators=(",", ":"),
@@ -76,7 +86,9 @@ def add_live_code(app, pagename, templatename, context, doctree):
 
 
 def take_settings(app, config):
-    """Ask the environment for NumPy; have every page written anew whose scripts or Pyodide have another version."""
+    """Ask the environment for NumPy; have every page written anew whose scripts or Pyodide have
+    another version.
+    """
     config.numpy_in_the_page = runtime.numpy_setting(config.numpy_in_the_page)
     config.runtime_folders = f"{scripts.folder_name()} {runtime.pyodide_folder()}"
 
@@ -88,4 +100,6 @@ def setup(app):
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
     app.connect("html-page-context", add_live_code, priority=970)
-    app.connect("build-finished", write_runtime, priority=900)  # after take_away.py has built the wheel
+    app.connect(
+        "build-finished", write_runtime, priority=900
+    )  # after take_away.py has built the wheel

@@ -1,9 +1,10 @@
 """Which cells of the book run in the page, found out by running them as the page does.
 
-Every notebook is run once, from top to bottom, by the Python side of the page (``python/session.py``) with
-nothing but the standard library, SymPy and our own packages to import; plain Python stands in for NumPy as far as
-that goes (``python/plain_numpy.py``). A cell that then fails, or gives another result than the stored one, needs
-more; what it needs is what it failed to import, or what an earlier cell failed to import from which it takes a name.
+Every notebook is run once, from top to bottom, by the Python side of the page
+(``python/session.py``) with nothing but the standard library, SymPy and our own packages to import;
+plain Python stands in for NumPy as far as that goes (``python/plain_numpy.py``). A cell that then
+fails, or gives another result than the stored one, needs more; what it needs is what it failed to
+import, or what an earlier cell failed to import from which it takes a name.
 """
 
 import ast
@@ -66,8 +67,12 @@ json.dump(told, sys.__stdout__)
 
 
 def write_python(folder):
-    """Write what the page's Python starts from: our files, and IPython's way of writing values as text."""
-    shutil.copytree(PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    """Write what the page's Python starts from: our files, and IPython's way of writing values as
+    text.
+    """
+    shutil.copytree(
+        PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
+    )
     (folder / "IPython" / "lib").mkdir(exist_ok=True)
     (folder / "IPython" / "lib" / "__init__.py").touch()
     root = find_spec("IPython").submodule_search_locations[0]
@@ -75,7 +80,9 @@ def write_python(folder):
 
 
 def run_alone(codes, *more):
-    """What the cells of a page put out, one after another, without NumPy; or with ``"everything"``."""
+    """What the cells of a page put out, one after another, without NumPy; or with
+    ``"everything"``.
+    """
     with tempfile.TemporaryDirectory() as folder:
         write_python(Path(folder, "python"))
         done = subprocess.run(
@@ -86,7 +93,9 @@ def run_alone(codes, *more):
 
 
 def outputs_of_messages(messages):
-    """What a cell put out, as a list that can be compared: printed text, and the shown form of each value."""
+    """What a cell put out, as a list that can be compared: printed text, and the shown form of each
+    value.
+    """
     outputs = []
     for message in messages:
         if message["type"] == "stream" and outputs and outputs[-1][0] == message["name"]:
@@ -111,15 +120,21 @@ def stored_outputs(cell):
 def shown_form(data):
     """The form that a page shows, and its text, without what differs from one run to the next."""
     form = next(
-        form for form in ("text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain") if form in data
+        form
+        for form in ("text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain")
+        if form in data
     )
     return form, re.sub(r"0x[0-9a-f]+", "0x...", data[form])
 
 
 def alike(outputs, stored):
-    """Whether two lists of outputs are the same, but for what the last digits of numbers may move by."""
+    """Whether two lists of outputs are the same, but for what the last digits of numbers may move
+    by.
+    """
     return [form for form, _ in outputs] == [form for form, _ in stored] and not any(
-        move.too_far for (_, now), (_, before) in zip(outputs, stored) for move in moves(before, now)
+        move.too_far
+        for (_, now), (_, before) in zip(outputs, stored)
+        for move in moves(before, now)
     )
 
 
@@ -135,7 +150,9 @@ def imports_numpy(code):
 
 
 def names_taken(code):
-    """The names that a cell may take from the cells before it: all it uses, but for what it imports."""
+    """The names that a cell may take from the cells before it: all it uses, but for what it
+    imports.
+    """
     tree = parse(code)
     imported = {
         alias.asname or alias.name.partition(".")[0]
@@ -156,12 +173,15 @@ def needs_of_names(names, codes, kinds):
 
 
 def classify(cells):
-    """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name for graders.
+    """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name
+    for graders.
 
-    Also whether it asks for ``numpy``, which on a page plain Python may stand in for, and in other places does not.
+    Also whether it asks for ``numpy``, which on a page plain Python may stand in for, and in other
+    places does not.
 
-    A run leaves out a cell that only draws a figure, needs more for it, and gives names to other such cells
-    at most: its picture is there already. A result that differs from the stored one without such a reason is an error.
+    A run leaves out a cell that only draws a figure, needs more for it, and gives names to other
+    such cells at most: its picture is there already. A result that differs from the stored one
+    without such a reason is an error.
     """
     codes = [cell.source for cell in cells]
     kinds = []
@@ -178,7 +198,9 @@ def classify(cells):
             if outcome["status"] == "missing":
                 needs.add(outcome["package"])
             if outcome.get("plain"):
-                needs.add("numpy")  # what plain Python makes of it is not what the book prints, to the last digit
+                needs.add(
+                    "numpy"
+                )  # what plain Python makes of it is not what the book prints, to the last digit
             if not needs and known:
                 raise RuntimeError(
                     f"cell {position + 1} gives another result in the page than the stored one "
@@ -202,9 +224,14 @@ def classify(cells):
 
 
 def kept_name(path, notebook):
-    """The name under which the kinds of a notebook's cells are kept, by all that they follow from; not by its prose."""
+    """The name under which the kinds of a notebook's cells are kept, by all that they follow from;
+    not by its prose.
+    """
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    seen = [[cell.source, cell.outputs, cell.metadata.get("tags", []), cell.execution_count is None] for cell in cells]
+    seen = [
+        [cell.source, cell.outputs, cell.metadata.get("tags", []), cell.execution_count is None]
+        for cell in cells
+    ]
     program = fingerprint(Path(__file__), PYTHON)
     inputs = json.dumps([program, fingerprint_of_used(notebook), seen], sort_keys=True)
     return f"cells-{path.stem}-{sha256(inputs.encode()).hexdigest()[:12]}.json"
@@ -234,13 +261,21 @@ def kinds_of_cells():
     paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
     with ThreadPoolExecutor(max_workers=2) as pool:
         kinds = list(pool.map(kinds_of, paths))
-    return dict(zip([str(path.relative_to(REPOSITORY).with_suffix("")) for path in paths], kinds, strict=True))
+    return dict(
+        zip(
+            [str(path.relative_to(REPOSITORY).with_suffix("")) for path in paths],
+            kinds,
+            strict=True,
+        )
+    )
 
 
 def on_the_page(kinds):
-    """The kinds of those cells that a page shows; each is to run, before itself, the code of the hidden ones above it.
+    """The kinds of those cells that a page shows; each is to run, before itself, the code of the
+    hidden ones above it.
 
-    What hidden cells need, the next cell needs; and it is not left out, since others may take names from them.
+    What hidden cells need, the next cell needs; and it is not left out, since others may take names
+    from them.
     """
     shown, code, needs = [], [], set()
     for kind in kinds:

@@ -1,8 +1,8 @@
 """Runs inside Pyodide: byte-compile every wheel in /wheels/in into /wheels/out.
 
-Importing SymPy from its sources takes the browser twice as long as from byte code. What is not needed is
-left out, and so are the sources of other people's packages, which would double the download; our own
-sources stay, because error messages show their lines.
+Importing SymPy from its sources takes the browser twice as long as from byte code. What is not
+needed is left out, and so are the sources of other people's packages, which would double the
+download; our own sources stay, because error messages show their lines.
 """
 
 import base64
@@ -17,10 +17,12 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = tuple(f"{name}/" for name in Path("/wheels/ours.txt").read_text("utf8").split())
-# The sealed variants are fetched one by one: a reader needs few of them. This file says where they are.
+# The sealed variants are fetched one by one: a reader needs few of them. This file says where they
+# are.
 APART = "/sealed/variants/"
 ELSEWHERE = "/sealed/elsewhere.txt"
-# What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200 packages.
+# What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200
+# packages.
 LEFT_OUT = (APART, "/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
 
@@ -35,21 +37,32 @@ def compiled(name, source):
     if not name.startswith(OURS):
         return {name + "c": byte_code}
     folder, _, file = name.rpartition("/")
-    return {name: source, f"{folder}/__pycache__/{file[:-3]}.{sys.implementation.cache_tag}.pyc": byte_code}
+    return {
+        name: source,
+        f"{folder}/__pycache__/{file[:-3]}.{sys.implementation.cache_tag}.pyc": byte_code,
+    }
 
 
 def place_of_variants(wheel):
-    """The file that says where the sealed variants are, with an address that follows from their contents."""
+    """The file that says where the sealed variants are, with an address that follows from their
+    contents.
+    """
     names = sorted(name for name in wheel.namelist() if APART in name)
-    digest = hashlib.sha256(b"".join(name.encode() + wheel.read(name) for name in names)).hexdigest()
-    return {name.partition(APART)[0] + ELSEWHERE: f"sealed-{digest[:12]}/".encode() for name in names}
+    digest = hashlib.sha256(
+        b"".join(name.encode() + wheel.read(name) for name in names)
+    ).hexdigest()
+    return {
+        name.partition(APART)[0] + ELSEWHERE: f"sealed-{digest[:12]}/".encode() for name in names
+    }
 
 
 def compile_wheel(path, target):
     with zipfile.ZipFile(path) as wheel:
         files = place_of_variants(wheel)
         for name in wheel.namelist():
-            if not any(part in name for part in LEFT_OUT) and not name.endswith((".dist-info/RECORD", "/")):
+            if not any(part in name for part in LEFT_OUT) and not name.endswith(
+                (".dist-info/RECORD", "/")
+            ):
                 files |= compiled(name, wheel.read(name))
         (record,) = (name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
     lines = []

@@ -1,7 +1,8 @@
 """``make numpy``: the official wheels of NumPy and Matplotlib, to come with the site.
 
-Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list names. Where
-BOOK_NUMPY (or ``numpy_in_the_page`` in ``_config.yml``) names their folder, the pages ask nobody else for anything.
+Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list
+names. Where BOOK_NUMPY (or ``numpy_in_the_page`` in ``_config.yml``) names their folder, the pages
+ask nobody else for anything.
 """
 
 import sys
@@ -12,7 +13,9 @@ from . import runtime
 
 
 def fetch(folder, packages, address):
-    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the names of those that were fetched."""
+    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the names of those that
+    were fetched.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     fetched = []
     for name in runtime.with_dependencies(runtime.NUMERICAL, packages):
@@ -23,7 +26,8 @@ def fetch(folder, packages, address):
             content = answer.read()
         if runtime.sha256(content) != print_:
             raise RuntimeError(
-                f"{address}{wheel.name} is not the file that Pyodide's list names; nothing of it was kept"
+                f"{address}{wheel.name} is not the file that Pyodide's list names; nothing of it "
+                "was kept"
             )
         wheel.write_bytes(content)
         fetched.append(wheel.name)
@@ -38,7 +42,10 @@ def main():
     except (OSError, RuntimeError) as error:
         sys.exit(f"Not all wheels could be fetched from {address}: {error}")
     size = sum(path.stat().st_size for path in folder.glob("*.whl")) / 1e6
-    print(f"{len(fetched)} wheels fetched; {folder} holds {size:.0f} MB, each file as its makers name it.")
+    print(
+        f"{len(fetched)} wheels fetched; {folder} holds {size:.0f} MB, each file as its makers "
+        "name it."
+    )
     print(f"`BOOK_NUMPY={folder} make book` puts them beside the pages.")
 
 

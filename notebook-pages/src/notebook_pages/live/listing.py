@@ -1,4 +1,6 @@
-"""The directive ``cells-that-need-more``: which cells do not run with SymPy alone, page by page, and why."""
+"""The directive ``cells-that-need-more``: which cells do not run with SymPy alone, page by page,
+and why.
+"""
 
 from docutils import nodes
 from docutils.statemachine import StringList
@@ -7,7 +9,8 @@ from sphinx.util.docutils import SphinxDirective
 from .cells import kinds_of_cells, on_the_page
 
 SOURCES = {
-    "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a cell needs them.",
+    "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a "
+    "cell needs them.",
     "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
     "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
 }
@@ -19,12 +22,18 @@ def column(kind):
     if "scipy" in kind["needs"]:
         return "need SciPy"
     if set(kind["needs"]) & {"numpy", "matplotlib"}:
-        return "draw with Matplotlib" if kind["needs"] == ["matplotlib"] or kind["figure"] else "compute with NumPy"
+        return (
+            "draw with Matplotlib"
+            if kind["needs"] == ["matplotlib"] or kind["figure"]
+            else "compute with NumPy"
+        )
     return WIDGET
 
 
 def asks_nobody(kind):
-    """Whether a cell runs with what comes with this site; the Python side of a moving figure does."""
+    """Whether a cell runs with what comes with this site; the Python side of a moving figure
+    does.
+    """
     return set(kind["needs"]) <= {"anywidget"}
 
 
@@ -34,23 +43,32 @@ def row(page, kinds):
         if kind["needs"]:
             cells[column(kind)].append(str(number))
     numbers = " | ".join(", ".join(cells[name]) for name in COLUMNS)
-    return f"| {{doc}}`/{page}` | {sum(map(asks_nobody, kinds))}\u00a0of\u00a0{len(kinds)} | {numbers} |"
+    return (
+        f"| {{doc}}`/{page}` | {sum(map(asks_nobody, kinds))}\u00a0of\u00a0{len(kinds)} | "
+        f"{numbers} |"
+    )
 
 
 class NeedsMore(SphinxDirective):
     def run(self):
         order = list(self.config.external_site_map)
-        pages = {page: on_the_page(kinds) for page, kinds in kinds_of_cells().items() if page in order}
+        pages = {
+            page: on_the_page(kinds) for page, kinds in kinds_of_cells().items() if page in order
+        }
         setting = self.config.numpy_in_the_page or "off"
         every = [kind for kinds in pages.values() for kind in kinds]
         alone = sum(map(asks_nobody, every))
         some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
-            f"Of {len(every)} cells, {alone} run in the page with what comes with this site, and ask no other server: "
-            f"{int(100 * alone / len(every))} per cent. {len(pages) - len(some)} pages need nothing but SymPy and this "
-            "book's own packages. The cells that need more, by their numbers from the top of each page, are these; a "
-            "cell that takes a name from one of them needs the same. What a moving figure needs comes with this site.",
+            f"Of {len(every)} cells, {alone} run in the page with what comes with this site, and "
+            "ask no other server: "
+            f"{int(100 * alone / len(every))} per cent. {len(pages) - len(some)} pages need "
+            "nothing but SymPy and this "
+            "book's own packages. The cells that need more, by their numbers from the top of each "
+            "page, are these; a "
+            "cell that takes a name from one of them needs the same. What a moving figure needs "
+            "comes with this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),

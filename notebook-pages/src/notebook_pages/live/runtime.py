@@ -1,7 +1,9 @@
-"""The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock file.
+"""The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock
+file.
 
-Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is byte-compiled and
-put in place. A wheel is compiled once: the result is kept under its contents' hash.
+Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is
+byte-compiled and put in place. A wheel is compiled once: the result is kept under its contents'
+hash.
 """
 
 import fcntl
@@ -23,11 +25,14 @@ from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"  # where the set-up puts the wheels of wheels.txt
+FETCHED = (
+    paths.FETCHED / ".venv" / "runtime" / "live"
+)  # where the set-up puts the wheels of wheels.txt
 FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
-# Names in the site, by those in npm's package: servers that do not know .mjs would send no script that runs.
+# Names in the site, by those in npm's package: servers that do not know .mjs would send no script
+# that runs.
 PYODIDE_FILES = {
     "pyodide.js": "pyodide.mjs",
     "pyodide.asm.js": "pyodide.asm.mjs",
@@ -40,12 +45,14 @@ FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
 #: The book's own package, or SymPy alone: it leads to all that a page's Python starts with.
 DISTRIBUTION = PROJECTS[-1].name if PROJECTS else "sympy"
-#: What moving figures talk with their Python through: wheels that the notebook interface needs as well.
+#: What moving figures talk with their Python through: wheels that the notebook interface needs as
+#: well.
 WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
 DEPENDS = {
     "sympy": ["mpmath"],
     **{
-        project.name: ["sympy", *(other.name for other in PROJECTS[:number])] for number, project in enumerate(PROJECTS)
+        project.name: ["sympy", *(other.name for other in PROJECTS[:number])]
+        for number, project in enumerate(PROJECTS)
     },
     "anywidget": list(WIDGETS),
     "ipywidgets": ["comm", "traitlets"],
@@ -150,7 +157,10 @@ def own_packages(wheels, target):
     Each lies in a folder named by its contents: a browser that kept an older wheel of the same name
     does not mistake it for this one.
     """
-    packages, imports_of_ours = {}, {project.name: [Path(one).name for one in project.packages] for project in PROJECTS}
+    packages, imports_of_ours = (
+        {},
+        {project.name: [Path(one).name for one in project.packages] for project in PROJECTS},
+    )
     for wheel in wheels:
         content = wheel.read_bytes()
         distribution, version = wheel.name.split("-")[:2]
@@ -165,14 +175,17 @@ def own_packages(wheels, target):
 
 
 def numpy_setting(stated):
-    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it, unless BOOK_NUMPY names a folder."""
+    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it, unless BOOK_NUMPY names
+    a folder.
+    """
     return os.environ.get("BOOK_NUMPY") or stated
 
 
 def numerical_packages(setting, target, official, address):
     """NumPy's and Matplotlib's part of the lock file: see the setting numpy_in_the_page.
 
-    Where ``setting`` is the path of a folder, the wheels that ``official`` names are copied from it.
+    Where ``setting`` is the path of a folder, the wheels that ``official`` names are copied from
+    it.
     """
     if setting in (False, "off"):
         return {}
@@ -187,7 +200,9 @@ def numerical_packages(setting, target, official, address):
             raise ConfigError(f"numpy_in_the_page: there is no {package['file_name']} in {setting}")
         content = wheel.read_bytes()
         if sha256(content) != package["sha256"]:
-            raise ConfigError(f"numpy_in_the_page: {wheel.name} in {setting} is not the official file")
+            raise ConfigError(
+                f"numpy_in_the_page: {wheel.name} in {setting} is not the official file"
+            )
         place = target / "wheels" / package["sha256"][:12]
         place.mkdir(parents=True, exist_ok=True)
         (place / wheel.name).write_bytes(content)
@@ -196,7 +211,9 @@ def numerical_packages(setting, target, official, address):
 
 
 def write_variants(wheels, compiled, target):
-    """Put beside the wheels what ``compiled`` have not of ``wheels``: the sealed variants, each fetched alone."""
+    """Put beside the wheels what ``compiled`` have not of ``wheels``: the sealed variants, each
+    fetched alone.
+    """
     kept = set()
     for before, after in zip(wheels, compiled, strict=True):
         with zipfile.ZipFile(before) as whole, zipfile.ZipFile(after) as rest:
@@ -206,7 +223,9 @@ def write_variants(wheels, compiled, target):
                     kept.add((target / address).resolve())
                     for name in whole.namelist():
                         file = target / address / name.removeprefix(folder)
-                        if name.startswith(f"{folder}variants/") and not file.is_file():  # named by what is in them
+                        if (
+                            name.startswith(f"{folder}variants/") and not file.is_file()
+                        ):  # named by what is in them
                             file.parent.mkdir(parents=True, exist_ok=True)
                             file.write_bytes(whole.read(name))
     for outdated in target.glob("sealed-*/"):
@@ -244,7 +263,12 @@ def write(site, setting):
     first = with_dependencies([DISTRIBUTION], packages)
     loaded = [pyodide / name for name in PYODIDE_FILES]
     loaded += [target / packages[name]["file_name"] for name in first]
-    lock = {"info": official["info"], "packages": packages, "first": DISTRIBUTION, "bytes": sum(map(size, loaded))}
+    lock = {
+        "info": official["info"],
+        "packages": packages,
+        "first": DISTRIBUTION,
+        "bytes": sum(map(size, loaded)),
+    }
     content = json.dumps(lock, indent=1).encode()
     for outdated in target.glob("lock-*/"):
         shutil.rmtree(outdated)

@@ -1,4 +1,6 @@
-"""The scripts of the page, put together by esbuild: a small one for every page with code, and what it loads."""
+"""The scripts of the page, put together by esbuild: a small one for every page with code, and what
+it loads.
+"""
 
 import os
 import shutil
@@ -14,7 +16,8 @@ from .cells import PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-#: What a moving figure and its widget share; the figures of the build and those of the page's Python have one.
+#: What a moving figure and its widget share; the figures of the build and those of the page's
+#: Python have one.
 MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
@@ -26,7 +29,14 @@ def folder_name():
 
 
 def esbuild(*arguments):
-    command = [NODE, ESBUILD, "--minify", "--log-level=warning", "--legal-comments=none", *arguments]
+    command = [
+        NODE,
+        ESBUILD,
+        "--minify",
+        "--log-level=warning",
+        "--legal-comments=none",
+        *arguments,
+    ]
     subprocess.run(command, check=True, env=os.environ | {"NODE_PATH": str(NODE_MODULES)})
 
 
@@ -49,12 +59,18 @@ def write(site):
             *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
             "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
         )  # fmt: skip
-    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of the page go before.
+    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of
+    # the page go before.
     rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
     (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")
     static = site / "_static"
     static.mkdir(exist_ok=True)
     esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
-    esbuild(JS / "progress.js", "--bundle", "--global-name=progress", f"--outfile={static / 'progress.js'}")
+    esbuild(
+        JS / "progress.js",
+        "--bundle",
+        "--global-name=progress",
+        f"--outfile={static / 'progress.js'}",
+    )
     # A service worker may act for the pages below it only.
     esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

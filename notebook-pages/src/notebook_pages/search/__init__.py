@@ -1,7 +1,8 @@
 """The search: an index of places, made from the built pages, and the palette that asks it (``js``).
 
-Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls otherwise, and what else
-they type for a place: the places, with their numbers, first sentences and characteristic words, are those of the pages.
+Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls
+otherwise, and what else they type for a place: the places, with their numbers, first sentences and
+characteristic words, are those of the pages.
 """
 
 import json
@@ -43,25 +44,37 @@ def text_of(element, left_out=()):
             parts.append(one)
         elif id(one) not in left_out:
             waiting += reversed(one.contents)
-    words = " ".join(" ".join(parts).replace("\u2061", "").split())  # the sign by which a function is applied
+    words = " ".join(
+        " ".join(parts).replace("\u2061", "").split()
+    )  # the sign by which a function is applied
     return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
 
 
 def first_sentence(element, left_out=()):
-    """The first words that stand as text in ``element``: a sentence, or as much of it as a line shows."""
+    """The first words that stand as text in ``element``: a sentence, or as much of it as a line
+    shows.
+    """
     if element.name in ("dd", "p"):
         paragraph = element
     else:  # a line that is nothing but emphasis stands beside the text
-        asides = [one for one in element.select(":scope > p > em:only-child") if text_of(one) == text_of(one.parent)]
+        asides = [
+            one
+            for one in element.select(":scope > p > em:only-child")
+            if text_of(one) == text_of(one.parent)
+        ]
         beside = {id(one.parent) for one in asides}
-        paragraph = next((one for one in element.find_all("p", recursive=False) if id(one) not in beside), None)
+        paragraph = next(
+            (one for one in element.find_all("p", recursive=False) if id(one) not in beside), None
+        )
     words = text_of(paragraph, left_out) if paragraph else ""
     return first_words(re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0])
 
 
 def first_words(text):
     """As much of a text as a line shows."""
-    return text if len(text) <= LONGEST_SENTENCE else text[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+    return (
+        text if len(text) <= LONGEST_SENTENCE else text[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+    )
 
 
 def title_of(heading):
@@ -77,13 +90,16 @@ def captions():
 
 
 def entries_of_page(page, article):
-    """The places of one page, with the text of each in ``text``, from which its words are chosen."""
+    """The places of one page, with the text of each in ``text``, from which its words are
+    chosen.
+    """
     tex = {
         box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
         for box in article.select("div.math[id]")
     }
     numbers = {
-        box["id"]: text_of(box.select_one(".eqno")).strip("()# ") for box in article.select("div.math[id]:has(.eqno)")
+        box["id"]: text_of(box.select_one(".eqno")).strip("()# ")
+        for box in article.select("div.math[id]:has(.eqno)")
     }
     for rest in article.select(".headerlink, .katex > [aria-hidden]"):
         rest.extract()
@@ -96,10 +112,18 @@ def entries_of_page(page, article):
         number, title = title_of(BeautifulSoup(str(heading), "lxml").find(heading.name))
         if title in EVERYWHERE and heading.name != "h1":
             continue
-        kind = "page" if heading.name == "h1" else "example" if title.startswith("Worked example") else "section"
+        kind = (
+            "page"
+            if heading.name == "h1"
+            else "example"
+            if title.startswith("Worked example")
+            else "section"
+        )
         anchor = "" if kind == "page" else section["id"]
         own = " ".join(
-            text_of(part, inner) for part in section.contents if id(part) not in inner and part is not heading
+            text_of(part, inner)
+            for part in section.contents
+            if id(part) not in inner and part is not heading
         )
         yield {
             "kind": kind, "title": title, "number": number, "anchor": anchor, "about": first_sentence(section, rest),
@@ -108,20 +132,37 @@ def entries_of_page(page, article):
         for box in section.select("div.math[id]"):
             if box.find_parent("section") is section and box["id"] in numbers:
                 number = numbers[box["id"]]
-                called = {"kind": "equation", "title": f"Equation {number}: {title}", "number": number}
+                called = {
+                    "kind": "equation",
+                    "title": f"Equation {number}: {title}",
+                    "number": number,
+                }
                 yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
     for figure in article.select("figure[id]:has(> figcaption)"):
         caption = figure.find("figcaption", recursive=False)
         number = caption.select_one(".caption-number")
         number = text_of(number.extract()) if number else ""
         title, *rest = re.split(r"(?<=[.?!]) (?=[A-Z])", text_of(caption), maxsplit=1)
-        called = {"kind": "figure", "title": title.rstrip("."), "number": number, "anchor": figure["id"]}
+        called = {
+            "kind": "figure",
+            "title": title.rstrip("."),
+            "number": number,
+            "anchor": figure["id"],
+        }
         yield called | ({"about": first_words(rest[0])} if rest else {})
     for exercise in article.select(".admonition.exercise[id]"):
         number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
         body = exercise.select_one("section, div") or exercise
-        called = {"kind": "exercise", "title": title.rstrip(" )") or number, "number": number.strip()}
-        yield called | {"anchor": exercise["id"], "about": first_sentence(body), "text": text_of(body)}
+        called = {
+            "kind": "exercise",
+            "title": title.rstrip(" )") or number,
+            "number": number.strip(),
+        }
+        yield called | {
+            "anchor": exercise["id"],
+            "about": first_sentence(body),
+            "text": text_of(body),
+        }
     for name in article.select("dl.glossary > dt[id]"):
         yield {
             "kind": "term",
@@ -141,14 +182,20 @@ def entries_of_page(page, article):
 
 
 def words_of(entry):
-    """The words of an entry's text that its title and first sentence do not have; one that comes back counts twice."""
+    """The words of an entry's text that its title and first sentence do not have; one that comes
+    back counts twice.
+    """
     count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
     shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
-    return " ".join(word for word, number in count.items() if word not in shown for _ in range(1 + (number > 2)))
+    return " ".join(
+        word for word, number in count.items() if word not in shown for _ in range(1 + (number > 2))
+    )
 
 
 def weight_of(page):
-    """What a page counts beside the others: chapters explain, and others hold what belongs to them."""
+    """What a page counts beside the others: chapters explain, and others hold what belongs to
+    them.
+    """
     if is_solutions(page):
         return 0.3
     if page.startswith("exercises/"):
@@ -157,12 +204,16 @@ def weight_of(page):
 
 
 def index(site):
-    """What the palette asks: pages, places and synonyms, as plain data; and, for later, each place's words and TeX."""
+    """What the palette asks: pages, places and synonyms, as plain data; and, for later, each
+    place's words and TeX.
+    """
     caption, pages, entries = captions(), [], []
     synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else {}
     asked = synonyms.pop("places", {})
     # Reading them takes most of the time, and few pages change between two builds.
-    memory = site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
+    memory = (
+        site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
+    )
     kept, used = json.loads(memory.read_text("utf8")) if memory.exists() else {}, {}
     for path in pages_of(site):
         page = path.relative_to(site).with_suffix("").as_posix()
@@ -182,13 +233,19 @@ def index(site):
         pages.append([page, found[0]["title"], caption.get(page, ""), weight_of(page)])
         phrases = asked.pop(page, {})
         entries += [
-            entry | {"page": len(pages) - 1, "asked": phrases.pop(entry["anchor"], ""), "weight": weight_of(page)}
+            entry
+            | {
+                "page": len(pages) - 1,
+                "asked": phrases.pop(entry["anchor"], ""),
+                "weight": weight_of(page),
+            }
             for entry in found
         ]
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
-    # Equations are found by what stands in them, and figures are many and seldom what is looked for: they come later.
+    # Equations are found by what stands in them, and figures are many and seldom what is looked
+    # for: they come later.
     first = [one for one in entries if one["kind"] not in LATER]
     last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
     words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
@@ -219,11 +276,19 @@ def row(entry):
 
 
 def write(site):
-    """Write the palette with its index as one script: it answers from a disk, too, where pages may fetch nothing.
+    """Write the palette with its index as one script: it answers from a disk, too, where pages may
+    fetch nothing.
 
-    The words of the text and the formulas, which weigh more than all the rest, come after it, as another script.
+    The words of the text and the formulas, which weigh more than all the rest, come after it, as
+    another script.
     """
-    flags = ["--bundle", "--minify", "--format=iife", "--legal-comments=none", "--log-level=warning"]
+    flags = [
+        "--bundle",
+        "--minify",
+        "--format=iife",
+        "--legal-comments=none",
+        "--log-level=warning",
+    ]
     command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
     done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
@@ -256,4 +321,6 @@ def setup(app):
     app.connect("builder-inited", begin)
     app.connect("html-collect-pages", add_page)
     app.connect("html-page-context", add_address)
-    app.connect("build-finished", finish, priority=970)  # when all pages are written, before they name its version
+    app.connect(
+        "build-finished", finish, priority=970
+    )  # when all pages are written, before they name its version

@@ -41,10 +41,14 @@ def quaternion_at(angle, passed, part):
 
 def belt(angle, passed):
     """Return the frames along the belt and their places."""
-    frames = [dcm_from_quaternion(quaternion_at(angle, passed, k / PIECES)) for k in range(PIECES + 1)]
+    frames = [
+        dcm_from_quaternion(quaternion_at(angle, passed, k / PIECES)) for k in range(PIECES + 1)
+    ]
     places = [[0, -LENGTH / 2, 0]]
     for k in range(PIECES):
-        places.append(add(places[-1], scale(LENGTH / PIECES / 2, add(frames[k][1], frames[k + 1][1]))))
+        places.append(
+            add(places[-1], scale(LENGTH / PIECES / 2, add(frames[k][1], frames[k + 1][1])))
+        )
     return [frames, places]
 
 
@@ -56,7 +60,8 @@ def picture(sheet, angle, passed):
     sheet.box(IDENTITY, WALL, origin=wall, colour="N")
     for k in range(PIECES):
         corners = [
-            add(places[k + m], scale(side * WIDTH, frames[k + m][0])) for m, side in [[0, -1], [0, 1], [1, 1], [1, -1]]
+            add(places[k + m], scale(side * WIDTH, frames[k + m][0]))
+            for m, side in [[0, -1], [0, 1], [1, 1], [1, -1]]
         ]
         sheet.layer = dot(add(*corners), toward) / 4
         sheet.area(corners, "B" if dot(frames[k][2], toward) > 0 else "D", 38, False)
@@ -68,9 +73,12 @@ def picture(sheet, angle, passed):
 def drawing(figure, Sheet):
     q = ", ".join(f"{entry:.2f}" for entry in figure.quaternion_at(1))
     sheet = Sheet(
-        f"A wall on the left, a plate on the right, and between them a belt with one side red and one blue. The plate "
-        f"has been turned by {math.degrees(figure.angle):.0f} degrees about the line of the belt, and the belt has "
-        f"been passed round it by {100 * figure.passed:.0f} per cent. Along the belt the quaternion goes from 1 at the "
+        "A wall on the left, a plate on the right, and between them a belt with one side red and "
+        "one blue. The plate "
+        f"has been turned by {math.degrees(figure.angle):.0f} degrees about the line of the belt, "
+        "and the belt has "
+        f"been passed round it by {100 * figure.passed:.0f} per cent. Along the belt the "
+        "quaternion goes from 1 at the "
         f"wall to ({q}) at the plate.",
         scale=SIZE,
     )

@@ -12,11 +12,16 @@ def picture(sheet, dcm):
 
 
 def drawing(figure, Sheet):
-    rows = [f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
+    rows = [
+        f"{name} at ({', '.join(f'{entry + 0:.2f}' for entry in row)})"
+        for name, row in zip("xyz", figure.dcm)
+    ]
     scalar, *vector = (f"{part + 0:.4f}" for part in figure.quaternion)
     sheet = Sheet(
-        "The triad of frame N, and from the same origin the triad of A, in the orientation that is converted: its "
-        f"quaternion, scalar first, is ({scalar}, {', '.join(vector)}). Along N, a {', a '.join(rows)}. It is read "
+        "The triad of frame N, and from the same origin the triad of A, in the orientation that is "
+        "converted: its "
+        f"quaternion, scalar first, is ({scalar}, {', '.join(vector)}). Along N, a "
+        f"{', a '.join(rows)}. It is read "
         f"from the {figure.source['form']} of {figure.source['program']} and written as the "
         f"{figure.target['form']} of {figure.target['program']}.",
         scale=SIZE,

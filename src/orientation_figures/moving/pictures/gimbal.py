@@ -17,7 +17,9 @@ SYMBOLS = (r"$\psi$", r"$\theta$", r"$\varphi$")
 
 
 def device(angles, sequence):
-    """Return the frames as rows along A, the indices of the axes in the sequence, and the axes themselves."""
+    """Return the frames as rows along A, the indices of the axes in the sequence, and the axes
+    themselves.
+    """
     B, b, c = [simple_dcm(axis, angle) for axis, angle in zip(sequence, angles)]
     C = multiply(b, B)
     D = multiply(c, C)
@@ -26,14 +28,17 @@ def device(angles, sequence):
 
 
 def picture(sheet, gimbal, close=False, lit=None):
-    """Near gimbal lock (``close``) the first and the third axis stand out; ``lit`` is the number that is touched."""
+    """Near gimbal lock (``close``) the first and the third axis stand out; ``lit`` is the number
+    that is touched.
+    """
     B, C, D = gimbal["B"], gimbal["C"], gimbal["D"]
     at, axes = gimbal["at"], gimbal["axes"]
 
     def near(direction):
         return -1 if dot(direction, sheet.view[2]) < 0 else 1
 
-    # Shells about one centre, from the camera outwards: the near half of each lies above all that is in it.
+    # Shells about one centre, from the camera outwards: the near half of each lies above all that
+    # is in it.
     down = scale(-1, axes[0])
     sheet.layer = 6 * near(down)
     sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, "A")
@@ -43,7 +48,10 @@ def picture(sheet, gimbal, close=False, lit=None):
         for half, side in [["back", -1], ["front", 1]]:
             sheet.layer = layer * side
             sheet.circle(normal, radius=radius, colour=colour, kind="tube", half=half)
-    for axis, start, end, colour, layer in [[axes[1], INNER, OUTER, "B", 4], [axes[2], 0.2, INNER, "C", 2]]:
+    for axis, start, end, colour, layer in [
+        [axes[1], INNER, OUTER, "B", 4],
+        [axes[2], 0.2, INNER, "C", 2],
+    ]:
         for side in [1, -1]:
             arm = scale(side, axis)
             sheet.layer = layer * near(arm)
@@ -66,7 +74,8 @@ def picture(sheet, gimbal, close=False, lit=None):
             sheet.layer = 7 * near(arm)
             begin = (INNER if k == 2 else OUTER) + 0.1
             sheet.line([scale(begin, arm), scale(END, arm)], colour, "thick" if same else "guide")
-        # At lock the names of the two axes stand side by side, also where the axes point opposite ways.
+        # At lock the names of the two axes stand side by side, also where the axes point opposite
+        # ways.
         end = scale(-END if same and dot(axis, axes[0]) < 0 else END, axis)
         sheet.layer = 7 * near(end)
         sheet.turn(axis, 4.4, rests[k], radius=0.16, origin=scale(0.9, end), colour=colour)
@@ -78,8 +87,12 @@ def picture(sheet, gimbal, close=False, lit=None):
     if close:
         sheet.line([scale(-END, axes[0]), scale(END, axes[0])], "accent", "guide")
     sheet.label(scale(1.62, down), "$A$", "A", [24, 4])
-    sheet.label_beyond(scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), "$B$", "B", 20)
-    sheet.label_beyond(scale(INNER, add(scale(-0.71, C[at[1]]), scale(0.71, C[at[2]]))), "$C$", "C", 20)
+    sheet.label_beyond(
+        scale(OUTER, add(scale(0.64, B[at[0]]), scale(0.77, B[at[1]]))), "$B$", "B", 20
+    )
+    sheet.label_beyond(
+        scale(INNER, add(scale(-0.71, C[at[1]]), scale(0.71, C[at[2]]))), "$C$", "C", 20
+    )
     sheet.label_beyond(scale(0.26, D[2]), "$D$", "D", 14)
     # The triads of A and D, which the matrix compares.
     corner = add(scale(INSET[0], sheet.view[0]), scale(INSET[1], sheet.view[1]))
@@ -87,7 +100,9 @@ def picture(sheet, gimbal, close=False, lit=None):
         for k, row in enumerate(rows):
             sheet.faded = lit is not None and lit[index] != k
             label = rf"$\hat{{{letter.lower()}}}_{AXES[k]}$"
-            sheet.arrow(add(corner, scale(reach, row)), start=corner, colour=letter, label=label, size=17)
+            sheet.arrow(
+                add(corner, scale(reach, row)), start=corner, colour=letter, label=label, size=17
+            )
     sheet.faded = False
 
 
@@ -99,11 +114,15 @@ def drawing(figure, Sheet):
         for name, angle, axis in zip(("psi", "theta", "phi"), figure.angles, figure.sequence)
     )
     sheet = Sheet(
-        "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each turned from the "
+        "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each "
+        "turned from the "
         f"one before about an axis that both share: {spoken}. The axes of psi and phi are "
-        f"{math.degrees(figure.margin):.0f} degrees apart; at 0 the gimbal is locked. Beside it stand the triads "
+        f"{math.degrees(figure.margin):.0f} degrees apart; at 0 the gimbal is locked. Beside it "
+        "stand the triads "
         "of A and D.",
         view=view_from(math.radians(58), math.radians(22)),
         scale=SIZE,
     )
-    return sheet.paint(picture, device(figure.angles, figure.sequence), figure.margin < math.radians(10))
+    return sheet.paint(
+        picture, device(figure.angles, figure.sequence), figure.margin < math.radians(10)
+    )

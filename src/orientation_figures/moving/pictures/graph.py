@@ -14,7 +14,9 @@ CORNERS = ((-19, 18), (-19, -18), (19, 18), (19, -18))
 
 
 def places(edges):
-    """Return where each frame is drawn, pixels to the right and down: its depth in the tree, and its line."""
+    """Return where each frame is drawn, pixels to the right and down: its depth in the tree, and
+    its line.
+    """
     children, depth, line, leaves = {"N": []}, {"N": 0}, {}, []
     names = ["N", *[edge[0] for edge in edges]]
     for edge in edges:
@@ -35,7 +37,10 @@ def places(edges):
     walk("N")
     across = min(ACROSS, 280 / max([1, *[depth[name] for name in names]]))
     down = min(DOWN, 190 / len(leaves))
-    return {name: [LEFT + across * depth[name], down * (line[name] - (len(leaves) - 1) / 2)] for name in names}
+    return {
+        name: [LEFT + across * depth[name], down * (line[name] - (len(leaves) - 1) / 2)]
+        for name in names
+    }
 
 
 def picture(sheet, edges, dcms, path):
@@ -58,7 +63,9 @@ def picture(sheet, edges, dcms, path):
         sheet.triad(name, dcms[name], origin=place, length=reach, labels=["", "", ""])
         tips = [sheet.on_sheet(scale(reach, row)) for row in dcms[name]]
         for k, row in enumerate(dcms[name]):
-            if length(tips[k]) > SHORT:  # an arrow that points at the reader or away has no room for its letter
+            if (
+                length(tips[k]) > SHORT
+            ):  # an arrow that points at the reader or away has no room for its letter
                 sheet.label(add(place, scale(reach + 0.1, row)), f"${AXES[k]}$", name, [0, 0], 14)
         best, most = CORNERS[0], 0
         for corner in CORNERS:
@@ -75,7 +82,8 @@ def drawing(figure, Sheet):
         for frame, reference, axis, angle in figure.edges
     )
     sheet = Sheet(
-        f"A tree of frames, each drawn as a small triad. {words}. The path from {figure.source} to {figure.target} is "
+        f"A tree of frames, each drawn as a small triad. {words}. The path from {figure.source} to "
+        f"{figure.target} is "
         f"marked: {figure.path}.",
         scale=SIZE,
     )

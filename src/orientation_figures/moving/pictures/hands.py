@@ -18,7 +18,10 @@ def picture(sheet, rows, together):
 
 
 def drawing(figure, Sheet):
-    rows = [f"m {name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.rows)]
+    rows = [
+        f"m {name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
+        for name, row in zip("xyz", figure.rows)
+    ]
     image = "its mirror image" if figure.image == "mirror" else "a copy of it"
     where = "over" if figure.together else "beside"
     sheet = Sheet(

@@ -4,9 +4,9 @@ import math
 
 from ..vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, times, transpose
 
-#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The racket's are those that
-#: Brody (1985) measured, rounded; its a_x runs along its handle and a_z out of its face. The book's
-#: a_x runs along its long edges.
+#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The
+#: racket's are those that Brody (1985) measured, rounded; its a_x runs along its handle and a_z out
+#: of its face. The book's a_x runs along its long edges.
 MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
 SECONDS = 20.0
 SAMPLE = 0.1  # seconds between two points of a curve
@@ -22,18 +22,31 @@ ERROR = (156, 256, -12, 1)
 MARGIN = (288, 324, 0, 90)
 _LEGEND = 104
 # The bodies, along A.
-HEAD = [[0.45 + 0.47 * math.cos(math.pi * k / 14), 0.36 * math.sin(math.pi * k / 14), 0] for k in range(29)]
+HEAD = [
+    [0.45 + 0.47 * math.cos(math.pi * k / 14), 0.36 * math.sin(math.pi * k / 14), 0]
+    for k in range(29)
+]
 STRINGS = [
     *[
         [x, side * 0.36 * math.sqrt(1 - ((x - 0.45) / 0.47) ** 2), 0]
         for x in [0.12, 0.285, 0.45, 0.615, 0.78]
         for side in [-1, 1]
     ],
-    *[[0.45 + side * 0.47 * math.sqrt(1 - (y / 0.36) ** 2), y, 0] for y in [-0.2, 0, 0.2] for side in [-1, 1]],
+    *[
+        [0.45 + side * 0.47 * math.sqrt(1 - (y / 0.36) ** 2), y, 0]
+        for y in [-0.2, 0, 0.2]
+        for side in [-1, 1]
+    ],
 ]
 THROAT = ((0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0))
 HANDLE = ((-0.24, 0, 0), (-0.85, 0, 0))
-COVER = ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))  # the widest cut through the middle of a block
+COVER = (
+    (-1, -1),
+    (1, -1),
+    (1, 1),
+    (-1, 1),
+    (-1, -1),
+)  # the widest cut through the middle of a block
 LONGEST_EDGE = 1.4
 
 
@@ -44,7 +57,9 @@ def body_of(moments):
 
 
 def edges_of(moments):
-    """Return the edges of a uniform block: about each axis the moment is that of the two other edges squared."""
+    """Return the edges of a uniform block: about each axis the moment is that of the two other
+    edges squared.
+    """
     edges = [math.sqrt(max(sum(moments) / 2 - moment, 0)) for moment in moments]
     return scale(LONGEST_EDGE / max(edges), edges)
 
@@ -54,11 +69,18 @@ def outlines_of(moments):
         return [HEAD, THROAT, HANDLE]
     edges = edges_of(moments)
     thin = edges.index(min(edges))
-    return [[[[0, u, v][(k - thin + 3) % 3] * edge / 2 for k, edge in enumerate(edges)] for u, v in COVER]]
+    return [
+        [
+            [[0, u, v][(k - thin + 3) % 3] * edge / 2 for k, edge in enumerate(edges)]
+            for u, v in COVER
+        ]
+    ]
 
 
 def placed(points, dcm):
-    """Components along N of points along A: the rows of the matrix are A's unit vectors, skewed or not."""
+    """Components along N of points along A: the rows of the matrix are A's unit vectors, skewed or
+    not.
+    """
     columns = transpose(dcm)
     return [times(columns, point) for point in points]
 
@@ -88,7 +110,9 @@ def racket(sheet, dcm):
     sheet.layer = 3
     sheet.area(placed(HEAD[:-1], dcm), "A", 8 if dot(dcm[2], sheet.view[2]) > 0 else 38, False)
     sheet.layer = 3.1
-    sheet.path("MLMLMLMLMLMLMLML", [sheet.on_sheet(point) for point in placed(STRINGS, dcm)], "faint A")
+    sheet.path(
+        "MLMLMLMLMLMLMLML", [sheet.on_sheet(point) for point in placed(STRINGS, dcm)], "faint A"
+    )
     sheet.layer = 3.2
     sheet.line(placed(HEAD, dcm), "A", "thick")
 
@@ -139,7 +163,11 @@ def axes(sheet):
     sheet.label(origin, r"$t\ \mathrm{(s)}$", "ink", [across(17.5), MARGIN[1] + 15], 16)
 
 
-_DESCRIPTIONS = {"matrix": "direction cosine matrix", "quaternion": "quaternion", "angles": "Euler angles"}
+_DESCRIPTIONS = {
+    "matrix": "direction cosine matrix",
+    "quaternion": "quaternion",
+    "angles": "Euler angles",
+}
 _METHODS = {"Euler": "Euler", "Runge-Kutta": "Runge-Kutta", "exponential": "exponential (Magnus)"}
 
 
@@ -151,7 +179,9 @@ def drawing(figure, Sheet):
     from ..tumbling import error_of, fault_of, momentum
 
     dcm, run = figure.dcm, figure.run()
-    fault, error = (curve[-1] for curve in (fault_of(dcm[None]), error_of(dcm[None], run["reference"][-1:])))
+    fault, error = (
+        curve[-1] for curve in (fault_of(dcm[None]), error_of(dcm[None], run["reference"][-1:]))
+    )
     lengths = ", ".join(f"{length:.2f}" for length in np.linalg.norm(dcm, axis=1))
     restored = "restored after every step" if figure.restored else "not restored"
     middle = sorted(figure.moments)[1] == figure.moments["xyz".index(figure.axis)]
@@ -159,15 +189,23 @@ def drawing(figure, Sheet):
         figure.flips, f"has flipped {figure.flips} times"
     )
     sheet = Sheet(
-        f"A {figure.body} that spins freely about its {figure.axis} axis, with the moments of inertia "
-        f"{', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, drawn with its triad A as "
+        f"A {figure.body} that spins freely about its {figure.axis} axis, with the moments of "
+        "inertia "
+        f"{', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, drawn "
+        "with its triad A as "
         "its "
-        f"{_DESCRIPTIONS[figure.description]} says after {run['time'][-1]:.1f} seconds, {restored}, with the "
-        f"{_METHODS[figure.method]} method in steps of {1000 * figure.step:g} milliseconds. It {times}. "
-        f"The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is not orthogonal by "
-        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the reference, "
-        f"computed with steps ten times finer; the angular velocity of those steps is given to every description. "
-        f"The arrow H is the angular momentum, which keeps its direction. In the corner stands the triad of N.",
+        f"{_DESCRIPTIONS[figure.description]} says after {run['time'][-1]:.1f} seconds, "
+        f"{restored}, with the "
+        f"{_METHODS[figure.method]} method in steps of {1000 * figure.step:g} milliseconds. It "
+        f"{times}. "
+        f"The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is not "
+        "orthogonal by "
+        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the "
+        "reference, "
+        "computed with steps ten times finer; the angular velocity of those steps is given to "
+        "every description. "
+        "The arrow H is the angular momentum, which keeps its direction. In the corner stands the "
+        "triad of N.",
         scale=SIZE,
     )
     reference = dcm_from_quaternion(run["reference"][-1])
@@ -194,16 +232,22 @@ def plot(figure, Sheet):
     errors = {name: error_of(curve, reference) for name, curve in curves.items()}
     angles = body_fixed_from_dcm(dcm_from_quaternion(run["reference"]), "zxy")
     margins = np.degrees(gimbal_lock_margin(angles, "zxy"))
-    margin = np.array([margins[max(0, k - every + 1) : k + 1].min() for k in range(0, len(margins), every)])
+    margin = np.array(
+        [margins[max(0, k - every + 1) : k + 1].min() for k in range(0, len(margins), every)]
+    )
     last = "; ".join(
-        f"{title}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} radians"
+        f"{title}, not orthogonal by {_words(faults[name][-1])}, error "
+        f"{_words(errors[name][-1])} radians"
         for name, title in _DESCRIPTIONS.items()
     )
     sheet = Sheet(
-        f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} seconds. Above, "
+        f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} "
+        "seconds. Above, "
         "on a "
-        f"logarithmic scale, by how much each description is not orthogonal; in the middle, its error against the "
-        f"reference; below, the margin of the Euler angles to gimbal lock, at the least {margin.min():.0f} degrees. "
+        "logarithmic scale, by how much each description is not orthogonal; in the middle, its "
+        "error against the "
+        "reference; below, the margin of the Euler angles to gimbal lock, at the least "
+        f"{margin.min():.0f} degrees. "
         f"At the last: {last}."
     )
     sheet.paint(axes)

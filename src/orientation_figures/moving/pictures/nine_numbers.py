@@ -55,13 +55,24 @@ def drawing(figure, Sheet):
         nearest = figure.nearest.dcm
     except ValueError:  # several are equally near
         nearest = None
-    said = ", ".join(f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", rows))
+    said = ", ".join(
+        f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
+        for name, row in zip("xyz", rows)
+    )
     sheet = Sheet(
         f"In the frame N three arrows that should be the unit vectors of a triad A: {said}. "
         f"{figure.check() or 'They are a direction cosine matrix'}. "
-        + ("Dotted arrows show the nearest triad." if nearest is not None else "Several triads are equally near.")
+        + (
+            "Dotted arrows show the nearest triad."
+            if nearest is not None
+            else "Several triads are equally near."
+        )
         + (" Small circles show where tips at length 1 would be." if any(map(off, rows)) else "")
-        + (" A further arrow shows a x cross a y, where a z should point." if mirrored(rows) else ""),
+        + (
+            " A further arrow shows a x cross a y, where a z should point."
+            if mirrored(rows)
+            else ""
+        ),
         view=view_from(math.radians(40), math.radians(24)),
         scale=SIZE,
     )

@@ -1,10 +1,23 @@
-"""The picture of the quaternion and its double, and of three ways from one orientation to another."""
+"""The picture of the quaternion and its double, and of three ways from one orientation to
+another.
+"""
 
 import math
 
 from orientation.axis_angle import axis_angle_from_dcm
 
-from ..vectors import AXES, IDENTITY, degrees, dot, length, multiply, scale, subtract, transpose, unit
+from ..vectors import (
+    AXES,
+    IDENTITY,
+    degrees,
+    dot,
+    length,
+    multiply,
+    scale,
+    subtract,
+    transpose,
+    unit,
+)
 
 SIZE = 96  # of the first picture, and of the second:
 BALL = 104
@@ -24,7 +37,9 @@ TOPS = (30, 60, 90, 120, 180, 360, 720)
 
 
 def double(sheet, axis, angle, dcm, more):
-    """A frame that turns in N, and beside it the circle of half the angle with q, and -q if there is ``more``."""
+    """A frame that turns in N, and beside it the circle of half the angle with q, and -q if there
+    is ``more``.
+    """
     knob, sizes = scale(KNOB, axis), [abs(entry) for entry in axis]
     far = IDENTITY[sizes.index(min(sizes))]
     arm = subtract(far, scale(dot(far, axis), axis))
@@ -45,7 +60,11 @@ def double(sheet, axis, angle, dcm, more):
     half = angle / 2
     sheet.layer = 1
     for way in [0, math.pi / 2]:
-        sheet.line([on_circle(sheet, -RADIUS - 12, way), on_circle(sheet, RADIUS + 12, way)], "muted", "faint")
+        sheet.line(
+            [on_circle(sheet, -RADIUS - 12, way), on_circle(sheet, RADIUS + 12, way)],
+            "muted",
+            "faint",
+        )
     sheet.line(round_to(sheet, RADIUS, 2 * math.pi), "muted")
     sheet.label(on_circle(sheet, RADIUS + 12, 0), "$q_0$", "ink", [3, 13], 16)
     sheet.label(on_circle(sheet, RADIUS + 12, math.pi / 2), r"$\hat{e}$", "accent", [12, 2], 16)
@@ -70,14 +89,18 @@ def round_to(sheet, radius, angle):
 
 def angle_between(before, after):
     """Return the angle of the turn between two orientations, NaN where one of them is missing."""
-    return math.nan if before is None or after is None else axis_angle_from_dcm(multiply(after, transpose(before)))[1]
+    return (
+        math.nan
+        if before is None or after is None
+        else axis_angle_from_dcm(multiply(after, transpose(before)))[1]
+    )
 
 
 def ways(sheet, ends, tracks, speeds, now, raw, k, share):
     """The tip of a unit vector, the ``k``-th, on its three ways; what is None is not there.
 
-    ``tracks`` are the orientations at even times and ``speeds`` those between them; ``now`` are the three
-    orientations, and ``raw`` is the row of the blended entries.
+    ``tracks`` are the orientations at even times and ``speeds`` those between them; ``now`` are the
+    three orientations, and ``raw`` is the row of the blended entries.
     """
     hats = [rf"$\hat{{{letter}}}_{AXES[k]}$" for letter in list("abcde")]
     sheet.circle(sheet.view[2], colour="muted", kind="faint")
@@ -107,7 +130,8 @@ def ways(sheet, ends, tracks, speeds, now, raw, k, share):
 
 
 def plotted(speeds):
-    """Return the top of the scale, the pieces of each way's curve below it, and the fastest speed if it is cut off.
+    """Return the top of the scale, the pieces of each way's curve below it, and the fastest speed
+    if it is cut off.
 
     Speeds come in radians per second, and all else is in degrees.
     """
@@ -155,9 +179,12 @@ def _double(figure, Sheet):
     sheet = Sheet(
         f"The triad of N, and from the same origin the triad of A, turned from N through theta, "
         f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
-        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). Beside it a circle of radius 1 with the "
-        f"scalar part of a quaternion to the right and its part along e upwards. The point q stands at half the angle, "
-        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. q is ({q}), scalar "
+        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). Beside it a circle of radius 1 "
+        "with the "
+        "scalar part of a quaternion to the right and its part along e upwards. The point q "
+        "stands at half the angle, "
+        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. "
+        f"q is ({q}), scalar "
         f"first{'; minus q is the same orientation' if figure.more else ''}.",
         scale=SIZE,
     )
@@ -167,25 +194,39 @@ def _double(figure, Sheet):
 def _ways(figure, Sheet):
     ends, k = figure.ends, AXES.index(figure.unit_vector)
     tracks = list(zip(*(figure.ways(n / SAMPLES) for n in range(SAMPLES + 1))))
-    speeds = [[angle_between(*pair) * SAMPLES / SECONDS for pair in zip(track, track[1:])] for track in tracks]
+    speeds = [
+        [angle_between(*pair) * SAMPLES / SECONDS for pair in zip(track, track[1:])]
+        for track in tracks
+    ]
     raw = figure.blend(figure.share)
     now = [
-        f"{math.degrees(speed):.0f}" if math.isfinite(speed) else "not defined" for speed in figure.speeds(figure.share)
+        f"{math.degrees(speed):.0f}" if math.isfinite(speed) else "not defined"
+        for speed in figure.speeds(figure.share)
     ]
     highest, _, beyond = plotted(speeds)
-    cut = f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
+    cut = (
+        f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
+    )
     sheet = Sheet(
-        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the orientation of A to "
+        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the "
+        "orientation of A to "
         "that of "
-        f"B, a turn of {math.degrees(angle_between(*ends)):.0f} degrees: of C by slerp, an even turn about "
+        f"B, a turn of {math.degrees(angle_between(*ends)):.0f} degrees: of C by slerp, an even "
+        "turn about "
         "one axis; "
-        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by the matrix "
+        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by "
+        "the matrix "
         "nearest to interpolated entries. A "
-        f"straight dashed line inside the sphere shows where the blended entries lead before they are repaired. "
-        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D and E are "
+        "straight dashed line inside the sphere shows where the blended entries lead before they "
+        "are repaired. "
+        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D "
+        "and E are "
         f"{now[0]}, {now[1]} and {now[2]} "
         f"degrees per second, and the blended rows have the lengths "
-        f"{', '.join(f'{size:.2f}' for size in map(length, raw))}. Below, the three speeds over time{cut}.",
+        f"{', '.join(f'{size:.2f}' for size in map(length, raw))}. Below, the three speeds over "
+        f"time{cut}.",
         scale=BALL,
     )
-    return sheet.paint(ways, ends, tracks, speeds, figure.ways(figure.share), raw[k], k, figure.share)
+    return sheet.paint(
+        ways, ends, tracks, speeds, figure.ways(figure.share), raw[k], k, figure.share
+    )

@@ -31,8 +31,10 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", figure.dcm, strict=True)
     ]
     sheet = Sheet(
-        f"The triads of the frames N and A from one origin, and a weather vane that belongs to A. The frames share "
-        f"{figure.axis}, and A is turned about it through theta, {math.degrees(figure.angle):.0f} degrees. Along N, "
+        "The triads of the frames N and A from one origin, and a weather vane that belongs to A. "
+        "The frames share "
+        f"{figure.axis}, and A is turned about it through theta, {math.degrees(figure.angle):.0f} "
+        "degrees. Along N, "
         f"{', '.join(rows)}.",
         scale=SIZE,
     )

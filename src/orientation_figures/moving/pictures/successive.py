@@ -11,7 +11,13 @@ REACH = 1.25  # of the arrows of N
 BEFORE = 0.66  # of the frames before the last
 SIZE = 96
 LETTERS = "NABCD"
-COMPARISONS = ("nothing", "1 and 2 exchanged", "2 and 3 exchanged", "3 and 4 exchanged", "body and space fixed")
+COMPARISONS = (
+    "nothing",
+    "1 and 2 exchanged",
+    "2 and 3 exchanged",
+    "3 and 4 exchanged",
+    "body and space fixed",
+)
 
 
 def second_chain(turns, kind, compare):
@@ -28,7 +34,9 @@ def axis_of(frames, turns, kind, k):
 
 
 def picture(sheet, turns, kind, share, compare, lit=False):
-    """Where a number is touched (``lit``) the frames on the way step back, as they do beside a second chain."""
+    """Where a number is touched (``lit``) the frames on the way step back, as they do beside a
+    second chain.
+    """
     now = partly(turns, share)
     frames = chain(now, kind)
     last, end = len(now), frames[-1]
@@ -52,7 +60,8 @@ def picture(sheet, turns, kind, share, compare, lit=False):
         other_frames = chain(other_now, other_kind)
         if last:
             between, angle = axis_angle_from_dcm(multiply(other_frames[-1], transpose(end)))
-            # The axis between two orientations has the same components in both: along N it is found through either.
+            # The axis between two orientations has the same components in both: along N it is found
+            # through either.
             if angle > 0.02:
                 for row in end:
                     around(sheet, times(transpose(end), between), angle, row)
@@ -94,14 +103,19 @@ def drawing(figure, Sheet):
 def _words(figure, now, frames):
     about = ["n" if figure.fixed == "space" else letter.lower() for letter in LETTERS]
     steps = "; ".join(
-        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {math.degrees(angle):.0f} degrees about "
+        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {math.degrees(angle):.0f} "
+        "degrees about "
         f"{about[k]} {axis}"
         for k, (axis, angle) in enumerate(now)
     )
-    rows = [f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", frames[-1])]
+    rows = [
+        f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
+        for name, row in zip("xyz", frames[-1])
+    ]
     end = LETTERS[len(now)]
     words = (
-        f"The triads of the frames {', '.join(LETTERS[: len(now) + 1])} from one origin, and below them each "
+        f"The triads of the frames {', '.join(LETTERS[: len(now) + 1])} from one origin, and below "
+        "them each "
         f"frame by itself, in order, with a small box that turns with it. "
     )
     words += f"{steps}. " if steps else "No turn has been made yet. "
@@ -113,7 +127,8 @@ def _words(figure, now, frames):
             else f"with turns {figure.compare}"
         )
         words += (
-            f" A second chain, {kind}, ends in the frame E; a turn of {math.degrees(figure.angle_between):.1f} "
+            f" A second chain, {kind}, ends in the frame E; a turn of "
+            f"{math.degrees(figure.angle_between):.1f} "
             f"degrees lies between the two ends."
         )
     return words

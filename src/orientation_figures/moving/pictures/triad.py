@@ -23,10 +23,15 @@ def picture(sheet, axis, angle, dcm):
 
 
 def drawing(figure, Sheet):
-    rows = [f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})" for name, row in zip("xyz", figure.dcm)]
+    rows = [
+        f"{name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
+        for name, row in zip("xyz", figure.dcm)
+    ]
     sheet = Sheet(
-        f"The triad of frame N, and from the same origin the triad of A: turned from N through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the components "
+        "The triad of frame N, and from the same origin the triad of A: turned from N "
+        "through theta, "
+        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the "
+        "components "
         f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. Along N, a "
         f"{', a '.join(rows)}. Thin arcs show the way of each tip, all about e.",
         scale=SIZE,

@@ -1,8 +1,9 @@
 """The same grading on a Dask cluster: a job goes out as bytes, a result comes back as JSON.
 
-Each worker has a sandbox of its own for each of its threads, as one machine has for each of its workers.
-Verdicts are made where the command was given: right answers never leave that machine. A worker that is lost is
-made up for by the others; what comes of a notebook does not depend on where it was run.
+Each worker has a sandbox of its own for each of its threads, as one machine has for each of its
+workers. Verdicts are made where the command was given: right answers never leave that machine. A
+worker that is lost is made up for by the others; what comes of a notebook does not depend on where
+it was run.
 """
 
 import contextlib
@@ -48,7 +49,9 @@ class Sandboxes(WorkerPlugin):
         thread = threading.get_ident()
         with self.making:
             if thread not in self.made:
-                self.made[thread] = Sandbox(Limits(**self.limits), allow_weak_isolation=self.allow_weak_isolation)
+                self.made[thread] = Sandbox(
+                    Limits(**self.limits), allow_weak_isolation=self.allow_weak_isolation
+                )
             return self.made[thread]
 
     def teardown(self, worker: object) -> None:
@@ -72,12 +75,25 @@ def run_job(job: bytes, name: str) -> bytes:
 
 
 class _PlainData(pickle.Unpickler):
-    """Reads pickles of texts, bytes, numbers, lists and the like, which can do nothing; Dask wraps some in others."""
+    """Reads pickles of texts, bytes, numbers, lists and the like, which can do nothing; Dask wraps
+    some in others.
+    """
 
     def find_class(self, module: str, name: str) -> object:
-        if module == "builtins" and name in ("bytes", "bytearray", "str", "int", "float", "list", "tuple", "dict"):
+        if module == "builtins" and name in (
+            "bytes",
+            "bytearray",
+            "str",
+            "int",
+            "float",
+            "list",
+            "tuple",
+            "dict",
+        ):
             return super().find_class(module, name)  # how the bytes of an error say what they are
-        raise TypeError("A pickle was refused: whoever sends one could run code here, beside the right answers.")
+        raise TypeError(
+            "A pickle was refused: whoever sends one could run code here, beside the right answers."
+        )
 
 
 def plain_data(data: bytes, *, buffers: Iterable[object] = ()) -> object:
@@ -86,10 +102,11 @@ def plain_data(data: bytes, *, buffers: Iterable[object] = ()) -> object:
 
 @contextlib.contextmanager
 def no_pickles() -> Iterator[None]:
-    """Have this process, as a client of Dask, run nothing by unpickling what a worker or the scheduler sends.
+    """Have this process, as a client of Dask, run nothing by unpickling what a worker or the
+    scheduler sends.
 
-    Naming the serializers of the results is not enough: the types of results, errors and warnings come as
-    pickles of their own.
+    Naming the serializers of the results is not enough: the types of results, errors and warnings
+    come as pickles of their own.
     """
     replaced = (
         (protocol.pickle, "loads", plain_data),
@@ -107,15 +124,21 @@ def no_pickles() -> Iterator[None]:
 
 
 def run_on_cluster(
-    jobs: Iterable[Job], address: str, limits: Limits, *, keys: Path | None = None, allow_weak_isolation: bool = False
+    jobs: Iterable[Job],
+    address: str,
+    limits: Limits,
+    *,
+    keys: Path | None = None,
+    allow_weak_isolation: bool = False,
 ) -> Iterator[Result]:
-    """Run jobs on the cluster at an address; give the results as they come. ``keys`` is the folder of its keys.
+    """Run jobs on the cluster at an address; give the results as they come. ``keys`` is the folder
+    of its keys.
 
     Raises
     ------
     ValueError
-        The cluster cannot be reached or was lost, or its software is not the same as here, so that results might
-        differ.
+        The cluster cannot be reached or was lost, or its software is not the same as here, so that
+        results might differ.
     WeakIsolation
         A worker cannot keep student code apart.
     """
@@ -135,28 +158,41 @@ def run_on_cluster(
                 )
             )
         except OSError as error:
-            raise ValueError(f"There is no Dask scheduler to be reached at {address} ({error}).") from None
+            raise ValueError(
+                f"There is no Dask scheduler to be reached at {address} ({error})."
+            ) from None
         try:
             client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
         except OSError as error:
-            raise ValueError(f"The scheduler at {address} was lost ({error}). The same command goes on.") from None
+            raise ValueError(
+                f"The scheduler at {address} was lost ({error}). The same command goes on."
+            ) from None
         stack.callback(_leave, client, name)
         sent: dict[str, tuple[Future[bytes], Job]] = {}
         for job in jobs:
-            future = client.submit(run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False)
+            future = client.submit(
+                run_job, json.dumps(job).encode(), name, key=f"{name} {job['id']}", pure=False
+            )
             sent[future.key] = future, job
         for future in as_completed([future for future, _ in sent.values()], loop=client.loop):
             _, job = sent.pop(future.key)
             try:
                 answer = json.loads(future.result())
             except Exception as error:
-                # What a worker did comes as a pickle, which stays one: an error of the connection is our own client's.
-                if client.status != "running" or isinstance(error, (FutureCancelledError, CancelledError, OSError)):
+                # What a worker did comes as a pickle, which stays one: an error of the connection
+                # is our own client's.
+                if client.status != "running" or isinstance(
+                    error, (FutureCancelledError, CancelledError, OSError)
+                ):
                     raise ValueError(
-                        f"The scheduler at {address} was lost. What was graded is kept; the same command goes on."
+                        f"The scheduler at {address} was lost. What was graded is kept; the same "
+                        "command goes on."
                     ) from None
-                # An error comes as a pickle, and stays one. That worker after worker died is no secret in it.
-                if not any(b"KilledWorker" in part for part in error.args if isinstance(part, bytes)):
+                # An error comes as a pickle, and stays one. That worker after worker died is no
+                # secret in it.
+                if not any(
+                    b"KilledWorker" in part for part in error.args if isinstance(part, bytes)
+                ):
                     raise ValueError(
                         f"A worker of the cluster at {address} sent something else than a result. "
                         "Does it have this package, in this version?"
@@ -179,21 +215,27 @@ def _security(keys: Path | None) -> Security | None:
 
 
 def _leave(client: Client, name: str) -> None:
-    """End the sandboxes of the workers. Where the scheduler is gone, its workers end with it: nobody is to be told."""
+    """End the sandboxes of the workers. Where the scheduler is gone, its workers end with it:
+    nobody is to be told.
+    """
     if client.status == "running":
         with contextlib.suppress(OSError):  # it may be lost at this very moment
             client.unregister_worker_plugin(name)
 
 
 def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
-    """A worker may have been captured by what it ran: what it sends is looked at like what a notebook sends."""
+    """A worker may have been captured by what it ran: what it sends is looked at like what a
+    notebook sends.
+    """
     try:
         about = Fields(answer, "what a worker sent")
         if weak := about.maybe("weak", text):
             raise WeakIsolation(weak)
         theirs = about.get("software", by_name(text))
         if theirs != ours:
-            raise ValueError(f"The cluster has other versions than this machine: {theirs}, and here {ours}.")
+            raise ValueError(
+                f"The cluster has other versions than this machine: {theirs}, and here {ours}."
+            )
         result = about.get("result", by_name(anything))
         _, answers = read_result(result, job["id"])
         if result.get("id") != job["id"] or set(answers) != set(job["questions"]):

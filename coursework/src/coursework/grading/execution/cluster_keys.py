@@ -1,7 +1,7 @@
 """The keys of a cluster, and the commands that start one: who has no key is not listened to.
 
-A scheduler of Dask runs whatever code it is sent. One that asks for no key runs anybody's who can reach it, on all of
-its machines, so that there is no way here to start one like that.
+A scheduler of Dask runs whatever code it is sent. One that asks for no key runs anybody's who can
+reach it, on all of its machines, so that there is no way here to start one like that.
 """
 
 import os
@@ -15,8 +15,24 @@ DAYS = 365
 PORT = 8786
 #: One certificate, signed by itself, that is trusted by whoever holds it and by nobody else.
 REQUEST = [
-    *("openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes"),
-    *("-days", str(DAYS), "-subj", "/CN=coursework", "-addext", "basicConstraints=critical,CA:TRUE"),
+    *(
+        "openssl",
+        "req",
+        "-x509",
+        "-newkey",
+        "ec",
+        "-pkeyopt",
+        "ec_paramgen_curve:prime256v1",
+        "-nodes",
+    ),
+    *(
+        "-days",
+        str(DAYS),
+        "-subj",
+        "/CN=coursework",
+        "-addext",
+        "basicConstraints=critical,CA:TRUE",
+    ),
 ]
 LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
@@ -38,10 +54,14 @@ def make_keys(folder: Path) -> bool:
     before = os.umask(0o077)
     try:
         done = subprocess.run(
-            [*REQUEST, "-keyout", str(folder / KEY), "-out", str(folder / CERTIFICATE)], capture_output=True, text=True
+            [*REQUEST, "-keyout", str(folder / KEY), "-out", str(folder / CERTIFICATE)],
+            capture_output=True,
+            text=True,
         )
     except FileNotFoundError:
-        raise NoKeys("To make the keys of a cluster, install openssl: sudo apt install openssl.") from None
+        raise NoKeys(
+            "To make the keys of a cluster, install openssl: sudo apt install openssl."
+        ) from None
     finally:
         os.umask(before)
     if done.returncode:
@@ -53,14 +73,26 @@ def options(folder: Path) -> list[str]:
     """What a scheduler or worker of Dask is told of its keys."""
     for name in (CERTIFICATE, KEY):
         if not (folder / name).exists():
-            raise NoKeys(f"There is no {folder / name}. Copy the folder from the machine where the scheduler is.")
+            raise NoKeys(
+                f"There is no {folder / name}. Copy the folder from the machine where the "
+                "scheduler is."
+            )
     certificate, key = str(folder / CERTIFICATE), str(folder / KEY)
     return ["--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key]
 
 
 def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
     """The command that starts a scheduler, which listens to those alone who have its key."""
-    asked = [*options(folder), "--protocol", "tls", "--host", host, "--port", str(port), "--no-dashboard"]
+    asked = [
+        *options(folder),
+        "--protocol",
+        "tls",
+        "--host",
+        host,
+        "--port",
+        str(port),
+        "--no-dashboard",
+    ]
     return [sys.executable, "-m", "dask", "scheduler", *asked]
 
 
@@ -68,7 +100,16 @@ def worker(folder: Path, address: str, workers: int) -> list[str]:
     """The command that starts the workers of a machine, each of one notebook at a time."""
     if not address.startswith("tls://"):
         raise NoKeys(f"A scheduler with keys is at tls://..., and this is {address!r}.")
-    asked = [*options(folder), "--protocol", "tls", "--nworkers", str(workers), "--nthreads", "1", "--no-dashboard"]
+    asked = [
+        *options(folder),
+        "--protocol",
+        "tls",
+        "--nworkers",
+        str(workers),
+        "--nthreads",
+        "1",
+        "--no-dashboard",
+    ]
     return [sys.executable, "-m", "dask", "worker", address, *asked]
 
 
@@ -85,6 +126,8 @@ def demand_keys(address: str, folder: Path | None) -> None:
         options(folder)
     elif urlsplit(address if "://" in address else f"tcp://{address}").hostname not in LOOPBACK:
         raise NoKeys(
-            f"The scheduler at {address} asks for no key: whoever can reach it runs code on all of its machines, and "
-            "could send any results. Start one with `coursework cluster --keys FOLDER`, and name it as tls://..."
+            f"The scheduler at {address} asks for no key: whoever can reach it runs code on all of "
+            "its machines, and "
+            "could send any results. Start one with `coursework cluster --keys FOLDER`, and name "
+            "it as tls://..."
         )

@@ -1,7 +1,8 @@
-"""What keeps a student's code apart from the machine, in layers that are tried before they are trusted.
+"""What keeps a student's code apart from the machine, in layers that are tried before they are
+trusted.
 
-Each layer alone stops something; together they must stop every attempt of :data:`ATTEMPTS`, and it is
-tried at each start whether they do. Student code is not run otherwise.
+Each layer alone stops something; together they must stop every attempt of :data:`ATTEMPTS`, and it
+is tried at each start whether they do. Student code is not run otherwise.
 
 namespaces
     The warm parent and its children see a root folder made for them: Python, its libraries and
@@ -9,23 +10,26 @@ namespaces
     the first ends all. Each notebook has its own scratch folder, in memory and of limited size.
     Made by bubblewrap where it is installed and works, else by our own calls. Does not limit memory
     or processor, and leaves the kernel's whole surface open. Missing on systems that forbid
-    unprivileged user namespaces (Ubuntu 24.04 does), inside most containers, and always without Linux.
+    unprivileged user namespaces (Ubuntu 24.04 does), inside most containers, and always without
+    Linux.
 landlock
     The kernel lets the process read Python's own files and write in its scratch folder only. From
-    Linux 6.2 it can stand in for the root folder of its own; from 6.7 it refuses TCP, from 6.12 local
-    sockets and signals too. Does not cover UDP, does not hide that a file exists, and does not cover
-    changes of modes and owners: the next layer does.
+    Linux 6.2 it can stand in for the root folder of its own; from 6.7 it refuses TCP, from 6.12
+    local sockets and signals too. Does not cover UDP, does not hide that a file exists, and does
+    not cover changes of modes and owners: the next layer does.
 seccomp
-    A list of system calls (see :mod:`coursework.grading.execution.system_calls`): no socket of any kind, no new
-    process, no other program, no signal to others, no change of modes. Cannot tell one file from another.
+    A list of system calls (see :mod:`coursework.grading.execution.system_calls`): no socket of any
+    kind, no new process, no other program, no signal to others, no change of modes. Cannot tell one
+    file from another.
 resource limits
     Memory, processor time, size of a file, open files, threads, no core files. They hold for one
     process, so they bound a notebook only together with seccomp, which allows it only one.
 no privileges
     No capabilities, no way to gain any, and, if grading is started by root, another user.
 
-What is enough, then: seccomp, resource limits and no privileges, with namespaces or a recent Landlock.
-That the environment is empty, files are closed and output goes nowhere belongs to every start.
+What is enough, then: seccomp, resource limits and no privileges, with namespaces or a recent
+Landlock. That the environment is empty, files are closed and output goes nowhere belongs to every
+start.
 
 All of it is standard library and system calls; nothing here knows about notebooks or answers.
 """
@@ -58,8 +62,10 @@ LAYERS = (NAMESPACES, LANDLOCK, SECCOMP, LIMITS, PRIVILEGES)
 HOW_TO_GET = {
     NAMESPACES: "install bubblewrap, or allow unprivileged user namespaces "
     "(sysctl kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu), or start as root",
-    LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's command line)",
-    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids them",
+    LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's "
+    "command line)",
+    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that "
+    "forbids them",
     LIMITS: "start grading where the limits of memory, time and files may be lowered",
     PRIVILEGES: "start grading as an ordinary user, or as root with the right to change users",
 }
@@ -101,7 +107,12 @@ Layer = TypedDict("Layer", {"in force": bool, "why not": str, "made by": NotRequ
 #: What came of trying it.
 Report = TypedDict(
     "Report",
-    {"layers": dict[str, Layer], "not stopped": list[str], "landlock version": int, "scratch in memory": bool},
+    {
+        "layers": dict[str, Layer],
+        "not stopped": list[str],
+        "landlock version": int,
+        "scratch in memory": bool,
+    },
 )
 
 
@@ -110,7 +121,13 @@ class IsolationError(OSError):
 
 
 _library = ctypes.CDLL(None, use_errno=True)
-_library.mount.argtypes = (ctypes.c_char_p, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_ulong, ctypes.c_char_p)
+_library.mount.argtypes = (
+    ctypes.c_char_p,
+    ctypes.c_char_p,
+    ctypes.c_char_p,
+    ctypes.c_ulong,
+    ctypes.c_char_p,
+)
 
 
 def _call(what: str, result: int) -> int:
@@ -149,7 +166,11 @@ def readable_paths() -> list[str]:
         "/usr/share/zoneinfo",
     ]
     # The interpreter itself, for bubblewrap to start.
-    wanted += [sys.executable, os.path.realpath(sys.executable), os.path.join(sys.prefix, "pyvenv.cfg")]
+    wanted += [
+        sys.executable,
+        os.path.realpath(sys.executable),
+        os.path.join(sys.prefix, "pyvenv.cfg"),
+    ]
     # This package and those of the course, also where they are installed from a working copy.
     wanted.append(str(Path(__file__).resolve().parents[2]))
     wanted += folders_of(packages())
@@ -163,7 +184,12 @@ def readable_paths() -> list[str]:
 
 # ---- namespaces
 
-CLONE_NEWNS, CLONE_NEWCGROUP, CLONE_NEWUTS, CLONE_NEWIPC = 0x00020000, 0x02000000, 0x04000000, 0x08000000
+CLONE_NEWNS, CLONE_NEWCGROUP, CLONE_NEWUTS, CLONE_NEWIPC = (
+    0x00020000,
+    0x02000000,
+    0x04000000,
+    0x08000000,
+)
 CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x10000000, 0x20000000, 0x40000000
 MS_NOSUID, MS_NODEV, MS_REC, MS_PRIVATE = 2, 4, 16384, 1 << 18
 AT_FDCWD, AT_EMPTY_PATH, AT_RECURSIVE, MNT_DETACH = -100, 0x1000, 0x8000, 2
@@ -192,11 +218,22 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
         command.append("--unshare-user")
     # What the warm parent needs to mount each notebook's scratch folder, and to change its user if
     # it is root; the notebook's process gives all of it up.
-    for capability in ("SYS_ADMIN", "SETPCAP", "SETUID", "SETGID", "KILL", "CHOWN", "DAC_OVERRIDE", "FOWNER"):
+    for capability in (
+        "SYS_ADMIN",
+        "SETPCAP",
+        "SETUID",
+        "SETGID",
+        "KILL",
+        "CHOWN",
+        "DAC_OVERRIDE",
+        "FOWNER",
+    ):
         command += ["--cap-add", f"CAP_{capability}"]
     places = _places(readable)
     # Folders on the way would be closed to the user that root gives the code to.
-    on_the_way = {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
+    on_the_way = (
+        {str(parent) for name in places for parent in Path(name).parents} - {"/"} - set(places)
+    )
     for folder in sorted(on_the_way):
         command += ["--perms", "0755", "--dir", folder]
     for name, path in places.items():
@@ -208,8 +245,12 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
 
 
 def unshare_all() -> None:
-    """Leave the machine's namespaces; the process that is forked next is the first of the new ones."""
-    others = CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
+    """Leave the machine's namespaces; the process that is forked next is the first of the new
+    ones.
+    """
+    others = (
+        CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
+    )
     user, group = os.geteuid(), os.getegid()
     if user == 0 and _library.unshare(others) == 0:
         return
@@ -224,17 +265,23 @@ def unshare_all() -> None:
 
 
 def unshare_processes() -> None:
-    """Have the process that is forked next be the first of a namespace in which only those below it are seen."""
+    """Have the process that is forked next be the first of a namespace in which only those below it
+    are seen.
+    """
     _call("unshare", _library.unshare(CLONE_NEWPID))
 
 
 def enter_own_root(readable: Iterable[str]) -> None:
-    """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is read only."""
+    """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is
+    read only.
+    """
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     trees = []
     for name, path in _places([*readable, *DEVICES]).items():
         # The first flag: a copy that can be mounted elsewhere.
-        tree = _system_call("open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE)
+        tree = _system_call(
+            "open_tree", OPEN_TREE, AT_FDCWD, path.encode(), 1 | os.O_CLOEXEC | AT_RECURSIVE
+        )
         attributes = READ_ONLY | NO_SETUID | (0 if path in DEVICES else NO_DEVICES)
         _set_attributes(tree, b"", AT_EMPTY_PATH | AT_RECURSIVE, attributes)
         trees.append((tree, name, os.path.isdir(path)))
@@ -266,26 +313,43 @@ def _set_attributes(tree: int, path: bytes, flags: int, attributes: int) -> None
 
 
 def _mount_memory(folder: str, options: str) -> None:
-    _call("mount", _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()))
+    _call(
+        "mount",
+        _library.mount(b"tmpfs", folder.encode(), b"tmpfs", MS_NOSUID | MS_NODEV, options.encode()),
+    )
 
 
 def mount_own_scratch(folder: str, size: int, user: int) -> None:
     """Give this process alone a scratch folder in memory; it vanishes with the process."""
     _call("unshare", _library.unshare(CLONE_NEWNS))
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
-    _mount_memory(folder, f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}")
+    _mount_memory(
+        folder, f"size={size},nr_inodes={max(64, size // 4096)},mode=0700,uid={user},gid={user}"
+    )
 
 
 # ---- Landlock
 
 CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446
 EXECUTE, WRITE_FILE, READ_FILE, READ_FOLDER = 1 << 0, 1 << 1, 1 << 2, 1 << 3
-MAKE_CHARACTER_DEVICE, MAKE_BLOCK_DEVICE, MAKE_SOCKET, IOCTL_DEVICE = 1 << 6, 1 << 11, 1 << 9, 1 << 15
+MAKE_CHARACTER_DEVICE, MAKE_BLOCK_DEVICE, MAKE_SOCKET, IOCTL_DEVICE = (
+    1 << 6,
+    1 << 11,
+    1 << 9,
+    1 << 15,
+)
 
 
 def landlock_version() -> int:
     """The version of Landlock's interface; 0 if there is none."""
-    return max(0, int(_library.syscall(ctypes.c_long(CREATE_RULESET), None, ctypes.c_long(0), ctypes.c_long(1))))
+    return max(
+        0,
+        int(
+            _library.syscall(
+                ctypes.c_long(CREATE_RULESET), None, ctypes.c_long(0), ctypes.c_long(1)
+            )
+        ),
+    )
 
 
 def restrict_files(readable: Iterable[str], scratch: str) -> None:
@@ -314,7 +378,11 @@ def restrict_files(readable: Iterable[str], scratch: str) -> None:
         allow(path, READ_FILE | READ_FOLDER)
     for device in DEVICES:
         allow(device, READ_FILE | WRITE_FILE if device == "/dev/null" else READ_FILE)
-    allow(scratch, handled & ~(EXECUTE | MAKE_CHARACTER_DEVICE | MAKE_BLOCK_DEVICE | MAKE_SOCKET | IOCTL_DEVICE))
+    allow(
+        scratch,
+        handled
+        & ~(EXECUTE | MAKE_CHARACTER_DEVICE | MAKE_BLOCK_DEVICE | MAKE_SOCKET | IOCTL_DEVICE),
+    )
     _system_call("landlock", RESTRICT_SELF, rules, 0)
     os.close(rules)
 
@@ -325,8 +393,8 @@ def restrict_files(readable: Iterable[str], scratch: str) -> None:
 def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: int) -> None:
     """Lower this process's limits for good.
 
-    `limits` has `memory_bytes` and `threads` (beyond those in use at the start), `processor_seconds`,
-    `file_bytes` and `open_files`.
+    `limits` has `memory_bytes` and `threads` (beyond those in use at the start),
+    `processor_seconds`, `file_bytes` and `open_files`.
     """
     seconds = int(limits["processor_seconds"])
     for which, value in (
@@ -334,7 +402,8 @@ def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: i
         (resource.RLIMIT_FSIZE, limits["file_bytes"]),
         (resource.RLIMIT_NOFILE, limits["open_files"]),
         (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
-        # Not 0: a program that handles crashes is started for that all the same, and for 1 it is not (core(5)).
+        # Not 0: a program that handles crashes is started for that all the same, and for 1 it is
+        # not (core(5)).
         (resource.RLIMIT_CORE, 1),
         (resource.RLIMIT_MEMLOCK, 0),
         (resource.RLIMIT_MSGQUEUE, 0),
@@ -355,8 +424,8 @@ def drop_privileges(user: int) -> None:
     header = struct.pack("=Ii", 0x20080522, 0)
     _call("capset", _library.capset(header, b"\0" * 24))
     forbid_new_privileges()
-    # No other process of this user looks into this one, and what handles crashes here, perhaps as root, is not
-    # handed the memory of one. The limit of core files alone does not stop a handler.
+    # No other process of this user looks into this one, and what handles crashes here, perhaps as
+    # root, is not handed the memory of one. The limit of core files alone does not stop a handler.
     _call("dumpable", _library.prctl(4, 0, 0, 0, 0))
 
 
@@ -380,8 +449,10 @@ def user_for_students(preferred: int, uid_map: str) -> int:
         if any(first <= user < first + count for first, _, count in known):
             return user
     raise RuntimeError(
-        "Here is no other user than root, as in a container or namespace of one user, so that student code could not "
-        "be run as anybody else. Start the grading as an ordinary user, or in a container that has more users "
+        "Here is no other user than root, as in a container or namespace of one user, so that "
+        "student code could not "
+        "be run as anybody else. Start the grading as an ordinary user, or in a container that has "
+        "more users "
         "(unshare --map-auto, podman --userns=auto)."
     )
 
@@ -544,8 +615,8 @@ def _threads(target: Target) -> None:
             thread.join()
 
 
-#: What student code must not be able to do: how it is tried, and which layers must stop it on their own.
-#: The ones that change the process that tries come last.
+#: What student code must not be able to do: how it is tried, and which layers must stop it on their
+#: own. The ones that change the process that tries come last.
 ATTEMPTS = {
     "read a file outside": (_read, {NAMESPACES, LANDLOCK}),
     "write a file outside": (_write, {NAMESPACES, LANDLOCK}),
@@ -593,9 +664,14 @@ def lacking(report: Report) -> list[str]:
         if name not in ATTEMPTS:
             lines.append(name)
             continue
-        missing = [layer for layer in LAYERS if layer in ATTEMPTS[name][1] and not report["layers"][layer]["in force"]]
+        missing = [
+            layer
+            for layer in LAYERS
+            if layer in ATTEMPTS[name][1] and not report["layers"][layer]["in force"]
+        ]
         reasons = "; or ".join(
-            f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}" for layer in missing
+            f"{layer} ({report['layers'][layer]['why not']}): {HOW_TO_GET[layer]}"
+            for layer in missing
         )
         lines.append(f"student code could {name}. Missing: {reasons or 'no layer stopped it'}")
     return lines

@@ -1,8 +1,8 @@
 """Runs the cells of one notebook in a process that is already confined, and records the answers.
 
 Everything here shares its process with the student's code, which may change any of it. That is
-allowed for: all that leaves is a line of JSON for each event, read strictly outside; the worst that a
-student can do is hand in another answer of his own.
+allowed for: all that leaves is a line of JSON for each event, read strictly outside; the worst that
+a student can do is hand in another answer of his own.
 
 A line is one of
 
@@ -15,8 +15,9 @@ A line is one of
     {"done": true}
     {"secret": question, "plain": data} or {"secret": question, "unreadable": text}
 
-and is written the moment it is known, so that what comes later cannot lose it. Only after "done" come the
-arguments of the secret calls: what knows them then can hand in no answer any more in which they would be shown.
+and is written the moment it is known, so that what comes later cannot lose it. Only after "done"
+come the arguments of the secret calls: what knows them then can hand in no answer any more in which
+they would be shown.
 """
 
 import ast
@@ -82,8 +83,9 @@ SUSPICIOUS = {
 }
 
 
-#: How many frames above an event a cell is looked for: what a library opens or starts on its own is nobody's. A network
-#: is used by none on its own, and what uses one lies far below the cell that asks for it.
+#: How many frames above an event a cell is looked for: what a library opens or starts on its own is
+#: nobody's. A network is used by none on its own, and what uses one lies far below the cell that
+#: asks for it.
 DEPTH, DEPTH_OF_NETWORK = 6, 40
 
 
@@ -106,7 +108,11 @@ class Shell:
             self._execute(cell)
         elif name in ("writefile", "file") and line.strip():
             *options, path = line.split()
-            with open(path.strip("'\""), "a" if options in (["-a"], ["--append"]) else "w", encoding="utf8") as file:
+            with open(
+                path.strip("'\""),
+                "a" if options in (["-a"], ["--append"]) else "w",
+                encoding="utf8",
+            ) as file:
                 file.write(cell)
 
     def system(self, command):
@@ -143,7 +149,9 @@ def arguments_of(calls):
     if calls["as"] == "arrays":
         import numpy
 
-        arguments = [[numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments]
+        arguments = [
+            [numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments
+        ]
     return arguments
 
 
@@ -155,7 +163,8 @@ def warm_up():
     import sympy
 
     to_plain(sympy.Matrix([[sympy.cos(sympy.Symbol("a")), 0.5]]))
-    # A child that looked through all modules itself would get a copy of every page that one of their names is on.
+    # A child that looked through all modules itself would get a copy of every page that one of
+    # their names is on.
     OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
 
 
@@ -173,7 +182,9 @@ def run(job, records, secret, limits, folder):
     with open(job, "rb") as file:
         job = json.load(file)
     random.seed(job["seed"])
-    gc.set_threshold(20_000, 20, 50)  # a short life: what goes round in circles is seldom worth looking for
+    gc.set_threshold(
+        20_000, 20, 50
+    )  # a short life: what goes round in circles is seldom worth looking for
     sys.modules["numpy"].random.seed(job["seed"])
     _Notebook(job, records, secret, limits, folder).run()
 
@@ -207,11 +218,16 @@ class _Notebook:
         for index in self.job["order"]:
             if ("cell", index) not in self.skipped:
                 self.cell = index
-                # As Jupyter numbered it when it was run last; a cell that never ran follows the one before.
+                # As Jupyter numbered it when it was run last; a cell that never ran follows the one
+                # before.
                 self.number = self.job["numbers"][index] or (self.number or 0) + 1
                 if isinstance(self.names.get("In"), dict):
                     self.names["In"][self.number] = self.job["cells"][index]
-                self.step(["cell", index], lambda: self.execute(self.job["cells"][index]), self.limits["cell"])
+                self.step(
+                    ["cell", index],
+                    lambda: self.execute(self.job["cells"][index]),
+                    self.limits["cell"],
+                )
         self.cell = None
         for question, variable in self.job["variables"].items():
             if question not in self.answered and variable in self.names:
@@ -232,7 +248,8 @@ class _Notebook:
             if question not in self.functions or ("answer", question) in self.skipped:
                 continue
             function, names = self.functions[question]
-            # As it was when it was checked, though a later cell may have used its names for something else.
+            # As it was when it was checked, though a later cell may have used its names for
+            # something else.
             self.names.clear()
             self.names.update(names)
             found = {"secret": question}
@@ -256,7 +273,9 @@ class _Notebook:
             sys.modules.pop(name, None)
         package = self.package = types.ModuleType("coursework")
         package.check = self.check
-        package.hint = package.progress = package.student = package.me = package.worked_solution = nothing
+        package.hint = package.progress = package.student = package.me = package.worked_solution = (
+            nothing
+        )
         package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         for name, data in self.job["files"].items():
@@ -272,19 +291,25 @@ class _Notebook:
         warnings.simplefilter("ignore")
 
     def execute(self, source):
-        """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and ``Out[number]``."""
+        """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and
+        ``Out[number]``.
+        """
         name = f"<cell {self.cell}>"
         tree = self.parsed(source, name)
         last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
         self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
         # What ends in a semicolon is shown neither, and is a value all the same.
         if last is not None:
-            value = self.evaluate(compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True))
+            value = self.evaluate(
+                compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True)
+            )
             if value is not None:
                 self.keep(value)
 
     def parsed(self, source, name):
-        """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched for them."""
+        """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched
+        for them.
+        """
         if PROMPT not in source:
             with contextlib.suppress(SyntaxError, ValueError):
                 return ast.parse(source, name)
@@ -369,7 +394,9 @@ class _Notebook:
         """Whether a file is none of the notebook's own and none of Python's."""
         if not os.path.isabs(path):
             return ".." in path.split("/") and self.is_from_a_cell()
-        if path.startswith((self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")):
+        if path.startswith(
+            (self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")
+        ):
             return False
         return self.is_from_a_cell()
 
@@ -420,8 +447,14 @@ class _Notebook:
 
     @staticmethod
     def moment():
-        """The time by the clock and of the processor, and how often this process gave it away by itself."""
-        return time.monotonic(), time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw
+        """The time by the clock and of the processor, and how often this process gave it away by
+        itself.
+        """
+        return (
+            time.monotonic(),
+            time.process_time(),
+            resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw,
+        )
 
     def time_left(self):
         """What is left of the processor's time and of the clock's, with both stopped."""
@@ -440,10 +473,13 @@ class _Notebook:
             return
         if number == signal.SIGALRM:
             now = self.moment()
-            elapsed, used, gave_way = (moment - before for moment, before in zip(now, self.looked, strict=True))
+            elapsed, used, gave_way = (
+                moment - before for moment, before in zip(now, self.looked, strict=True)
+            )
             self.looked = now
-            # What computes on a busy machine is charged for what it got, and not for what others got: only what gave
-            # the processor away by itself has waited. It is woken at each tick, unless the machine is late.
+            # What computes on a busy machine is charged for what it got, and not for what others
+            # got: only what gave the processor away by itself has waited. It is woken at each tick,
+            # unless the machine is late.
             waited = gave_way and used < WAITING * elapsed
             self.wall_left -= min(elapsed, TICK) if waited else used
             if self.wall_left > 0:
@@ -461,7 +497,9 @@ class _Notebook:
             self.writing = False
 
     def described(self, error):
-        """An error as text: its type, its message, and the line of the cell. May run student code."""
+        """An error as text: its type, its message, and the line of the cell. May run student
+        code.
+        """
         try:
             self.start_timers(0.2, 0.4)
             try:

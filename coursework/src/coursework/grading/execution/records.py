@@ -1,4 +1,5 @@
-"""The records of a notebook's process, read as what they are: bytes that a student may have written.
+"""The records of a notebook's process, read as what they are: bytes that a student may have
+written.
 
 What does not have exactly the form of a record is counted and dropped. Nothing is repaired.
 """
@@ -54,7 +55,11 @@ class Records:
     @property
     def too_many(self) -> bool:
         """Whether more came than any honest notebook sends."""
-        return self.received > MOST_BYTES or self.lines > MOST_RECORDS or len(self.unfinished) > LONGEST_LINE
+        return (
+            self.received > MOST_BYTES
+            or self.lines > MOST_RECORDS
+            or len(self.unfinished) > LONGEST_LINE
+        )
 
     def feed(self, data: bytes) -> list[Record]:
         self.received += len(data)
@@ -90,7 +95,9 @@ class Records:
         if keys in ({"secret", "plain"}, {"secret", "unreadable"}):
             if "plain" in keys:
                 read_plain(record["plain"])
-            return is_text(record["secret"], LONGEST_NAME) and is_text(record.get("unreadable", ""), LONGEST_TEXT)
+            return is_text(record["secret"], LONGEST_NAME) and is_text(
+                record.get("unreadable", ""), LONGEST_TEXT
+            )
         if "end" in keys:
             return (
                 keys <= {"end", "outcome", "error", "line", "threads"}

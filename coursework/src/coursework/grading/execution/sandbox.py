@@ -1,12 +1,14 @@
 """Runs students' notebooks in isolation and hands back their answers as plain data.
 
-:func:`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take part:
+:func:`run_notebooks` takes jobs and gives results, both plain JSON. Three kinds of process take
+part:
 
 - this one, which is trusted: it starts warm parents, keeps the time, reads the records strictly
-  (:mod:`coursework.grading.execution.records`) and puts the results together. It never runs or unpickles
-  anything of a student's, and never repeats it to the console;
+  (:mod:`coursework.grading.execution.records`) and puts the results together. It never runs or
+  unpickles anything of a student's, and never repeats it to the console;
 - a warm parent for each worker (:mod:`coursework.grading.execution.warm_parent`), which only forks;
-- a child for each notebook, confined (:mod:`coursework.grading.execution.isolation`), in which the cells run
+- a child for each notebook, confined (:mod:`coursework.grading.execution.isolation`), in which the
+  cells run
   (:mod:`coursework.grading.execution.notebook`).
 
 No verdict is made here, and no right answer is here: marks are decided elsewhere, from the results.
@@ -50,7 +52,8 @@ from coursework.grading.workers import side_by_side
 WAIT_FOR_START = 120  # seconds for a warm parent to load its libraries, on a machine that is busy
 WAIT_FOR_END = 30  # seconds for a killed notebook to be gone
 OUTSIDE = "outside"  # the folder of the file that the isolation is tried on
-PAUSE = 0.005  # seconds in which records gather: to be woken for each takes both processes longer than the record
+# seconds in which records gather: to be woken for each takes both processes longer than the record
+PAUSE = 0.005
 DEEPEST_STEPS = 10
 MOST_UNKNOWN = 20  # names of questions that do not exist, kept of one notebook
 SIZE_OF_CREDENTIALS = struct.calcsize("3i")
@@ -61,8 +64,9 @@ ATTEMPTS_OF_A_JOB = 3  # how often a job is tried when its worker dies under it
 class Job(TypedDict):
     """A notebook to be run, as JSON.
 
-    Of each question it says the answer's ``"variable"``, and the ``"calls"`` and ``"secret calls"`` of a function, as
-    :func:`coursework.grading.judging.marking.asked_of_sandbox` does. The ``files`` beside it are in base64.
+    Of each question it says the answer's ``"variable"``, and the ``"calls"`` and ``"secret calls"``
+    of a function, as :func:`coursework.grading.judging.marking.asked_of_sandbox` does. The
+    ``files`` beside it are in base64.
     """
 
     id: str
@@ -73,11 +77,15 @@ class Job(TypedDict):
 
 
 #: What the warm parent says: that it is ready, or how a notebook's process ended.
-Message = TypedDict("Message", {"ready": Report, "ended": dict[str, int], "scratch full": bool}, total=False)
+Message = TypedDict(
+    "Message", {"ready": Report, "ended": dict[str, int], "scratch full": bool}, total=False
+)
 
 
 class WeakIsolation(RuntimeError):
-    """This machine cannot keep student code apart well enough; says what is missing and how to get it."""
+    """This machine cannot keep student code apart well enough; says what is missing and how to get
+    it.
+    """
 
 
 class WorkerDied(RuntimeError):
@@ -88,8 +96,8 @@ class WorkerDied(RuntimeError):
 class Limits:
     """What one notebook may use. Seconds are of processor time unless they say wall.
 
-    Wall times are for code that waits. The time in which it could have run and the machine was busy with others
-    does not count, so that load costs nobody an answer.
+    Wall times are for code that waits. The time in which it could have run and the machine was busy
+    with others does not count, so that load costs nobody an answer.
     """
 
     cell_seconds: float = 20
@@ -129,7 +137,8 @@ class Sandbox:
     allow_weak_isolation : bool
         Run student code although some of what must be stopped is not. Every result says so.
     without : collection of str
-        Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the isolation is weak.
+        Layers to leave out, of :data:`coursework.grading.execution.isolation.LAYERS`; then the
+        isolation is weak.
     namespaces_by : collection of str
         Which makers of namespaces to try, in order.
     like : Sandbox, optional
@@ -152,9 +161,13 @@ class Sandbox:
     ) -> None:
         unknown = set(without) - set(LAYERS)
         if unknown:
-            raise ValueError(f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}")
+            raise ValueError(
+                f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}"
+            )
         if not sys.platform.startswith("linux"):
-            raise WeakIsolation("Student code is isolated with means of Linux. Elsewhere, use WSL or a container.")
+            raise WeakIsolation(
+                "Student code is isolated with means of Linux. Elsewhere, use WSL or a container."
+            )
         self.limits = limits or Limits()
         self.allow_weak_isolation = allow_weak_isolation
         self.without = frozenset(without)
@@ -189,7 +202,9 @@ class Sandbox:
                         if bubblewrap is None:
                             why_not = "bubblewrap is not installed"
                             continue
-                        command = isolation.bubblewrap_command(bubblewrap, isolation.readable_paths())
+                        command = isolation.bubblewrap_command(
+                            bubblewrap, isolation.readable_paths()
+                        )
                     try:
                         self.report = self.launched(command, made_by, why_not, target)
                         break
@@ -217,7 +232,11 @@ class Sandbox:
 
     def copied(self, target: Target) -> bool:
         """Have the warm parent of another sandbox copied, and the copy tried; whether it serves."""
-        if self.like is None or self.like.control is None or not self.like.report["scratch in memory"]:
+        if (
+            self.like is None
+            or self.like.control is None
+            or not self.like.report["scratch in memory"]
+        ):
             return False
         control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         control.setsockopt(socket.SOL_SOCKET, socket.SO_PASSCRED, 1)
@@ -227,7 +246,9 @@ class Sandbox:
         about = {"user": new_user(), "target": target | {"files": [file_outside(self.base)]}}
         try:
             with other:
-                socket.send_fds(self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()])
+                socket.send_fds(
+                    self.like.control, [json.dumps({"copy": about}).encode()], [other.fileno()]
+                )
             waiting = select.poll()
             waiting.register(control, select.POLLIN)
             if not waiting.poll(WAIT_FOR_START * 1000):
@@ -235,7 +256,9 @@ class Sandbox:
             data, ancillary, _, _ = control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
             self.report = json.loads(data)["ready"]
             # The kernel says who speaks, by the number that the process has here.
-            (credentials,) = (value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS)
+            (credentials,) = (
+                value for _, kind, value in ancillary if kind == socket.SCM_CREDENTIALS
+            )
             self.warm_parent = struct.unpack("3i", credentials)[0]
         except (OSError, ValueError, WorkerDied):
             self.close()
@@ -244,7 +267,9 @@ class Sandbox:
         return True
 
     def target(self, stack: contextlib.ExitStack) -> Target:
-        """What the isolation is tried on: two ports and a local socket of our own, and later a file."""
+        """What the isolation is tried on: two ports and a local socket of our own, and later a
+        file.
+        """
         tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
         udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
         local = stack.enter_context(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
@@ -261,7 +286,9 @@ class Sandbox:
             "limits": self.limits.for_child(),
         }
 
-    def launched(self, command: Sequence[str], made_by: str | None, why_not: str, target: Target) -> Report:
+    def launched(
+        self, command: Sequence[str], made_by: str | None, why_not: str, target: Target
+    ) -> Report:
         """Start the warm parent behind `command`; give its report."""
         self.control, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         processes = os.open("/proc", os.O_RDONLY | os.O_DIRECTORY)
@@ -273,7 +300,8 @@ class Sandbox:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
                     [
-                        # First a process that removes the folder at the end, also if this one is killed.
+                        # First a process that removes the folder at the end, also if this one is
+                        # killed.
                         sys.executable,
                         "-I",
                         "-S",
@@ -314,7 +342,8 @@ class Sandbox:
             os.close(processes)
         start = {
             "without": sorted(self.without),
-            # Not before there is somebody to tidy up: a folder that is open to all is not left behind.
+            # Not before there is somebody to tidy up: a folder that is open to all is not left
+            # behind.
             "target": target | {"files": [file_outside(self.base)]},
             "base": self.base,
             "namespaces made by": made_by,
@@ -385,14 +414,18 @@ class Sandbox:
 
     def remove_base(self) -> None:
         if self.base is not None:
-            with contextlib.suppress(FileNotFoundError):  # the process that waits for the end removes it too
+            with contextlib.suppress(
+                FileNotFoundError
+            ):  # the process that waits for the end removes it too
                 scratch.remove_folder(self.base)
             self.base = None
 
     # -- one notebook
 
     def run(self, job: Job) -> Result:
-        """Run one notebook; give its result. A worker that dies is replaced, and the job tried again."""
+        """Run one notebook; give its result. A worker that dies is replaced, and the job tried
+        again.
+        """
         for _ in range(ATTEMPTS_OF_A_JOB):
             try:
                 if self.control is None:
@@ -400,13 +433,17 @@ class Sandbox:
                 return _Run(self, job).result()
             except WorkerDied:
                 self.close()
-        raise WorkerDied(f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}")
+        raise WorkerDied(
+            f"the worker died {ATTEMPTS_OF_A_JOB} times while it ran notebook {job['id']!r}"
+        )
 
     def isolation_in_force(self) -> Isolation:
         """The isolation, as every result records it."""
         layers, not_stopped = self.report["layers"], self.report["not stopped"]
         in_force = tuple(layer for layer in LAYERS if layers[layer]["in force"])
-        return Isolation(in_force, bool(not_stopped), layers[NAMESPACES]["made by"], tuple(not_stopped))
+        return Isolation(
+            in_force, bool(not_stopped), layers[NAMESPACES]["made by"], tuple(not_stopped)
+        )
 
 
 class _Run:
@@ -423,7 +460,9 @@ class _Run:
         self.unknown: dict[str, bool] = {}
         self.tried: dict[str, bool] = {}
         self.notes: list[str] = []
-        if not isinstance(job["id"], str) or not all(isinstance(cell["source"], str) for cell in job["cells"]):
+        if not isinstance(job["id"], str) or not all(
+            isinstance(cell["source"], str) for cell in job["cells"]
+        ):
             raise TypeError("a job has an id and cells with sources, all texts")
 
     def result(self) -> Result:
@@ -439,7 +478,9 @@ class _Run:
             "id": self.job["id"],
             "finished": finished,
             "cells": [cells.get(index, NOT_RUN).as_json() for index in range(number)],
-            "answers": {question: answers.get(question, MISSING).as_json() for question in self.questions},
+            "answers": {
+                question: answers.get(question, MISSING).as_json() for question in self.questions
+            },
             "unknown questions": written(list(self.unknown)[:MOST_UNKNOWN]),
             "notes": [*self.notes],
             "tried": [*self.tried],
@@ -449,7 +490,9 @@ class _Run:
         }
 
     def try_order_of_execution(self, answers: dict[str, Answer]) -> None:
-        """Fill in the answers that the notebook gives only in the order in which its cells once ran."""
+        """Fill in the answers that the notebook gives only in the order in which its cells once
+        ran.
+        """
         cells = self.job["cells"]
         moments: list[int] = []
         last = 0
@@ -478,7 +521,9 @@ class _Run:
             self.number_of_runs += 1
             once.watch()
             self.damaged += once.records.damaged
-            cells |= {index: cell for index, cell in once.cells.items() if ["cell", index] not in skip}
+            cells |= {
+                index: cell for index, cell in once.cells.items() if ["cell", index] not in skip
+            }
             self.unknown |= once.unknown
             self.tried |= once.tried
             for question, answer in once.answers.items():
@@ -487,7 +532,9 @@ class _Run:
             if once.finished:
                 finished = True
                 break
-            culprit = next((step for step in reversed(once.blamed or once.steps) if step not in skip), None)
+            culprit = next(
+                (step for step in reversed(once.blamed or once.steps) if step not in skip), None
+            )
             if number and once.left_threads:
                 # Twice, in different cells: the blame is with threads that an earlier cell left.
                 skip, culprit = [], ["cell", once.left_threads[0]]
@@ -528,13 +575,23 @@ class _Once:
                 "skip": skip,
                 "seed": job.get("seed", 0),
                 "files": job.get("files", {}),
-                "variables": {q: about["variable"] for q, about in job["questions"].items() if about.get("variable")},
-                "calls": {q: about["calls"] for q, about in job["questions"].items() if about.get("calls")},
-                "given": {q: about["given"] for q, about in job["questions"].items() if about.get("given")},
+                "variables": {
+                    q: about["variable"]
+                    for q, about in job["questions"].items()
+                    if about.get("variable")
+                },
+                "calls": {
+                    q: about["calls"] for q, about in job["questions"].items() if about.get("calls")
+                },
+                "given": {
+                    q: about["given"] for q, about in job["questions"].items() if about.get("given")
+                },
             }
         ).encode()
         self.secret_calls = {
-            q: about["secret calls"] for q, about in job["questions"].items() if about.get("secret calls")
+            q: about["secret calls"]
+            for q, about in job["questions"].items()
+            if about.get("secret calls")
         }
         self.records = records.Records(len(job["cells"]))
         self.process: int | None = None
@@ -557,18 +614,22 @@ class _Once:
     def watch(self) -> None:
         """Start the child, take its records, keep its time; return when all of it is gone."""
         with contextlib.ExitStack() as stack:
-            # What it gets and what it gives; the secret calls are written when it has nothing more to give.
+            # What it gets and what it gives; the secret calls are written when it has nothing more
+            # to give.
             ends = [os.memfd_create("job"), *os.pipe(), *os.pipe()]
             handles: list[IO[bytes]] = [
                 stack.enter_context(open(end, mode, 0))
                 for end, mode in zip(ends, ("rb+", "rb", "wb", "rb", "wb"), strict=True)
             ]
             job, reading, writing, secret, self.secret = handles
-            os.set_blocking(secret.fileno(), False)  # to a notebook that reads it too early it is empty
+            os.set_blocking(
+                secret.fileno(), False
+            )  # to a notebook that reads it too early it is empty
             job.write(self.job)
             job.seek(0)
             self.sandbox.send(
-                {"run": {"limits": self.limits.for_child()}}, [job.fileno(), writing.fileno(), secret.fileno()]
+                {"run": {"limits": self.limits.for_child()}},
+                [job.fileno(), writing.fileno(), secret.fileno()],
             )
             writing.close()
             secret.close()
@@ -576,7 +637,9 @@ class _Once:
         self.conclude(ended)
 
     def tell_the_secret(self) -> None:
-        """Give the secret calls; what does not fit into the pipe at once is not given, and nobody waits."""
+        """Give the secret calls; what does not fit into the pipe at once is not given, and nobody
+        waits.
+        """
         data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
         with contextlib.suppress(OSError):
             os.set_blocking(self.secret.fileno(), False)
@@ -608,7 +671,9 @@ class _Once:
                     raise WorkerDied("a killed notebook did not end")
             if look_again is not None and now >= look_again:
                 waiting.register(reading, select.POLLIN)
-            until = deadline if look_again is None or now >= look_again else min(deadline, look_again)
+            until = (
+                deadline if look_again is None or now >= look_again else min(deadline, look_again)
+            )
             for handle, _ in waiting.poll(max(1, (until - now) * 1000)):
                 if handle == reading:
                     waiting.unregister(reading)
@@ -628,7 +693,9 @@ class _Once:
         return bool(data)
 
     def give_back(self) -> bool:
-        """Put all deadlines off by the time in which the machine was busy with others; whether there was any."""
+        """Put all deadlines off by the time in which the machine was busy with others; whether
+        there was any.
+        """
         if self.process is None:
             self.process = running_below(self.sandbox.warm_parent)
         waited = kept_waiting(self.process) - self.kept_waiting
@@ -663,14 +730,22 @@ class _Once:
                         else {"unreadable": record["unreadable"]}
                     )
                     self.answers[record["secret"]] = dataclasses.replace(answer, secret=said)
-            if not ("begin" in record or "end" in record) or (record.get("begin") or record["end"])[0] != "answer":
-                return  # it knows the secret calls now: nothing that it says of anything else is heard
+            if (
+                not ("begin" in record or "end" in record)
+                or (record.get("begin") or record["end"])[0] != "answer"
+            ):
+                # it knows the secret calls now: nothing that it says of anything else is heard
+                return
         if "tried" in record:
             if len(self.tried) < MOST_UNKNOWN:
                 self.tried[record["tried"]] = True
         elif "begin" in record:
             step = record["begin"]
-            wall = self.limits.cell_wall_seconds if step[0] == "cell" else self.limits.answer_wall_seconds
+            wall = (
+                self.limits.cell_wall_seconds
+                if step[0] == "cell"
+                else self.limits.answer_wall_seconds
+            )
             if len(self.steps) < DEEPEST_STEPS:
                 self.steps.append(step)
                 self.begun.append(now)
@@ -713,7 +788,8 @@ class _Once:
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
             raise WeakIsolation(
-                "A notebook's process could not be confined, so it did not run: " + self.sandbox.last_error()
+                "A notebook's process could not be confined, so it did not run: "
+                + self.sandbox.last_error()
             )
         if self.finished:
             return
@@ -725,7 +801,10 @@ class _Once:
         elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
             outcome, error = "timeout", "It took longer than it may."
         elif "signal" in how:
-            outcome, error = "killed", f"The process was ended by {signal.Signals(how['signal']).name}."
+            outcome, error = (
+                "killed",
+                f"The process was ended by {signal.Signals(how['signal']).name}.",
+            )
         self.ending = outcome, error
 
 
@@ -756,21 +835,26 @@ def given_up(job: Job, why: str) -> Result:
 
 
 def copies_are_apart() -> bool:
-    """Whether copies of a warm parent are as much apart as warm parents that are started one by one.
+    """Whether copies of a warm parent are as much apart as warm parents that are started one by
+    one.
 
-    They share its user namespace. There the threads of an ordinary user are counted together, and one notebook could
-    take another's; root gives each copy a user of its own.
+    They share its user namespace. There the threads of an ordinary user are counted together, and
+    one notebook could take another's; root gives each copy a user of its own.
     """
     return os.geteuid() == 0
 
 
 def new_user() -> int:
-    """A user that nobody else is: root gives the code to it, and its limit of threads counts only these."""
+    """A user that nobody else is: root gives the code to it, and its limit of threads counts only
+    these.
+    """
     return 1_900_000_000 + random.SystemRandom().randrange(10**8)
 
 
 def end_copy(process: int) -> None:
-    """Wait until the copy of a warm parent has ended, of which the other end of its control is closed."""
+    """Wait until the copy of a warm parent has ended, of which the other end of its control is
+    closed.
+    """
     with contextlib.suppress(OSError):  # it has ended
         handle = os.pidfd_open(process)
         with open(handle, "rb"):
@@ -779,7 +863,9 @@ def end_copy(process: int) -> None:
 
 
 def running_below(process: int | None) -> int | None:
-    """The number of the last process below another: a notebook's, which has none below itself; ``None`` if hidden."""
+    """The number of the last process below another: a notebook's, which has none below itself;
+    ``None`` if hidden.
+    """
     with contextlib.suppress(OSError, ValueError, IndexError):
         while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
             process = int(children[-1])
@@ -788,7 +874,9 @@ def running_below(process: int | None) -> int | None:
 
 
 def kept_waiting(process: int | None) -> float:
-    """The seconds for which a process could have run and others did; 0 where the system does not tell."""
+    """The seconds for which a process could have run and others did; 0 where the system does not
+    tell.
+    """
     try:
         return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9
     except (OSError, ValueError, IndexError):
@@ -824,8 +912,8 @@ def run_notebooks(
             {"id": text,
              "cells": [{"source": text, "execution_count": number or None}, ...],   # code cells
              "questions": {name: {"variable": text or None,
-                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or None,
-                                  "secret calls": the same, optional}},
+                                  "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or
+                                  None, "secret calls": the same, optional}},
              "files": {name: base64 text},                                          # optional, beside it
              "seed": number}                                                        # optional, 0
     workers : int
@@ -836,8 +924,8 @@ def run_notebooks(
     Yields
     ------
     dict
-        One result for each job, in the order in which they are ready; each names its job by `id` and
-        does not depend on the others or on the number of workers.
+        One result for each job, in the order in which they are ready; each names its job by `id`
+        and does not depend on the others or on the number of workers.
 
     Raises
     ------
@@ -846,7 +934,9 @@ def run_notebooks(
     """
 
     def sandbox(like: Sandbox | None = None) -> Sandbox:
-        return Sandbox(limits, allow_weak_isolation=allow_weak_isolation, without=without, like=like)
+        return Sandbox(
+            limits, allow_weak_isolation=allow_weak_isolation, without=without, like=like
+        )
 
     with contextlib.ExitStack() as outer:
         first = outer.enter_context(sandbox()) if copies_are_apart() else None

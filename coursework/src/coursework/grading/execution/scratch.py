@@ -3,8 +3,9 @@
 What a student leaves behind may be hostile: folders nested a hundred thousand deep, without
 permissions, links to elsewhere. Nothing here follows a link or recurses.
 
-Run as a program, with a folder and a command, this starts the command, waits for its end and removes the
-folder: whoever gave the command may be killed meanwhile, and the command may see nothing of the folder.
+Run as a program, with a folder and a command, this starts the command, waits for its end and
+removes the folder: whoever gave the command may be killed meanwhile, and the command may see
+nothing of the folder.
 """
 
 import contextlib
@@ -29,7 +30,9 @@ def remove_folder(path: str) -> None:
                     for child in os.listdir(inner):
                         if not _unlinked(child, inner):
                             os.chmod(child, 0o700, dir_fd=inner)
-                            os.rename(child, secrets.token_hex(16), src_dir_fd=inner, dst_dir_fd=top)
+                            os.rename(
+                                child, secrets.token_hex(16), src_dir_fd=inner, dst_dir_fd=top
+                            )
                 finally:
                     os.close(inner)
                 os.rmdir(name, dir_fd=top)

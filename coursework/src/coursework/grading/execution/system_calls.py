@@ -200,7 +200,10 @@ def program(own_number: int, machine: str | None = None) -> bytes:
             steps += [(JUMP_EQUAL, value, 0, 1), (RETURN, ALLOW)]
         for_call(numbers[column], [*steps, (RETURN, REFUSE)])
     for numbers in ONLY_ITSELF.values():
-        for_call(numbers[column], [load(0), (JUMP_EQUAL, own_number, 0, 1), (RETURN, ALLOW), (RETURN, REFUSE)])
+        for_call(
+            numbers[column],
+            [load(0), (JUMP_EQUAL, own_number, 0, 1), (RETURN, ALLOW), (RETURN, REFUSE)],
+        )
     # A thread yes, a process or a new namespace no.
     for_call(
         CLONE[column],

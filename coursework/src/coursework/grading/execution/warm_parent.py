@@ -13,8 +13,8 @@ It speaks with the process that started it in JSON, one message each:
     in   {"kill": true}                        while a notebook runs
     in   {"copy": {...}}                       with one handle: a copy of this process says "ready" there, and serves
 
-The libraries take most of a second to load, so where several notebooks run at a time one warm parent loads them and
-is copied. One that is copied runs no notebook itself.
+The libraries take most of a second to load, so where several notebooks run at a time one warm
+parent loads them and is copied. One that is copied runs no notebook itself.
 """
 
 import contextlib
@@ -32,10 +32,16 @@ from pathlib import Path
 
 from coursework.checking.plugins import packages
 from coursework.grading.execution import isolation, scratch
-from coursework.grading.execution.isolation import LAYERS, LIMITS, NAMESPACES, PRIVILEGES, IsolationError
+from coursework.grading.execution.isolation import (
+    LAYERS,
+    LIMITS,
+    NAMESPACES,
+    PRIVILEGES,
+    IsolationError,
+)
 
-# The handles that a notebook's process has, beside input and output to nowhere; the last is where it learns of the
-# secret calls, at its end.
+# The handles that a notebook's process has, beside input and output to nowhere; the last is where
+# it learns of the secret calls, at its end.
 JOB, RECORDS, SECRET = 3, 4, 5
 NOT_CONFINED = 120
 LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on disk is
@@ -44,7 +50,9 @@ LARGE_PAGE, MADV_COLLAPSE = 2 << 20, 25
 
 
 def into_namespaces(control, readable):
-    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot be."""
+    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot
+    be.
+    """
     reading, writing = os.pipe()
     outer = os.getpid()
     if os.fork() == 0:
@@ -101,23 +109,29 @@ def load_libraries():
     sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
     third = sympy.Rational(1, 3)
     for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
-        inverse(third)  # looks it up in a table of known values, which takes ten milliseconds to make
+        inverse(
+            third
+        )  # looks it up in a table of known values, which takes ten milliseconds to make
     sympy.atan2(third, 1), sympy.cos(sympy.pi / 5)
     sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
     notebook.warm_up()
 
 
 def about_itself(processes, name):
-    """A file of this process's own in /proc, which is a handle here: the folder may be out of sight."""
+    """A file of this process's own in /proc, which is a handle here: the folder may be out of
+    sight.
+    """
     with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
         return file.read()
 
 
 def into_large_pages(maps):
-    """Have the kernel gather this process's memory in large pages, of which it copies one entry for each to a child.
+    """Have the kernel gather this process's memory in large pages, of which it copies one entry for
+    each to a child.
 
-    Of small ones there are 500 times as many, and a child would take milliseconds longer to be made and to end.
-    ``maps`` is what the system says of the memory. Where it cannot be done, everything works as before.
+    Of small ones there are 500 times as many, and a child would take milliseconds longer to be made
+    and to end. ``maps`` is what the system says of the memory. Where it cannot be done, everything
+    works as before.
     """
     madvise = ctypes.CDLL(None).madvise
     madvise.argtypes = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
@@ -125,7 +139,9 @@ def into_large_pages(maps):
         place, rights, *rest = line.split()
         if rights.startswith("rw") and rest[3:] in ([], ["[heap]"]):
             start, end = (int(address, 16) for address in place.split("-"))
-            for address in range(-(-start // LARGE_PAGE) * LARGE_PAGE, end - LARGE_PAGE + 1, LARGE_PAGE):
+            for address in range(
+                -(-start // LARGE_PAGE) * LARGE_PAGE, end - LARGE_PAGE + 1, LARGE_PAGE
+            ):
                 madvise(address, LARGE_PAGE, MADV_COLLAPSE)
 
 
@@ -151,7 +167,9 @@ class WarmParent:
         gc.collect()
         gc.freeze()
         into_large_pages(about_itself(processes, "maps"))
-        self.memory_in_use = int(about_itself(processes, "statm").split()[0]) * os.sysconf("SC_PAGE_SIZE")
+        self.memory_in_use = int(about_itself(processes, "statm").split()[0]) * os.sysconf(
+            "SC_PAGE_SIZE"
+        )
         os.close(processes)
         self.own_scratch = made_by is not None
         self.layers = []
@@ -160,7 +178,9 @@ class WarmParent:
     # -- one child
 
     def new_scratch(self, layers):
-        """The next child's scratch folder: memory that it mounts over the base, or a folder in it."""
+        """The next child's scratch folder: memory that it mounts over the base, or a folder in
+        it.
+        """
         if self.own_scratch and NAMESPACES in layers:
             return self.base
         self.count += 1
@@ -250,9 +270,12 @@ class WarmParent:
                 Path(module.__file__).read_bytes()
         except OSError as error:
             problems.append(
-                f"the isolated process cannot read Python's own libraries ({error}). Root runs it as another user, and "
-                "a umask such as 077 has kept them from all others: let them be read, with `chmod -R o+rX` on their "
-                "folder and `chmod o+x` on those above it, or grade as an ordinary user whose own they are"
+                f"the isolated process cannot read Python's own libraries ({error}). Root runs it "
+                "as another user, and "
+                "a umask such as 077 has kept them from all others: let them be read, with `chmod "
+                "-R o+rX` on their "
+                "folder and `chmod o+x` on those above it, or grade as an ordinary user whose own "
+                "they are"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)
@@ -283,7 +306,9 @@ class WarmParent:
 
     @contextlib.contextmanager
     def file_within(self):
-        """A file that everybody may change. Namespaces hide the other one that it is tried on from all layers."""
+        """A file that everybody may change. Namespaces hide the other one that it is tried on from
+        all layers.
+        """
         outside = os.path.join(self.base, f"inside namespaces, {self.user}")
         os.mkdir(outside, 0o777)
         own = os.path.join(outside, "file")
@@ -331,7 +356,9 @@ class WarmParent:
             send(self.control, self.run(message["run"], handles))
 
     def copy(self, about, handle):
-        """Have a copy of this process serve at another handle, as the first process of a namespace of its own."""
+        """Have a copy of this process serve at another handle, as the first process of a namespace
+        of its own.
+        """
         with contextlib.suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:  # copies that have ended
                 pass
@@ -352,7 +379,10 @@ class WarmParent:
             os.waitpid(inner, 0)
             return
         isolation.die_with_parent()
-        self.user, self.target = about["user"], about["target"] | {"threads in use": self.threads_in_use}
+        self.user, self.target = (
+            about["user"],
+            about["target"] | {"threads in use": self.threads_in_use},
+        )
         with self.file_within() as own:
             not_stopped = self.not_stopped(self.target | {"files": [*self.target["files"], own]})
         gc.collect()
@@ -369,18 +399,28 @@ class WarmParent:
             self.be_notebook(parent, run, handles, folder)
         for handle in handles:
             os.close(handle)
-        full = self.wait(child, None if folder == self.base else folder, run["limits"]["scratch_bytes"])
+        full = self.wait(
+            child, None if folder == self.base else folder, run["limits"]["scratch_bytes"]
+        )
         status = self.end_all(child)
         self.remove_scratch(folder)
-        how = {"signal": os.WTERMSIG(status)} if os.WIFSIGNALED(status) else {"code": os.WEXITSTATUS(status)}
+        how = (
+            {"signal": os.WTERMSIG(status)}
+            if os.WIFSIGNALED(status)
+            else {"code": os.WEXITSTATUS(status)}
+        )
         return {"ended": how, "scratch full": full}
 
     def wait(self, child, folder, most_bytes):
-        """Wait until the child has ended, must be killed, or has filled its folder on disk (then: True)."""
+        """Wait until the child has ended, must be killed, or has filled its folder on disk (then:
+        True).
+        """
         handle = os.pidfd_open(child)
         try:
             while True:
-                ready, _, _ = select.select([handle, self.control], [], [], LOOK_EVERY if folder else None)
+                ready, _, _ = select.select(
+                    [handle, self.control], [], [], LOOK_EVERY if folder else None
+                )
                 if ready:
                     return False  # it ended, or whatever came in, or nobody is there: it is to end
                 if scratch.used_bytes(folder, most_bytes) > most_bytes:

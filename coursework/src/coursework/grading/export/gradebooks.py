@@ -1,8 +1,9 @@
-"""Hands marks on: into the gradebook that the teacher exported, or as nbgrader and Gradescope want them.
+"""Hands marks on: into the gradebook that the teacher exported, or as nbgrader and Gradescope want
+them.
 
-A gradebook is filled in place: only the cells of one column change, and every other byte, with its order,
-quotation marks and line ends, stays as the system wrote it, so that the system takes it back. Nothing that a
-student wrote gets into it.
+A gradebook is filled in place: only the cells of one column change, and every other byte, with its
+order, quotation marks and line ends, stays as the system wrote it, so that the system takes it
+back. Nothing that a student wrote gets into it.
 """
 
 import datetime
@@ -48,7 +49,8 @@ class CannotExport(ValueError):
 
 
 class Marks:
-    """The points of each student, over one assignment or all, with all decisions, and by the rules of the term.
+    """The points of each student, over one assignment or all, with all decisions, and by the rules
+    of the term.
 
     Parameters
     ----------
@@ -57,7 +59,8 @@ class Marks:
     rules : Rules, optional
         Of the term: then lateness costs what they say, and who is excused has no points.
     as_of : datetime, optional
-        By what people had decided then, and what was due; what was handed in and judged is that of the records.
+        By what people had decided then, and what was due; what was handed in and judged is that of
+        the records.
 
     Attributes
     ----------
@@ -91,7 +94,11 @@ class Marks:
             self.students.setdefault(record.student, []).append(record)
         worth = {record.assignment: record.worth for record in self.records}
         self.worth = sum(worth.values())
-        self.results = self._results(rules, worth, as_of or datetime.datetime.now(datetime.UTC)) if rules else {}
+        self.results = (
+            self._results(rules, worth, as_of or datetime.datetime.now(datetime.UTC))
+            if rules
+            else {}
+        )
 
     def _results(
         self, rules: Rules, worth: Mapping[str, float], now: datetime.datetime
@@ -162,11 +169,15 @@ class Gradebook:
             raise CannotExport("The gradebook has no students.")
         self.header = [field.says.strip() for field in self.lines[0][0]]
         known, self.no = in_english(self.header)
-        self.ours = known | {theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()}
+        self.ours = known | {
+            theirs.casefold(): ours.casefold() for ours, theirs in (names or {}).items()
+        }
         there = {name.casefold() for name in self.header}
         unknown = [theirs for theirs in (names or {}).values() if theirs.casefold() not in there]
         if unknown:
-            raise CannotExport(f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}.")
+            raise CannotExport(
+                f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}."
+            )
 
     def column(self, *names: str) -> int | None:
         """The number of the first column that has one of these names; ``None`` if there is none."""
@@ -183,12 +194,19 @@ class Gradebook:
         fields[column] = Field(text, f'"{text}"' if quoted else text)
 
     def __bytes__(self) -> bytes:
-        text = "".join(self.delimiter.join(field.written for field in fields) + end for fields, end in self.lines)
+        text = "".join(
+            self.delimiter.join(field.written for field in fields) + end
+            for fields, end in self.lines
+        )
         return self.mark + text.encode(self.encoding)
 
 
 def _encoding(data: bytes) -> tuple[str, bytes]:
-    for mark, encoding in ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be")):
+    for mark, encoding in (
+        (b"\xef\xbb\xbf", "utf-8"),
+        (b"\xff\xfe", "utf-16-le"),
+        (b"\xfe\xff", "utf-16-be"),
+    ):
         if data.startswith(mark):
             return encoding, mark
     try:
@@ -200,7 +218,9 @@ def _encoding(data: bytes) -> tuple[str, bytes]:
 
 def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
     """Lines of fields, and what ends each line."""
-    pattern = re.compile(r'("(?:[^"]|"")*"[^%s\r\n]*|[^%s\r\n]*)(%s|\r\n|\n|\r|$)' % ((re.escape(delimiter),) * 3))
+    pattern = re.compile(
+        r'("(?:[^"]|"")*"[^%s\r\n]*|[^%s\r\n]*)(%s|\r\n|\n|\r|$)' % ((re.escape(delimiter),) * 3)
+    )
     lines: list[tuple[list[Field], str]] = []
     fields: list[Field] = []
     place = 0
@@ -226,7 +246,8 @@ def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
 # --- the systems --------------------------------------------------------------------------------
 
 
-#: What was written into each column of a gradebook, by student: what stands there of these is ours to change.
+#: What was written into each column of a gradebook, by student: what stands there of these is ours
+#: to change.
 WRITTEN = "exported.json"
 
 
@@ -279,7 +300,8 @@ def fill(
     said = [f"{system}: column {book.header[place]!r}."]
     if scale != 1:
         said.append(
-            f"The column is out of {number(out_of or 0)} and the questions are worth {number(marks.worth)}: "
+            f"The column is out of {number(out_of or 0)} and the questions are worth "
+            f"{number(marks.worth)}: "
             "points are scaled."
         )
     header = book.header[place]
@@ -289,19 +311,26 @@ def fill(
     filled_in = 0
     strangers = sorted(set(overwrite) - set(found.values()))
     if strangers:
-        raise CannotExport(f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook.")
+        raise CannotExport(
+            f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
+        )
     for line, student in sorted(found.items()):
         if marks.excused(student):
             excused.append(student)
         elif marks.undecided(student):
             waiting.append(student)
-        elif system == "Moodle" and book.says(line, book.column("grade can be changed")).casefold() == book.no:
+        elif (
+            system == "Moodle"
+            and book.says(line, book.column("grade can be changed")).casefold() == book.no
+        ):
             closed.append(student)
         else:
             points = number(round(marks.points(student) * scale, 2))
             there = book.says(line, place)
             before = ours.setdefault(student, ())
-            if there not in ("", "-") and not any(_is_same(there, one) for one in (points, *before)):
+            if there not in ("", "-") and not any(
+                _is_same(there, one) for one in (points, *before)
+            ):
                 if student not in overwrite or not _is_number(there):
                     kept.append(f"{student}: {there}, and graded {points}")
                     continue
@@ -319,7 +348,8 @@ def fill(
     if dry_run:
         said.append(f"{filled_in} would be filled in: nothing was written.")
     else:
-        # First what is ours: of a crash in between, the next run knows more than it wrote, and nothing is overlooked.
+        # First what is ours: of a crash in between, the next run knows more than it wrote, and
+        # nothing is overlooked.
         write(marks.store.folder / WRITTEN, as_text(known))
         write(target, bytes(book))
         said.append(f"{filled_in} filled in: {target}")
@@ -328,10 +358,16 @@ def fill(
         for line in range(first, len(book.lines))
         if line not in found and any(field.says for field in book.lines[line][0])
     ]
-    unmatched = [student for student in marks.students if student not in found.values() and student not in several]
+    unmatched = [
+        student
+        for student in marks.students
+        if student not in found.values() and student not in several
+    ]
     damaged, without = _with_damaged(marks.store, without)
     appealing = [
-        f"{student}: {', '.join(open_ones)}" for student in marks.students if (open_ones := marks.appeals(student))
+        f"{student}: {', '.join(open_ones)}"
+        for student in marks.students
+        if (open_ones := marks.appeals(student))
     ]
     for heading, those in (
         ("In the gradebook, and nothing was handed in", without),
@@ -388,9 +424,11 @@ def _system(book: Gradebook) -> str:
     if book.column("student", "lastname") is not None and book.column("id") is not None:
         return "Canvas"
     raise CannotExport(
-        "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or Brightspace "
+        "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or "
+        "Brightspace "
         "(OrgDefinedId, End-of-Line Indicator), nor one of Moodle in a language that is known here "
-        f"({', '.join(LANGUAGES)}). Say which column is which: --name 'identifier=...' --name 'grade=...'. "
+        f"({', '.join(LANGUAGES)}). Say which column is which: --name 'identifier=...' --name "
+        "'grade=...'. "
         f"Its columns: {', '.join(book.header)[:300]}"
     )
 
@@ -398,7 +436,9 @@ def _system(book: Gradebook) -> str:
 def _column(book: Gradebook, system: str, column: str | None) -> int:
     if column:
         places = [place for place, name in enumerate(book.header) if name == column] or [
-            place for place, name in enumerate(book.header) if name.lower().startswith(column.lower())
+            place
+            for place, name in enumerate(book.header)
+            if name.lower().startswith(column.lower())
         ]
     elif system == "Moodle":
         places = [place for place in (book.column("grade"),) if place is not None]
@@ -413,7 +453,9 @@ def _column(book: Gradebook, system: str, column: str | None) -> int:
         places = [place for place, name in enumerate(book.header) if re.search(r"\(\d+\)$", name)]
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
-        raise CannotExport(f"Name the column to fill with --column; there are {', '.join(map(repr, names))}.")
+        raise CannotExport(
+            f"Name the column to fill with --column; there are {', '.join(map(repr, names))}."
+        )
     return places[0]
 
 
@@ -447,7 +489,9 @@ def _shown(book: Gradebook, system: str) -> int | None:
     }[system]
 
 
-def _match(book: Gradebook, system: str, marks: Marks, first: int) -> tuple[dict[int, str], list[str]]:
+def _match(
+    book: Gradebook, system: str, marks: Marks, first: int
+) -> tuple[dict[int, str], list[str]]:
     """The student of each line; and students whom several lines could mean."""
     lines: dict[tuple[str, str], set[int]] = {}
     addresses: dict[int, str] = {}
@@ -469,7 +513,9 @@ def _match(book: Gradebook, system: str, marks: Marks, first: int) -> tuple[dict
                 several.append(student)
                 break
     # Who comes first has no better claim: a line that two could mean is filled in for neither.
-    several += [student for students in wanting.values() if len(students) > 1 for student in students]
+    several += [
+        student for students in wanting.values() if len(students) > 1 for student in students
+    ]
     return {line: students[0] for line, students in wanting.items() if len(students) == 1}, several
 
 
@@ -518,12 +564,14 @@ def _keys_of_student(system: str, student: str, identity: Identity) -> Iterator[
 
 
 def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
-    """Write an archive of the pages of feedback, named so that the system which handed the work out takes them back.
+    """Write an archive of the pages of feedback, named so that the system which handed the work out
+    takes them back.
 
-    A name begins with what the system wrote of the name of the work. Canvas reads the first two numbers between
-    underscores, of the student and of the file, takes no page whose last part begins with "link", and looks at no
-    folders. Moodle reads the number of the participant and ``assignsubmission_file``, in the first folder that has
-    them. Brightspace knows its own folders. Give the number of pages.
+    A name begins with what the system wrote of the name of the work. Canvas reads the first two
+    numbers between underscores, of the student and of the file, takes no page whose last part
+    begins with "link", and looks at no folders. Moodle reads the number of the participant and
+    ``assignsubmission_file``, in the first folder that has them. Brightspace knows its own folders.
+    Give the number of pages.
 
     Raises
     ------
@@ -532,22 +580,32 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     """
     if marks.behind:
         raise CannotExport(
-            f"Decisions on {marks.behind} records are not in the pages yet: coursework regrade {store.folder}."
+            f"Decisions on {marks.behind} records are not in the pages yet: coursework regrade "
+            f"{store.folder}."
         )
     pages: dict[str, Path] = {}
     for record in marks.records:
-        page = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
+        page = (
+            store.folder
+            / "feedback"
+            / file_name(record.student)
+            / f"{file_name(record.assignment)}.html"
+        )
         if not page.exists() or record.reply is None:
             raise CannotExport(f"There is no feedback for {record.student!r}: grade again.")
         name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"
         if name in pages:
-            raise CannotExport(f"Two pages of feedback would be called {name!r}: grade again, with a --roster.")
+            raise CannotExport(
+                f"Two pages of feedback would be called {name!r}: grade again, with a --roster."
+            )
         pages[name] = page
     half = Path(path).with_name(f".half-{secrets.token_hex(8)}")
     try:
         with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, page in sorted(pages.items()):
-                entry = zipfile.ZipInfo(name)  # with a fixed date: the same pages give the same bytes
+                entry = zipfile.ZipInfo(
+                    name
+                )  # with a fixed date: the same pages give the same bytes
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 archive.writestr(entry, page.read_bytes())
         os.replace(half, path)
@@ -585,7 +643,8 @@ def write_gradescope(path: str | Path, marks: Marks, student: str | None = None)
     """Write what Gradescope reads of an autograder: the results of one student."""
     if student is None and len(marks.students) != 1:
         raise CannotExport(
-            f"Gradescope takes one student at a time; name one with --student. There are {len(marks.students)}."
+            "Gradescope takes one student at a time; name one with --student. There are "
+            f"{len(marks.students)}."
         )
     student = student or next(iter(marks.students))
     if student not in marks.students:
@@ -600,7 +659,11 @@ def write_gradescope(path: str | Path, marks: Marks, student: str | None = None)
                     "score": mark.points,
                     "max_score": mark.worth,
                     # Neither one nor the other, where a person has still to decide.
-                    **({} if mark.outcome == "undecided" else {"status": STATUS.get(mark.outcome, "failed")}),
+                    **(
+                        {}
+                        if mark.outcome == "undecided"
+                        else {"status": STATUS.get(mark.outcome, "failed")}
+                    ),
                     "visibility": "visible",
                     "output_format": "text",
                     "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
@@ -609,7 +672,9 @@ def write_gradescope(path: str | Path, marks: Marks, student: str | None = None)
     write(
         path,
         json.dumps(
-            {"score": marks.points(student), "output_format": "text", "tests": tests}, indent=1, ensure_ascii=False
+            {"score": marks.points(student), "output_format": "text", "tests": tests},
+            indent=1,
+            ensure_ascii=False,
         )
         + "\n",
     )

@@ -1,10 +1,12 @@
 """An autograder for Gradescope: a zip to upload, and what runs in it.
 
-Gradescope unpacks the zip into ``/autograder/source`` and runs ``setup.sh`` once, with a network. For each submission
-it runs ``run_autograder`` in a fresh machine, which finds the work in ``/autograder/submission`` and who handed it in
-in ``/autograder/submission_metadata.json``, and writes ``/autograder/results/results.json``.
+Gradescope unpacks the zip into ``/autograder/source`` and runs ``setup.sh`` once, with a network.
+For each submission it runs ``run_autograder`` in a fresh machine, which finds the work in
+``/autograder/submission`` and who handed it in in ``/autograder/submission_metadata.json``, and
+writes ``/autograder/results/results.json``.
 
-The solutions and the secret are in the zip, so students' code is isolated there as everywhere, or not run at all.
+The solutions and the secret are in the zip, so students' code is isolated there as everywhere, or
+not run at all.
 """
 
 import io
@@ -58,7 +60,8 @@ def write_autograder(
     solutions: str | Path | None = None,
     roster: str | Path | None = None,
 ) -> Sequence[str]:
-    """Write the zip that Gradescope takes, for one assignment; give the names of the notebooks that make it up.
+    """Write the zip that Gradescope takes, for one assignment; give the names of the notebooks that
+    make it up.
 
     Parameters
     ----------
@@ -79,7 +82,9 @@ def write_autograder(
         "setup.sh": SETUP.encode(),
         "run_autograder": RUN.encode(),
         "requirements.txt": "".join(f"{one}\n" for one in requirements()).encode(),
-        CONFIGURATION: json.dumps({"assignment": name, "notebooks": stems, "roster": roster is not None}).encode(),
+        CONFIGURATION: json.dumps(
+            {"assignment": name, "notebooks": stems, "roster": roster is not None}
+        ).encode(),
         **{f"solutions/{stem}.ipynb": course.sources[stem].read_bytes() for stem in stems},
         f"solutions/{SECRET}": (folder / SECRET).read_bytes(),
     }
@@ -92,23 +97,37 @@ def write_autograder(
     for package in folders():
         for file in sorted(package.rglob("*")):
             if file.is_file() and "__pycache__" not in file.parts:
-                files[f"packages/{package.name}/{file.relative_to(package).as_posix()}"] = file.read_bytes()
-    entries = "".join(f"{one.name} = {one.value}\n" for one in metadata.entry_points(group="coursework.plugins"))
-    files["packages/course-1.dist-info/METADATA"] = b"Metadata-Version: 2.1\nName: course\nVersion: 1\n"
-    files["packages/course-1.dist-info/entry_points.txt"] = f"[coursework.plugins]\n{entries}".encode()
+                files[f"packages/{package.name}/{file.relative_to(package).as_posix()}"] = (
+                    file.read_bytes()
+                )
+    entries = "".join(
+        f"{one.name} = {one.value}\n" for one in metadata.entry_points(group="coursework.plugins")
+    )
+    files["packages/course-1.dist-info/METADATA"] = (
+        b"Metadata-Version: 2.1\nName: course\nVersion: 1\n"
+    )
+    files["packages/course-1.dist-info/entry_points.txt"] = (
+        f"[coursework.plugins]\n{entries}".encode()
+    )
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for place, content in sorted(files.items()):
-            entry = zipfile.ZipInfo(place)  # with a fixed date: the same autograder is the same bytes
+            entry = zipfile.ZipInfo(
+                place
+            )  # with a fixed date: the same autograder is the same bytes
             entry.compress_type = zipfile.ZIP_DEFLATED
-            entry.external_attr = (0o755 if place in ("setup.sh", "run_autograder") else 0o644) << 16
+            entry.external_attr = (
+                0o755 if place in ("setup.sh", "run_autograder") else 0o644
+            ) << 16
             archive.writestr(entry, content)
     Path(path).write_bytes(data.getvalue())
     return stems
 
 
 def requirements() -> list[str]:
-    """All that grading needs beside these packages, in the versions that are installed here: marks follow from them."""
+    """All that grading needs beside these packages, in the versions that are installed here: marks
+    follow from them.
+    """
     from packaging.requirements import Requirement
 
     of_packages = metadata.packages_distributions()
@@ -123,7 +142,10 @@ def requirements() -> list[str]:
             found[distribution.name.lower()] = distribution.version
         for line in distribution.requires or ():
             requirement = Requirement(line)
-            if not any(requirement.marker is None or requirement.marker.evaluate({"extra": extra}) for extra in extras):
+            if not any(
+                requirement.marker is None or requirement.marker.evaluate({"extra": extra})
+                for extra in extras
+            ):
                 continue
             one = requirement.name, frozenset({"", *requirement.extras})
             if one not in seen:
@@ -138,8 +160,8 @@ def requirements() -> list[str]:
 def run(home: Path = HOME) -> None:
     """Grade the submission of one student, or of a group, and write its results.
 
-    Where students' code cannot be kept apart well enough, there are no results: Gradescope says that the autograder
-    failed, and nobody has lost a point.
+    Where students' code cannot be kept apart well enough, there are no results: Gradescope says
+    that the autograder failed, and nobody has lost a point.
     """
     from ..grade import NothingToGrade, grade
     from ..store import REFUSED, Store
@@ -156,9 +178,13 @@ def run(home: Path = HOME) -> None:
     student = user["email"]
     results = home / "results" / "results.json"
     if roster:
-        found, why = Roster(roster).find((("email", user["email"]), ("own", user["email"]), ("name", user["name"])))
+        found, why = Roster(roster).find(
+            (("email", user["email"]), ("own", user["email"]), ("name", user["name"]))
+        )
         if found is None:
-            return _say(results, f"You are not in the list of this course ({why}) Ask your instructor.")
+            return _say(
+                results, f"You are not in the list of this course ({why}) Ask your instructor."
+            )
         student = found
     with tempfile.TemporaryDirectory() as out:
         Path(out, "questions").symlink_to(home / "questions")
@@ -176,16 +202,21 @@ def run(home: Path = HOME) -> None:
         store = Store(out)
         if store.read(student, assignment) is None:
             refused = [
-                f"{Path(one.file).name}: {one.why}" for one in store.said(REFUSED, many(Refused.from_json)) or ()
+                f"{Path(one.file).name}: {one.why}"
+                for one in store.said(REFUSED, many(Refused.from_json)) or ()
             ]
-            return _say(results, "\n".join(["There was no notebook that could be graded.", *refused]))
+            return _say(
+                results, "\n".join(["There was no notebook that could be graded.", *refused])
+            )
         write_gradescope(results, Marks(store), student)
 
 
 def _configuration(source: Path) -> tuple[dict[str, tuple[str, ...]], bool]:
     """The notebooks of the assignment, by its name, and whether there is a roster."""
     about = Fields(json.loads((source / CONFIGURATION).read_text("utf8")), CONFIGURATION)
-    return {about.get("assignment", text): about.get("notebooks", many(text))}, about.get("roster", truth)
+    return {about.get("assignment", text): about.get("notebooks", many(text))}, about.get(
+        "roster", truth
+    )
 
 
 def _user(found: object, where: str) -> dict[str, str]:
@@ -197,7 +228,9 @@ def _say(results: Path, said: str) -> None:
     """Results without questions: for nothing there are no points, and the student is told why."""
     from ..tables import readable
 
-    results.write_text(json.dumps({"score": 0, "output": readable(said), "output_format": "text"}), "utf8")
+    results.write_text(
+        json.dumps({"score": 0, "output": readable(said), "output_format": "text"}), "utf8"
+    )
 
 
 def prepare(home: Path = HOME) -> None:

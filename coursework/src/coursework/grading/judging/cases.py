@@ -1,8 +1,9 @@
 """What a student was asked, kept beside what the student answered.
 
-A question may be mended in mid-term, a variant of it taken out, a call of a function exchanged. An answer is judged by
-what its author saw all the same: a :class:`Case` names the variant by what is given in it, not by its number, and the
-contract, the question as it stood then, by its version. Contracts lie in the folder of results, one file each.
+A question may be mended in mid-term, a variant of it taken out, a call of a function exchanged. An
+answer is judged by what its author saw all the same: a :class:`Case` names the variant by what is
+given in it, not by its number, and the contract, the question as it stood then, by its version.
+Contracts lie in the folder of results, one file each.
 """
 
 import json
@@ -20,22 +21,29 @@ from .ledger import Decision, digest_of_answer
 
 
 def answered(case: Case, asked: Asked) -> Case:
-    """The same case, once a notebook was run and asked for this: what was mended by then is its contract."""
+    """The same case, once a notebook was run and asked for this: what was mended by then is its
+    contract.
+    """
     versions = {name: contract.version for name, contract in asked.second_chances.items()}
-    siblings = {name: Place(place.variant, versions.get(name, place.contract)) for name, place in case.siblings.items()}
+    siblings = {
+        name: Place(place.variant, versions.get(name, place.contract))
+        for name, place in case.siblings.items()
+    }
     return replace(case, own=Place(case.own.variant, asked.contract.version), siblings=siblings)
 
 
 def variants_of(variants: Sequence[Contract]) -> dict[str, Contract]:
     """The variants of a question by their names, in the order of their numbers.
 
-    A name follows from what is given in a variant, so it is the same wherever in the order the variant stands, and
-    whatever of its solution, hints and worth was mended.
+    A name follows from what is given in a variant, so it is the same wherever in the order the
+    variant stands, and whatever of its solution, hints and worth was mended.
     """
     return dict(zip(names_of_variants(one.variant for one in variants), variants, strict=True))
 
 
-def case_by_rule(name: str, variants: Sequence[Contract], identity: str, known: str = AS_GRADED) -> Case:
+def case_by_rule(
+    name: str, variants: Sequence[Contract], identity: str, known: str = AS_GRADED
+) -> Case:
     """The case of a student who is asked this question now."""
     order = numbers_of_variants(identity, name, variants[0].variant, len(variants))
     return _case(name, variants, order, known)
@@ -75,7 +83,9 @@ class Contracts:
         self._kept: set[str] = set()
 
     def keep(self, contract: Contract) -> None:
-        """Keep a question; it holds right answers, so that nobody else on this machine may read it."""
+        """Keep a question; it holds right answers, so that nobody else on this machine may read
+        it.
+        """
         path = self._path(contract.version)
         if contract.version not in self._kept and not path.exists():
             write(path, json.dumps(contract.as_json(), ensure_ascii=False), private=True)
@@ -86,22 +96,32 @@ class Contracts:
         if version not in self._known:
             path = self._path(version)
             if path.exists():
-                self._known[version] = Contract.from_json(json.loads(path.read_text("utf8")), str(path))
+                self._known[version] = Contract.from_json(
+                    json.loads(path.read_text("utf8")), str(path)
+                )
             elif version in self.older:
                 self._known[version] = self.older[version][0]
         return self._known.get(version)
 
     @property
     def older(self) -> dict[str, tuple[Contract, Case]]:
-        """What was worked out before there were contracts, by version: each edition of a notebook lies here still."""
+        """What was worked out before there were contracts, by version: each edition of a notebook
+        lies here still.
+        """
         if self._older is None:
             self._older = {}
             for name in sorted(os.listdir(self.questions)) if self.questions.is_dir() else ():
                 if name.endswith(".json"):
                     for asked, variants in questions_in(self.questions / name).items():
                         for number, one in enumerate(variants):
-                            order = [(number + further) % len(variants) for further in range(len(variants))]
-                            self._older[one.version] = one, _case(asked, variants, order, FROM_THE_VERSION)
+                            order = [
+                                (number + further) % len(variants)
+                                for further in range(len(variants))
+                            ]
+                            self._older[one.version] = (
+                                one,
+                                _case(asked, variants, order, FROM_THE_VERSION),
+                            )
         return self._older
 
     def _path(self, version: str) -> Path:
@@ -123,14 +143,16 @@ def judged_alike(one: Contract | None, other: Contract | None) -> bool:
 
     Of a question that nobody kept nothing is known, and so nothing is said against it.
     """
-    return one is None or other is None or one.version == other.version or one.judging == other.judging
+    return (
+        one is None or other is None or one.version == other.version or one.judging == other.judging
+    )
 
 
 def changed_since(decided: Decision | None, record: Record, contracts: Contracts) -> str:
     """What is another thing than when a person decided: ``"answer"``, ``"question"`` or nothing.
 
-    On another answer a decision does not count; on one that is judged otherwise by now it does, until somebody decides
-    again, and both are shown.
+    On another answer a decision does not count; on one that is judged otherwise by now it does,
+    until somebody decides again, and both are shown.
     """
     if decided is None or decided.question not in record.marks:
         return ""
@@ -140,10 +162,13 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
     return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
 
 
-def case_of(record: Record, name: str, variants: Sequence[Contract], contracts: Contracts) -> Case | None:
+def case_of(
+    record: Record, name: str, variants: Sequence[Contract], contracts: Contracts
+) -> Case | None:
     """The case of an answer that was graded; ``None`` if the question was not asked then.
 
-    A record that was made before there were cases says by which version an answer was judged: that is one variant.
+    A record that was made before there were cases says by which version an answer was judged: that
+    is one variant.
     """
     if record.cases is not None:
         return record.cases.get(name)
@@ -155,22 +180,34 @@ def case_of(record: Record, name: str, variants: Sequence[Contract], contracts: 
     return case_by_rule(name, variants, record.student, BY_THE_RULE)
 
 
-def asked_of(name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None) -> Asked:
-    """The question of a case as it is judged now: mended if its variant is still there, or else as it stood."""
+def asked_of(
+    name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None
+) -> Asked:
+    """The question of a case as it is judged now: mended if its variant is still there, or else as
+    it stood.
+    """
     by_their_names = variants_of(variants)
 
     def at(place: Place) -> Contract:
         found = by_their_names.get(place.variant) or (contracts and contracts.of(place.contract))
         if not found:
             raise ValueError(
-                f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is no contract "
+                f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is "
+                "no contract "
                 f"{place.contract}. Put the variant back into the source, and judge again."
             )
         return found
 
     own = at(case.own)
-    before = contracts.of(case.own.contract) if contracts and own.version != case.own.contract else None
+    before = (
+        contracts.of(case.own.contract) if contracts and own.version != case.own.contract else None
+    )
     if not case.siblings and len(variants) == 1:
         return Asked(own, before)
     siblings = [one for variant, one in by_their_names.items() if variant != case.own.variant]
-    return Asked(own, before, tuple(siblings), {sibling: at(place) for sibling, place in case.siblings.items()})
+    return Asked(
+        own,
+        before,
+        tuple(siblings),
+        {sibling: at(place) for sibling, place in case.siblings.items()},
+    )

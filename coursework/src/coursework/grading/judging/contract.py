@@ -1,4 +1,6 @@
-"""All that marks need of a question: its contract, and what belongs to it where one student is asked it."""
+"""All that marks need of a question: its contract, and what belongs to it where one student is
+asked it.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import cast
 
-from ...checking.fields import Fields, Json, a_list, anything, by_name, many, number, text, whole, written
+from ...checking.fields import (
+    Fields,
+    Json,
+    a_list,
+    anything,
+    by_name,
+    many,
+    number,
+    text,
+    whole,
+    written,
+)
 from ...checking.plain import Plain
 from ...checking.question import Locker, Question, Variant
 
@@ -45,16 +58,24 @@ class Elsewhere:
         )
 
     def as_json(self) -> dict[str, Json]:
-        place: dict[str, Json] = {"calls": written(self.calls)} if self.salt is None else {"salt": self.salt}
+        place: dict[str, Json] = (
+            {"calls": written(self.calls)} if self.salt is None else {"salt": self.salt}
+        )
         return place | {"right": written(self.right), "partly": written(self.partly)}
 
     def of(self, question: Question) -> Question:
         """A question as it is asked there."""
-        return replace(question, calls=self.calls) if self.salt is None else replace(question, salt=self.salt)
+        return (
+            replace(question, calls=self.calls)
+            if self.salt is None
+            else replace(question, salt=self.salt)
+        )
 
     @property
     def digest(self) -> str:
-        """A short text that follows from the calls: answers to other calls are not compared with these."""
+        """A short text that follows from the calls: answers to other calls are not compared with
+        these.
+        """
         return hashlib.sha256(json.dumps(self.calls).encode()).hexdigest()[:16]
 
 
@@ -157,7 +178,9 @@ class Contract:
     def with_version(self) -> Contract:
         """The same with the version that follows from everything else."""
         said = {name: value for name, value in self.as_json().items() if name != "version"}
-        return replace(self, version=hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16])
+        return replace(
+            self, version=hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
+        )
 
     def locker(self, fingerprint: str) -> Locker | None:
         """What is known of a fingerprint."""
@@ -170,8 +193,12 @@ class Contract:
 
     @property
     def judging(self) -> Contract:
-        """What of it decides on answers: a word of the text may be another, or what a line is worth."""
-        variant = self.question.variant and replace(self.question.variant, text="", shown={}, picture=None)
+        """What of it decides on answers: a word of the text may be another, or what a line is
+        worth.
+        """
+        variant = self.question.variant and replace(
+            self.question.variant, text="", shown={}, picture=None
+        )
         return replace(
             self,
             version="",

@@ -1,8 +1,9 @@
-"""The judge, in a process of its own: an answer that takes it too long, or too much memory, costs nobody else a mark.
+"""The judge, in a process of its own: an answer that takes it too long, or too much memory, costs
+nobody else a mark.
 
-What is judged is plain data, and working it out is bounded (:mod:`coursework.checking.evaluate`). This is for what
-nobody thought of: an answer under which the process ends is undecided and named, and another process goes on with the
-next one.
+What is judged is plain data, and working it out is bounded (:mod:`coursework.checking.evaluate`).
+This is for what nobody thought of: an answer under which the process ends is undecided and named,
+and another process goes on with the next one.
 """
 
 import ctypes
@@ -62,7 +63,10 @@ class Judge:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
         self.end()
 
@@ -75,7 +79,10 @@ class Judge:
             What was asked is kept nowhere.
         """
         if self.of != os.getpid():
-            self.process, self.of = None, os.getpid()  # a copy of the process has a judge of its own
+            self.process, self.of = (
+                None,
+                os.getpid(),
+            )  # a copy of the process has a judge of its own
         found: dict[str, Mark] = {}
         while True:
             if self.process is None:
@@ -96,7 +103,9 @@ class Judge:
             except (EOFError, OSError):
                 self.end()
                 if not begun or begun in found:
-                    raise RuntimeError("The process that judges ended, and not at an answer.") from None
+                    raise RuntimeError(
+                        "The process that judges ended, and not at an answer."
+                    ) from None
                 found[begun] = self._stopped(record, begun)
 
     def _stopped(self, record: Record, name: str) -> Mark:
@@ -105,7 +114,12 @@ class Judge:
             {name: self.questions[record.assignment][name]}, record.student, record, self.contracts
         )
         contract = own[name].contract
-        return replace(marking.UNJUDGED, worth=contract.worth, version=contract.version, guessable=contract.guessable)
+        return replace(
+            marking.UNJUDGED,
+            worth=contract.worth,
+            version=contract.version,
+            guessable=contract.guessable,
+        )
 
     # -- the process
 
@@ -151,12 +165,18 @@ class Judge:
                 signal.signal(signal.SIGTERM, signal.SIG_DFL)
                 first, second = sorted((hears, says))
                 # Nothing that another process waits for to be closed stays open here.
-                for low, high in ((3, first), (first + 1, second), (second + 1, os.sysconf("SC_OPEN_MAX"))):
+                for low, high in (
+                    (3, first),
+                    (first + 1, second),
+                    (second + 1, os.sysconf("SC_OPEN_MAX")),
+                ):
                     os.closerange(low, high)
                 _limit_memory()
                 while True:
                     asked = _read(hears)
-                    for said in self._marks(Record.from_json(asked["record"], "a record"), asked["without"]):
+                    for said in self._marks(
+                        Record.from_json(asked["record"], "a record"), asked["without"]
+                    ):
                         _write(says, said)
         except (EOFError, OSError):
             pass
@@ -165,7 +185,9 @@ class Judge:
 
     def _marks(self, record: Record, without: list[str]) -> Any:
         try:
-            own, _ = marking.of_student(self.questions[record.assignment], record.student, record, self.contracts)
+            own, _ = marking.of_student(
+                self.questions[record.assignment], record.student, record, self.contracts
+            )
             limited = marking.was_limited(record)
             for name, question in own.items():
                 if name not in without:
@@ -188,7 +210,9 @@ def _limit_memory() -> None:
     if os.path.exists("/proc/self/statm"):
         with open("/proc/self/statm") as file:
             begun = int(file.read().split()[0]) * resource.getpagesize()
-        resource.setrlimit(resource.RLIMIT_AS, (begun + MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+        resource.setrlimit(
+            resource.RLIMIT_AS, (begun + MOST_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1])
+        )
 
 
 def _limit_time() -> None:
@@ -213,7 +237,10 @@ def _read(handle: int, until: float = math.inf) -> dict[str, Any]:
 def _exactly(handle: int, number: int, until: float) -> bytes:
     found = bytearray()
     while len(found) < number:
-        if until < math.inf and not select.select([handle], [], [], max(0.0, until - time.monotonic()))[0]:
+        if (
+            until < math.inf
+            and not select.select([handle], [], [], max(0.0, until - time.monotonic()))[0]
+        ):
             raise EOFError
         piece = os.read(handle, min(number - len(found), 1 << 20))
         if not piece:

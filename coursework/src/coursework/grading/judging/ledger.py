@@ -1,14 +1,15 @@
 """What people decided on answers: a ledger that only grows, with who, when and why.
 
-Each line of ``ledger.jsonl`` is an event: a :class:`Decision` on one answer, a step of an :class:`Appeal`, or what a
-line of a rubric is worth from now on (:class:`Worth`). Of several decisions on the same answer the last one counts, and
-none is ever taken out; who takes an own decision back enters another one that says so, and what stood before it counts
-again. A decision belongs to the answer that was looked at and to the question as it stood then: handed in anew, an
-answer is judged anew. Who decides names what was decided when they looked: if it is another by then, nothing is
-entered, and both are told.
+Each line of ``ledger.jsonl`` is an event: a :class:`Decision` on one answer, a step of an
+:class:`Appeal`, or what a line of a rubric is worth from now on (:class:`Worth`). Of several
+decisions on the same answer the last one counts, and none is ever taken out; who takes an own
+decision back enters another one that says so, and what stood before it counts again. A decision
+belongs to the answer that was looked at and to the question as it stood then: handed in anew, an
+answer is judged anew. Who decides names what was decided when they looked: if it is another by
+then, nothing is entered, and both are told.
 
-What all events come to is worked out whenever it is needed (:class:`Standing`), so that a line of a rubric whose worth
-changes scores anew what used it, and the marks of any day can be told.
+What all events come to is worked out whenever it is needed (:class:`Standing`), so that a line of a
+rubric whose worth changes scores anew what used it, and the marks of any day can be told.
 """
 
 import contextlib
@@ -60,7 +61,8 @@ class Decision(NamedTuple):
     answer : str
         The :func:`digest_of_answer` of what was looked at.
     credit : float or None
-        From 0 to 1; ``None`` takes the decision ``undoes`` back, or all earlier ones where that is empty.
+        From 0 to 1; ``None`` takes the decision ``undoes`` back, or all earlier ones where that is
+        empty.
     comment : str
         For the student.
     rubric : tuple of str
@@ -72,7 +74,8 @@ class Decision(NamedTuple):
     after : str
         The decision that counted when this one was made; empty where there was none.
     contract : str
-        The version of the question by which the answer was judged when it was looked at; empty where nobody knows.
+        The version of the question by which the answer was judged when it was looked at; empty
+        where nobody knows.
     points : tuple of float or None
         What each line of the rubric was worth, where the points are those of the rubric.
     appeal : str
@@ -102,7 +105,8 @@ class Decision(NamedTuple):
 
 
 class Appeal(NamedTuple):
-    """A step of an appeal against a mark: it is raised, taken up, or rejected. A :class:`Decision` accepts it.
+    """A step of an appeal against a mark: it is raised, taken up, or rejected. A :class:`Decision`
+    accepts it.
 
     Attributes
     ----------
@@ -240,8 +244,15 @@ class Appealed:
     def as_json(self) -> dict[str, str]:
         """What its student is told."""
         first, last = self.steps[0], self.steps[-1]
-        answered = self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
-        return {"when": first.when[:10], "words": first.words, "state": self.state, "answer": answered}
+        answered = (
+            self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
+        )
+        return {
+            "when": first.when[:10],
+            "words": first.words,
+            "state": self.state,
+            "answer": answered,
+        }
 
 
 @dataclass(frozen=True)
@@ -263,7 +274,9 @@ class Standing:
     worths: Mapping[tuple[str, str], Worth] = field(default_factory=dict)
 
     def decision(self, record: Record, question: str) -> Decision | None:
-        """The decision on an answer that counts; one on an answer that was handed in before does not."""
+        """The decision on an answer that counts; one on an answer that was handed in before does
+        not.
+        """
         found = self.decisions.get((record.student, record.assignment, question))
         return found if found and found.answer == digest_of_answer(record, question) else None
 
@@ -273,19 +286,25 @@ class Standing:
         return said.points if said is not None and said.source == source else source
 
     def points(self, decision: Decision, mark: Mark) -> float:
-        """The points of a decision: a share of all, or what the lines of the rubric are worth now."""
+        """The points of a decision: a share of all, or what the lines of the rubric are worth
+        now.
+        """
         worth = float(mark.worth)
         if decision.points is None:
             return round(worth * (decision.credit or 0), 4)
         source, found = (mark.rubric or {}), 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
             now = self.worth(decision.question, line, source.get(line))
-            found += (then if now is None else now) or 0  # a line that nobody knows any more stays what it was
+            found += (
+                then if now is None else now
+            ) or 0  # a line that nobody knows any more stays what it was
         return round(min(worth, max(0.0, found)), 4)
 
 
 def with_decisions(record: Record, standing: Standing) -> Record:
-    """A record with what people decided on its answers, in place of what the machine said; nothing is judged."""
+    """A record with what people decided on its answers, in place of what the machine said; nothing
+    is judged.
+    """
     marks = {}
     for name, mark in record.marks.items():
         judged = mark.judged
@@ -306,7 +325,11 @@ def with_decisions(record: Record, standing: Standing) -> Record:
 
 def appeals_open(record: Record) -> list[str]:
     """The questions of a record against whose marks an appeal is open."""
-    return [name for name, mark in record.marks.items() if any(appeal["state"] in OPEN for appeal in mark.appeals)]
+    return [
+        name
+        for name, mark in record.marks.items()
+        if any(appeal["state"] in OPEN for appeal in mark.appeals)
+    ]
 
 
 class Ledger:
@@ -339,7 +362,8 @@ class Ledger:
         if not last or not _is_cut(last):
             return ""
         return (
-            f"{self.path} ends within a line: the machine stopped while a decision was written, which does not count. "
+            f"{self.path} ends within a line: the machine stopped while a decision was written, "
+            "which does not count. "
             f"With the next decision its beginning is moved to {CUT}."
         )
 
@@ -348,12 +372,16 @@ class Ledger:
     def standing(self, until: datetime.datetime | None = None) -> Standing:
         """What counts now, or counted at a time."""
         made = _in_order(
-            one for one in self.events if until is None or datetime.datetime.fromisoformat(one.when) <= until
+            one
+            for one in self.events
+            if until is None or datetime.datetime.fromisoformat(one.when) <= until
         )
         decisions = {key: several[-1] for key, several in _not_taken_back(made).items() if several}
         worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
         undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
-        accepted = {one.appeal: one for one in made if isinstance(one, Decision) and one.id not in undone}
+        accepted = {
+            one.appeal: one for one in made if isinstance(one, Decision) and one.id not in undone
+        }
         steps: dict[str, list[Appeal]] = {}
         for one in made:
             if isinstance(one, Appeal):
@@ -368,17 +396,25 @@ class Ledger:
         return Standing(decisions, appeals, worths)
 
     def current(self, until: datetime.datetime | None = None) -> Mapping[Key, Decision]:
-        """The decision that counts for each answer, or counted at a time, by student, assignment and question."""
+        """The decision that counts for each answer, or counted at a time, by student, assignment
+        and question.
+        """
         return self.standing(until).decisions
 
     def of(self, student: str, assignment: str) -> list[Decision]:
         """The decisions that count on one student's answers."""
-        return [one for one in self.current().values() if (one.student, one.assignment) == (student, assignment)]
+        return [
+            one
+            for one in self.current().values()
+            if (one.student, one.assignment) == (student, assignment)
+        ]
 
     # -- what is entered
 
     def hand_on(self, student: str, assignment: str, name: str) -> None:
-        """Enter all events once more, for another name of the same student: who decided, and when, stays."""
+        """Enter all events once more, for another name of the same student: who decided, and when,
+        stays.
+        """
         old = [
             one
             for one in self.events
@@ -387,7 +423,11 @@ class Ledger:
         ids = {one.id: secrets.token_hex(8) for one in old}
         copies: list[Event] = []
         for one in old:
-            same: dict[str, Any] = {"id": ids[one.id], "student": name, "after": ids.get(one.after, one.after)}
+            same: dict[str, Any] = {
+                "id": ids[one.id],
+                "student": name,
+                "after": ids.get(one.after, one.after),
+            }
             same["appeal"] = ids.get(one.appeal, one.appeal)
             if isinstance(one, Decision):
                 same["undoes"] = ids.get(one.undoes, one.undoes)
@@ -461,12 +501,19 @@ class Ledger:
         words = words.strip()
         if len(words) > LONGEST_WORDS:
             raise ValueError(
-                f"This is longer than {LONGEST_WORDS} signs, and nothing of it is cut off: say it in fewer."
+                f"This is longer than {LONGEST_WORDS} signs, and nothing of it is cut off: say it "
+                "in fewer."
             )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
-            raise ValueError(f"An appeal is raised, then under review or rejected, and this is {state!r}.")
+            raise ValueError(
+                f"An appeal is raised, then under review or rejected, and this is {state!r}."
+            )
         if not words and state != UNDER_REVIEW:
-            raise ValueError("What the student says is missing." if state == RAISED else "Say why it is rejected.")
+            raise ValueError(
+                "What the student says is missing."
+                if state == RAISED
+                else "Say why it is rejected."
+            )
         one = Appeal(
             secrets.token_hex(8),
             _now(),
@@ -486,7 +533,10 @@ class Ledger:
 
     @staticmethod
     def worths(
-        question: str, changes: Mapping[str, tuple[float, str]], source: Mapping[str, float], who: str | None = None
+        question: str,
+        changes: Mapping[str, tuple[float, str]],
+        source: Mapping[str, float],
+        who: str | None = None,
     ) -> list[Worth]:
         """What lines of a rubric are worth from now on, which is not entered yet.
 
@@ -500,12 +550,15 @@ class Ledger:
         """
         who = who or getpass.getuser()
         return [
-            Worth(secrets.token_hex(8), _now(), who, question, line, points, source.get(line), after)
+            Worth(
+                secrets.token_hex(8), _now(), who, question, line, points, source.get(line), after
+            )
             for line, (points, after) in changes.items()
         ]
 
     def take_back(self, records: Iterable[Record], question: str, who: str, why: str = "") -> None:
-        """Take back the last decision of a person on each of these answers; what stood before it counts again.
+        """Take back the last decision of a person on each of these answers; what stood before it
+        counts again.
 
         Raises
         ------
@@ -514,7 +567,10 @@ class Ledger:
         """
         with self._alone() as file:
             standing = _not_taken_back(_in_order(self.events))
-            mine = [(record, standing.get((record.student, record.assignment, question), [])) for record in records]
+            mine = [
+                (record, standing.get((record.student, record.assignment, question), []))
+                for record in records
+            ]
             own = [(record, [one for one in several if one.who == who]) for record, several in mine]
             if not any(several for _, several in own):
                 others = [several[-1] for _, several in mine if several]
@@ -534,7 +590,8 @@ class Ledger:
         Raises
         ------
         Collision
-            With ``collisions``, if what counts is another event than the one that each says to come ``after``.
+            With ``collisions``, if what counts is another event than the one that each says to come
+            ``after``.
         """
         events = list(events)
         if self.dry_run:
@@ -561,17 +618,24 @@ class Ledger:
                 raise Collision("Somebody else settled the appeal in the meantime.")
             if isinstance(one, Appeal) and one.appeal and appeals[one.appeal].last != one.after:
                 raise Collision("Somebody else went on with the appeal in the meantime.")
-            if isinstance(one, Appeal) and not one.appeal and any(x.is_open for x in standing.appeals.get(one.key, ())):
+            if (
+                isinstance(one, Appeal)
+                and not one.appeal
+                and any(x.is_open for x in standing.appeals.get(one.key, ()))
+            ):
                 raise Collision("An appeal against this mark is open already.")
             if isinstance(one, Worth):
                 before = standing.worths.get((one.question, one.line))
                 if (before.id if before else "") != one.after:
-                    raise Collision(f"Somebody else changed what “{one.line}” is worth in the meantime.")
+                    raise Collision(
+                        f"Somebody else changed what “{one.line}” is worth in the meantime."
+                    )
 
     @contextlib.contextmanager
     def _alone(self) -> Iterator[io.FileIO]:
         """Keep other writers away, and know what they have written."""
-        # Without a buffer: what a full disk refused is not written once more when the file is closed.
+        # Without a buffer: what a full disk refused is not written once more when the file is
+        # closed.
         with open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
@@ -580,7 +644,8 @@ class Ledger:
             if cut and not _is_cut(cut):
                 file.write(b"\n")  # an editor took it away
             elif cut:
-                # A line that was being written when the machine stopped: nobody was told that it counts.
+                # A line that was being written when the machine stopped: nobody was told that it
+                # counts.
                 with open(self.path.with_name(CUT), "ab") as aside:
                     aside.write(cut + b"\n")
                     aside.flush()
@@ -601,7 +666,8 @@ class Ledger:
         self.events += events
 
     def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
-        """Take in the events of another grader's ledger; give those that are new, and those that differ.
+        """Take in the events of another grader's ledger; give those that are new, and those that
+        differ.
 
         Returns
         -------
@@ -701,7 +767,8 @@ def _now() -> str:
 
 
 def _in_order(events: Iterable[Event]) -> list[Event]:
-    """Events by time, since ledgers of several graders may have been put together; but none before what it came after.
+    """Events by time, since ledgers of several graders may have been put together; but none before
+    what it came after.
 
     A clock may be wrong, or be set back: who saw another decision decided later all the same.
     """
@@ -711,7 +778,11 @@ def _in_order(events: Iterable[Event]) -> list[Event]:
 
     def place(one: Event) -> tuple[str, int]:
         chain = [one]
-        while chain[-1].id not in places and (before := by_id.get(chain[-1].after)) and before not in chain:
+        while (
+            chain[-1].id not in places
+            and (before := by_id.get(chain[-1].after))
+            and before not in chain
+        ):
             chain.append(before)
         for each in reversed(chain):
             if each.id not in places:
@@ -739,7 +810,8 @@ def _not_taken_back(made: Sequence[Event]) -> dict[Key, list[Decision]]:
 
 
 def events_in(path: Path) -> Iterator[Event]:
-    """The events of a ledger, but for a last line that was not written to its end: nobody was told that it counts.
+    """The events of a ledger, but for a last line that was not written to its end: nobody was told
+    that it counts.
 
     Raises
     ------
@@ -757,7 +829,8 @@ def events_in(path: Path) -> Iterator[Event]:
                     return
                 why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
-                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. Somebody changed the file: move "
+                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. Somebody "
+                    "changed the file: move "
                     "the line into a file of its own, and look at that answer again."
                 ) from None
 
@@ -808,11 +881,20 @@ def _of_an_event(about: Fields) -> tuple[str, str, str]:
 def _of_an_answer(about: Fields) -> tuple[str, str, str, str, str, str, str]:
     """How an event begins that is about one answer of one student."""
     student, assignment = about.get("student", text), about.get("assignment", text)
-    return *_of_an_event(about), student, assignment, about.get("question", text), about.get("answer", text)
+    return (
+        *_of_an_event(about),
+        student,
+        assignment,
+        about.get("question", text),
+        about.get("answer", text),
+    )
 
 
 def _decision(about: Fields) -> Decision:
-    credit, rubric = about.get("credit", _or_none(fields.number)), about.maybe("rubric", many(text)) or ()
+    credit, rubric = (
+        about.get("credit", _or_none(fields.number)),
+        about.maybe("rubric", many(text)) or (),
+    )
     points = about.maybe("points", many(_or_none(fields.number)))
     if not (credit is None or 0 <= credit <= 1):
         raise Misread(f"{about.where}: 'credit'", "a share from 0 to 1", credit)
@@ -861,13 +943,19 @@ def _or_none(reader: Reader[float]) -> Reader[float | None]:
     return lambda value, where: None if value is None else reader(value, where)
 
 
-READERS: dict[type[Event], Callable[[Fields], Event]] = {Decision: _decision, Appeal: _appeal, Worth: _worth}
+READERS: dict[type[Event], Callable[[Fields], Event]] = {
+    Decision: _decision,
+    Appeal: _appeal,
+    Worth: _worth,
+}
 
 
 def _fitting_rows(
     path: Path, records: Iterable[Record], column: str
 ) -> Iterator[tuple[int, dict[str, str], tuple[Record, str] | str]]:
-    """The lines of a table, each with the record and the question that it means, or why there is none."""
+    """The lines of a table, each with the record and the question that it means, or why there is
+    none.
+    """
     if not path.exists():
         return
     by_id: dict[str, tuple[Record, str]] = {}
@@ -879,18 +967,26 @@ def _fitting_rows(
     for number, row in _rows(path, column):
         names = as_written(row.get("student", "")), row.get("question", "")
         fitting = [by_id[row["id"]]] if row.get("id") in by_id else by_names.get(names, [])
-        yield number, row, fitting[0] if len(fitting) == 1 else f"there is no answer of {names[0]!r} to {names[1]!r}"
+        yield (
+            number,
+            row,
+            fitting[0]
+            if len(fitting) == 1
+            else f"there is no answer of {names[0]!r} to {names[1]!r}",
+        )
 
 
 def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose some of the words, and would begin a line of theirs.
+    # Not at every sign that ends a line somewhere: students choose some of the words, and would
+    # begin a line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     if column not in header or not ("id" in header or {"student", "question"} <= set(header)):
         raise ValueError(
-            f"{path}: this table has the columns {column} and id, or {column}, student and question; "
+            f"{path}: this table has the columns {column} and id, or {column}, student and "
+            "question; "
             f"there are {', '.join(header) or 'none'}."
         )
     for cells in reader:
@@ -906,4 +1002,6 @@ def _credit(text: str, where: str) -> float | None:
             raise ValueError
         return share
     except ValueError:
-        raise ValueError(f"{where}: credit is a number from 0 to 1, and this is {text!r}.") from None
+        raise ValueError(
+            f"{where}: credit is a number from 0 to 1, and this is {text!r}."
+        ) from None

@@ -1,9 +1,9 @@
 """Verdicts: from a student's answers, as plain data, to outcomes and points.
 
-Only here are right answers held. What is judged came out of the sandbox as JSON and is checked again; no code
-that a student wrote runs in this process, and the verdict is the one that the student's own check gives,
-reached by the same functions. An answer that cannot be decided is put aside for a person and never counted
-as wrong; nothing is earned by default.
+Only here are right answers held. What is judged came out of the sandbox as JSON and is checked
+again; no code that a student wrote runs in this process, and the verdict is the one that the
+student's own check gives, reached by the same functions. An answer that cannot be decided is put
+aside for a person and never counted as wrong; nothing is earned by default.
 """
 
 import contextlib
@@ -18,7 +18,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...authoring.author import AuthoredQuestion, AuthorError
-from ...authoring.source import MEASURED, measured_strengths, names_asked, read_source, texts_of_questions
+from ...authoring.source import (
+    MEASURED,
+    measured_strengths,
+    names_asked,
+    read_source,
+    texts_of_questions,
+)
 from ...checking.evaluate import MP
 from ...checking.fields import Json
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
@@ -38,11 +44,12 @@ from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
-#: The share of the points of an answer that was reached with help, where its author names none, until a sibling of
-#: the question is solved without.
+#: The share of the points of an answer that was reached with help, where its author names none,
+#: until a sibling of the question is solved without.
 WITH_HELP = 0.8
-#: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends on it but what the
-#: student is told, and one that was made to cost time would cost it for each of them.
+#: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends
+#: on it but what the student is told, and one that was made to cost time would cost it for each of
+#: them.
 LONGEST_FOR_SIBLINGS = 1_000
 #: Verdicts that are kept for those who hand in the same, at most.
 MOST_KEPT = 4096
@@ -56,15 +63,20 @@ UNJUDGED = Mark(
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
-#: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's form.
+#: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's
+#: form.
 CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
 
 # --- what is known of each question -------------------------------------------------------------
 
 
-def questions_of(path: str | Path, secret: bytes, edition: str = "") -> dict[str, tuple[Contract, ...]]:
-    """All that marks need of the questions of a notebook with solutions: the contracts of all variants, by name."""
+def questions_of(
+    path: str | Path, secret: bytes, edition: str = ""
+) -> dict[str, tuple[Contract, ...]]:
+    """All that marks need of the questions of a notebook with solutions: the contracts of all
+    variants, by name.
+    """
     with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
         return _questions_of(path, secret, edition)
 
@@ -79,7 +91,9 @@ def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tu
     }
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
         having = [name for name, rule in source.rules.items() if number < rule.count]
-        for name, question in read_source(path, number, edition, having, pictures=True).questions.items():
+        for name, question in read_source(
+            path, number, edition, having, pictures=True
+        ).questions.items():
             found[name].append(contract_of(question, secret, measured.get(name) or None))
     return {name: tuple(variants) for name, variants in found.items()}
 
@@ -99,7 +113,8 @@ def of_student(
     identity : str
         Of the student, as the roster has it: what a notebook says of itself does not count.
     record : dict, optional
-        What was graded of the student before: a student's variant stays, whatever became of the others.
+        What was graded of the student before: a student's variant stays, whatever became of the
+        others.
     contracts : Contracts, optional
         The questions as they stood then.
 
@@ -121,8 +136,12 @@ def of_student(
     return own, cases
 
 
-def with_second_chances(questions: Mapping[str, Asked], named: Collection[str] | None = None) -> dict[str, Contract]:
-    """The questions of a student, and their siblings beside them: those that are ``named``, or all."""
+def with_second_chances(
+    questions: Mapping[str, Asked], named: Collection[str] | None = None
+) -> dict[str, Contract]:
+    """The questions of a student, and their siblings beside them: those that are ``named``, or
+    all.
+    """
     chances = {
         sibling: contract
         for one in questions.values()
@@ -132,11 +151,13 @@ def with_second_chances(questions: Mapping[str, Asked], named: Collection[str] |
     return {name: asked.contract for name, asked in questions.items()} | chances
 
 
-def contract_of(question: AuthoredQuestion, secret: bytes, guessable: int | None = None, text: str = "") -> Contract:
+def contract_of(
+    question: AuthoredQuestion, secret: bytes, guessable: int | None = None, text: str = ""
+) -> Contract:
     """All that marks need of a question, with the version that follows from it.
 
-    ``guessable`` is after how many tries the attack guessed it, if it did;
-    ``text`` is that in the source: a question with variants holds its own, beside which the figures stay.
+    ``guessable`` is after how many tries the attack guessed it, if it did; ``text`` is that in the
+    source: a question with variants holds its own, beside which the figures stay.
     """
     near = {text: Locker().as_json() for text in question.near}
     found = Contract(
@@ -145,7 +166,10 @@ def contract_of(question: AuthoredQuestion, secret: bytes, guessable: int | None
         question.worth,
         question.public,
         question.credit,
-        near | {text: Locker(tuple(entry.answers)).as_json() for text, entry in question.entries.items()},
+        near
+        | {
+            text: Locker(tuple(entry.answers)).as_json() for text, entry in question.entries.items()
+        },
         _canonical_of(question),
         question.plain if question.public.kind != "function" else None,
         in_secret.secret_of(question, secret),
@@ -170,8 +194,8 @@ def load_questions(
 ) -> dict[str, tuple[Contract, ...]]:
     """The questions of several notebooks with solutions, by name.
 
-    What came of working them out is kept in the folder ``kept``, under a name that follows from the bytes of the
-    notebook and from the versions of the software.
+    What came of working them out is kept in the folder ``kept``, under a name that follows from the
+    bytes of the notebook and from the versions of the software.
     """
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
@@ -193,7 +217,14 @@ def load_questions(
         for module in ("nbformat", "sympy.physics.mechanics", *packages()) if missing else ():
             importlib.import_module(module)  # once, and not in each process
         number = min(len(missing), processors())
-        list(side_by_side(map(str, missing), number, lambda stack: lambda path: work_out(Path(path)), [AuthorError]))
+        list(
+            side_by_side(
+                map(str, missing),
+                number,
+                lambda stack: lambda path: work_out(Path(path)),
+                [AuthorError],
+            )
+        )
     found: dict[str, tuple[Contract, ...]] = {}
     for place in places.values():
         found.update(questions_in(place))
@@ -201,7 +232,8 @@ def load_questions(
 
 
 def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
-    """What the sandbox is told of each question: the answer's name and the calls of a function, no more.
+    """What the sandbox is told of each question: the answer's name and the calls of a function, no
+    more.
 
     Of the secret calls a notebook learns when it has handed in everything else.
     """
@@ -213,8 +245,8 @@ def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, J
 
     return {
         name: {
-            # Two questions may call their answers the same, in two notebooks that were joined: then only the
-            # checks tell them apart.
+            # Two questions may call their answers the same, in two notebooks that were joined: then
+            # only the checks tell them apart.
             "variable": contract.variable if variables.count(contract.variable) == 1 else None,
             "calls": calls(contract, contract.question.calls),
             "secret calls": calls(contract, contract.secret.calls if contract.secret else ()),
@@ -237,7 +269,9 @@ def was_limited(record: Record) -> bool:
 # --- one answer ---------------------------------------------------------------------------------
 
 
-def mark(name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False) -> Mark:
+def mark(
+    name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
+) -> Mark:
     """Judge what the sandbox says of an answer.
 
     Parameters
@@ -254,9 +288,16 @@ def mark(name: str, question: Asked, answer: Answer, finished: bool = True, limi
     -------
     Mark
     """
-    # Many hand in the same. What is judged follows from the version of the question and from these texts alone.
+    # Many hand in the same. What is judged follows from the version of the question and from these
+    # texts alone.
     before = (question.before or question.contract).version
-    of_question = name, question.contract.version, before, len(question.siblings), question.newer is not None
+    of_question = (
+        name,
+        question.contract.version,
+        before,
+        len(question.siblings),
+        question.newer is not None,
+    )
     known = *of_question, json.dumps(answer.as_json()), finished, limited
     if known not in _marked:
         if len(_marked) >= MOST_KEPT:
@@ -274,17 +315,30 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
     plain = answer.plain or {}
     short = reply.outcome == "wrong" and len(plain["nodes"]) <= LONGEST_FOR_SIBLINGS
     if short and question.newer and _is_right(name, question.newer, answer):
-        said = "This is right for the numbers of another edition of this question. Which edition did this student have?"
+        said = (
+            "This is right for the numbers of another edition of this question. Which edition did "
+            "this student have?"
+        )
         reply = _undecided(name, "numbers of another edition", said)
-    elif short and (others := [one for one in question.siblings if _is_right(name, Asked(one), answer)]):
+    elif short and (
+        others := [one for one in question.siblings if _is_right(name, Asked(one), answer)]
+    ):
         everybodys = any(one.variant.number == 0 for one in others)
-        whose = "the numbers that everybody sees; yours are others" if everybodys else "other numbers than yours"
+        whose = (
+            "the numbers that everybody sees; yours are others"
+            if everybodys
+            else "other numbers than yours"
+        )
         reply = Reply(name, "wrong", OTHER_NUMBERS, [f"This is right for {whose}."])
-    share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(reply.outcome, 0)
+    share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(
+        reply.outcome, 0
+    )
     if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
-        pairs = "pairs stand in the right order" if contract.question.kind == "order" else "are right"
+        pairs = (
+            "pairs stand in the right order" if contract.question.kind == "order" else "are right"
+        )
         reply.messages.append(f"{right} of {parts} {pairs}.")
     return Mark(
         reply.outcome,
@@ -300,24 +354,38 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
 
 
 def _is_right(name: str, question: Asked, answer: Answer) -> bool:
-    """Whether an answer is right for a question. Of most it takes one look to see that they are not."""
-    with contextlib.suppress(ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable):
+    """Whether an answer is right for a question. Of most it takes one look to see that they are
+    not.
+    """
+    with contextlib.suppress(
+        ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable
+    ):
         asked, plain = question.contract.question, answer.plain or {}
         text = fingerprint(asked, read(asked, plain))
-        return text in question.contract.known and judge(name, question, answer)[0].outcome == "correct"
+        return (
+            text in question.contract.known
+            and judge(name, question, answer)[0].outcome == "correct"
+        )
     return False
 
 
 def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
-    """How many parts of an answer in words are right, of how many, and the share of credit that this earns.
+    """How many parts of an answer in words are right, of how many, and the share of credit that
+    this earns.
 
-    The parts of an order are its pairs: which of the two comes first. Of the share, what a guess has right on average
-    is taken off, so that guessing earns nothing on average: with m words to choose from, it has 1/m right.
+    The parts of an order are its pairs: which of the two comes first. Of the share, what a guess
+    has right on average is taken off, so that guessing earns nothing on average: with m words to
+    choose from, it has 1/m right.
     """
     kind, right = contract.question.kind, contract.partial or ""
     if kind == "order":
-        given, places = text.split(PARTS["order"]), {part: k for k, part in enumerate(right.split(PARTS["order"]))}
-        good = [places[first] < places[second] for first, second in itertools.combinations(given, 2)]
+        given, places = (
+            text.split(PARTS["order"]),
+            {part: k for k, part in enumerate(right.split(PARTS["order"]))},
+        )
+        good = [
+            places[first] < places[second] for first, second in itertools.combinations(given, 2)
+        ]
         chance = 1 / 2
     else:
         between = PARTS[kind]
@@ -335,7 +403,8 @@ def mark_with_siblings(
     finished: bool = True,
     limited: bool = False,
 ) -> Mark:
-    """The mark of a question, with regard to the help that a student had and to the siblings that were solved.
+    """The mark of a question, with regard to the help that a student had and to the siblings that
+    were solved.
 
     Parameters
     ----------
@@ -355,42 +424,59 @@ def mark_with_siblings(
     if found.outcome == "correct" and had and (question.siblings or question.second_chances):
         share = question.contract.credit.get("help", WITH_HELP)
         said = (
-            f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without help earns the rest."
+            f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without "
+            "help earns the rest."
         )
         points = round(question.contract.worth * share, 4)
-        return replace(found, note="with help", points=points, messages=(said,) if share < 1 else ())
+        return replace(
+            found, note="with help", points=points, messages=(said,) if share < 1 else ()
+        )
     return found
 
 
 def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
     """What a sibling that was solved without help makes of the mark of a question.
 
-    It earns what help cost. Where the question itself was not answered right, whose numbers were solved is anybody's
-    guess, and with each sibling a friend's answer would have one more chance: a person looks.
+    It earns what help cost. Where the question itself was not answered right, whose numbers were
+    solved is anybody's guess, and with each sibling a friend's answer would have one more chance: a
+    person looks.
     """
     if found.outcome == "correct":
         said = f"`{sibling}` was solved without help, and counts for this question."
         return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
-    said = f"`{sibling}` was solved without help, and the question itself was not answered right: a person decides."
+    said = (
+        f"`{sibling}` was solved without help, and the question itself was not answered right: a "
+        "person decides."
+    )
     messages = (*found.messages, said)
-    return replace(found, outcome="undecided", note="by a sibling alone", points=0, messages=messages)
+    return replace(
+        found, outcome="undecided", note="by a sibling alone", points=0, messages=messages
+    )
 
 
 def judge(
     name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
 ) -> tuple[Reply, str]:
-    """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has one."""
+    """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has
+    one.
+    """
     state, contract = answer.outcome, question.contract
     if state == "missing":
         if not finished:
             return _undecided(
-                name, "not reached", "The notebook did not come to its end, and this answer was not reached."
+                name,
+                "not reached",
+                "The notebook did not come to its end, and this answer was not reached.",
             ), ""
         if limited:
             return _undecided(
-                name, "lost to a limit", "A cell was stopped by a limit of time or memory, and this answer is missing."
+                name,
+                "lost to a limit",
+                "A cell was stopped by a limit of time or memory, and this answer is missing.",
             ), ""
-        variable = f" under the name `{question.contract.variable}`" if question.contract.variable else ""
+        variable = (
+            f" under the name `{question.contract.variable}`" if question.contract.variable else ""
+        )
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
     if state == "unreadable" and answer.why not in CUT_SHORT:
         return Reply(name, "invalid", "unreadable", [answer.why or ""]), ""
@@ -410,7 +496,10 @@ def judge(
     try:
         plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
-            said = "The function was not called with the arguments that this question has now. Grade again: it is run."
+            said = (
+                "The function was not called with the arguments that this question has now. Grade "
+                "again: it is run."
+            )
             return _undecided(name, "not called", said), ""
         reply = compare(name, contract.question, plain, look_up)
         rounded = reply.outcome == "wrong" and reply.note in ("", "rounded too far")
@@ -428,14 +517,18 @@ def judge(
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     except MemoryError:
-        raise  # the process that judges is at its limit, and what else it would judge is not to suffer
+        # the process that judges is at its limit, and what else it would judge is not to suffer
+        raise
     except Exception as error:  # a fault of ours costs no student a mark
-        reply = _undecided(name, "not worked out", f"This answer could not be worked out ({type(error).__name__}).")
+        reply = _undecided(
+            name, "not worked out", f"This answer could not be worked out ({type(error).__name__})."
+        )
     return reply, "".join(found)
 
 
 def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
-    """What a function returned, in the order of the calls that a question has now; ``None`` if it was not called so.
+    """What a function returned, in the order of the calls that a question has now; ``None`` if it
+    was not called so.
 
     What was recorded are the results of the calls of the contract, one after another.
     """
@@ -445,12 +538,19 @@ def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
     if kind != "function" or calls == called:
         return plain
     results, *rest = value
-    if not calls or not called or len(results) != len(called) or any(call not in called for call in calls):
+    if (
+        not calls
+        or not called
+        or len(results) != len(called)
+        or any(call not in called for call in calls)
+    ):
         return None
     return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
 
 
-def _in_secret(name: str, contract: Contract, answer: Answer, plain: Plain, reply: Reply, text: str) -> Reply:
+def _in_secret(
+    name: str, contract: Contract, answer: Answer, plain: Plain, reply: Reply, text: str
+) -> Reply:
     """The reply, if the answer is what it seems to be also where its author could not look."""
     place = contract.secret
     if place is None:
@@ -464,7 +564,9 @@ def _in_secret(name: str, contract: Contract, answer: Answer, plain: Plain, repl
             return _elsewhere_wrong(name)
         if "plain" not in said or said.get("calls") != place.digest:
             return _undecided(
-                name, "not called", "The function could not be called with other arguments than those of the check."
+                name,
+                "not called",
+                "The function could not be called with other arguments than those of the check.",
             )
         plain = read_plain(said["plain"])
     try:
@@ -498,5 +600,6 @@ def _nearly_right(contract: Contract, plain: Plain) -> bool:
         return False
     right = [MP.mpf(number) for number in contract.right]
     return len(numbers) == len(right) and all(
-        abs(number - other) <= NEARLY * max(1, abs(other)) for number, other in zip(numbers, right, strict=True)
+        abs(number - other) <= NEARLY * max(1, abs(other))
+        for number, other in zip(numbers, right, strict=True)
     )

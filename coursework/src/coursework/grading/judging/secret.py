@@ -1,9 +1,10 @@
 """Points and calls that no student holds: marks are not decided only where a student can look.
 
-The check that a student has compares answers at points that follow from the question; whoever reads them can
-hand in a parabola through them, or a table of what a friend's function returned. So an answer that earns points
-is compared once more, at points and calls that follow from a secret of the instructor's. Right answers agree there
-in all their forms: they are worked out with 40 digits, and told apart far above any rounding.
+The check that a student has compares answers at points that follow from the question; whoever reads
+them can hand in a parabola through them, or a table of what a friend's function returned. So an
+answer that earns points is compared once more, at points and calls that follow from a secret of the
+instructor's. Right answers agree there in all their forms: they are worked out with 40 digits, and
+told apart far above any rounding.
 """
 
 import copy
@@ -28,7 +29,8 @@ from .contract import Elsewhere
 
 FILE = ".grading-secret"
 CALLS = 3
-#: Farther apart than this share of the value, two answers are not the same: no rounding reaches it, and no guess.
+#: Farther apart than this share of the value, two answers are not the same: no rounding reaches it,
+#: and no guess.
 APART = MP.mpf("1e-6")
 #: What is within its tolerance where a student looked may be off by so many tolerances elsewhere.
 SLACK = 4
@@ -36,7 +38,8 @@ ATTEMPTS = 60
 
 
 def secret_beside(folder: str | Path) -> bytes:
-    """The secret of a course, from the file beside its notebooks with solutions; made at the first run.
+    """The secret of a course, from the file beside its notebooks with solutions; made at the first
+    run.
 
     Raises
     ------
@@ -54,7 +57,8 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"The secret of this course cannot be kept in {path} ({error}). It belongs beside the solutions: marks are "
+            f"The secret of this course cannot be kept in {path} ({error}). It belongs beside the "
+            "solutions: marks are "
             "decided at points that follow from it, too."
         ) from None
 
@@ -83,7 +87,10 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
         else:
             found = _of_expression(question, seed)
         if found is not None and is_function and all(call in public.calls for call in found.calls):
-            known, found = known or found, None  # rather calls that no check has made; of a few words there are none
+            known, found = (
+                known or found,
+                None,
+            )  # rather calls that no check has made; of a few words there are none
         if found is not None:
             return found
     return known
@@ -140,7 +147,8 @@ def agree(public: Question, numbers: Sequence[str], others: Sequence[str]) -> bo
     absolute, relative = tolerances(public)
     pairs = [(MP.mpf(number), MP.mpf(other)) for number, other in zip(numbers, others, strict=True)]
     return all(
-        abs(number - other) <= max(SLACK * (absolute + relative * abs(other)), APART * max(1, abs(other)))
+        abs(number - other)
+        <= max(SLACK * (absolute + relative * abs(other)), APART * max(1, abs(other)))
         for number, other in pairs
     )
 
@@ -155,14 +163,23 @@ def _columns(calls: Iterable[list[Any]]) -> list[list[Any]]:
 
 def _another(values: list[Any], dice: random.Random) -> Any:
     """A value that is to the question what the given ones are: of their kind, length and range."""
-    if all(isinstance(value, list) for value in values) and len({len(value) for value in values}) == 1:
+    if (
+        all(isinstance(value, list) for value in values)
+        and len({len(value) for value in values}) == 1
+    ):
         return _another_list(values, dice)
     if all(isinstance(value, list) for value in values) and any(values):
-        # Of several lengths: as long as one of them, and each part like those of its form in all of them.
+        # Of several lengths: as long as one of them, and each part like those of its form in all of
+        # them.
         parts = [part for value in values for part in value]
         chosen = dice.choice([value for value in values if value])
-        return [_another([other for other in parts if _form(other) == _form(part)], dice) for part in chosen]
-    numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
+        return [
+            _another([other for other in parts if _form(other) == _form(part)], dice)
+            for part in chosen
+        ]
+    numbers = all(
+        isinstance(value, (int, float)) and not isinstance(value, bool) for value in values
+    )
     if not numbers or min(values) == max(values):
         return copy.deepcopy(dice.choice(values))
     if all(isinstance(value, int) for value in values):
@@ -174,7 +191,11 @@ def _form(value: Any) -> Any:
     """How a value is built: of lists, numbers and texts."""
     if isinstance(value, list):
         return [_form(part) for part in value]
-    return "number" if isinstance(value, (int, float)) and not isinstance(value, bool) else type(value).__name__
+    return (
+        "number"
+        if isinstance(value, (int, float)) and not isinstance(value, bool)
+        else type(value).__name__
+    )
 
 
 def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
@@ -217,7 +238,9 @@ def _is_rotation(rows: Any) -> bool:
 
 
 def _increases(value: Any) -> bool:
-    return _is_vector(value) and all(first < second for first, second in zip(value, value[1:], strict=False))
+    return _is_vector(value) and all(
+        first < second for first, second in zip(value, value[1:], strict=False)
+    )
 
 
 def _unit(length: int, dice: random.Random) -> list[float]:

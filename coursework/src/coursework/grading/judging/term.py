@@ -1,4 +1,5 @@
-"""A whole course: due dates, extensions, what lateness costs, what is dropped, and what it all comes to.
+"""A whole course: due dates, extensions, what lateness costs, what is dropped, and what it all
+comes to.
 
 The rules stand in one file that people read, such as::
 
@@ -27,8 +28,8 @@ The rules stand in one file that people read, such as::
     [extensions.jdoe]
     unit-quaternions = 2026-10-15T23:59:00  # or "excused"
 
-A time costs points only where a system said it: that of a file on a disk is nobody's. The records stay as they are;
-everything here follows from them and from that file.
+A time costs points only where a system said it: that of a file on a disk is nobody's. The records
+stay as they are; everything here follows from them and from that file.
 """
 
 import datetime
@@ -49,7 +50,14 @@ from ..submissions.roster import Roster
 Some = TypeVar("Some")
 EXCUSED = "excused"
 #: What tables of systems call the time at which something was handed in.
-TIMES = ("last modified (submission)", "timestamp", "handed in", "submitted at", "submission date", "submission time")
+TIMES = (
+    "last modified (submission)",
+    "timestamp",
+    "handed in",
+    "submitted at",
+    "submission date",
+    "submission time",
+)
 DAY = datetime.timedelta(days=1)
 
 
@@ -143,7 +151,10 @@ def read_rules(path: str | Path) -> Rules:
         raise BadRules(f"{path}: there is no time zone {said['time-zone']!r}.") from None
     late = _table(path, "late", said.get("late", {}))
     _demand(path, "late", late, {"grace-minutes", "a-day", "most", "nothing-after-days", "marked"})
-    shares = {name: _number(path, f"late.{name}", late.get(name, default), 1) for name, default in LATE.items()}
+    shares = {
+        name: _number(path, f"late.{name}", late.get(name, default), 1)
+        for name, default in LATE.items()
+    }
     nothing_after = late.get("nothing-after-days")
     assignments = {}
     for name, about in _table(path, "assignments", said.get("assignments", {})).items():
@@ -152,19 +163,29 @@ def read_rules(path: str | Path) -> Rules:
         _demand(path, where, rules, {"due", "weight", "times"})
         due = _moment(path, f"{where}.due", rules["due"], zone) if "due" in rules else None
         weight = _number(path, f"{where}.weight", rules.get("weight", 1))
-        file = _of(str, "the name of a table", path, f"{where}.times", rules["times"]) if "times" in rules else ""
-        assignments[name] = Assignment(due, weight, _times(path.parent / file, zone) if file else None)
+        file = (
+            _of(str, "the name of a table", path, f"{where}.times", rules["times"])
+            if "times" in rules
+            else ""
+        )
+        assignments[name] = Assignment(
+            due, weight, _times(path.parent / file, zone) if file else None
+        )
     if not assignments:
         raise BadRules(f"{path}: it names no assignment, such as [assignments.unit-quaternions].")
     drop = []
     for rule in _of(list, "a list of tables", path, "drop", said.get("drop", [])):
         about_drop = _table(path, "drop", rule)
         _demand(path, "drop", about_drop, {"lowest", "of"})
-        of = _of(list, "a list of assignments", path, "drop.of", about_drop.get("of", list(assignments)))
+        of = _of(
+            list, "a list of assignments", path, "drop.of", about_drop.get("of", list(assignments))
+        )
         _known(path, "drop.of", of, assignments)
         lowest = about_drop.get("lowest", 1)
         if type(lowest) is not int or not 0 <= lowest < len(of):
-            raise BadRules(f"{path}: drop.lowest is a whole number below {len(of)}, and this is {lowest!r}.")
+            raise BadRules(
+                f"{path}: drop.lowest is a whole number below {len(of)}, and this is {lowest!r}."
+            )
         drop.append((lowest, of))
     if len({name for _, of in drop for name in of}) < sum(len(of) for _, of in drop):
         raise BadRules(f"{path}: an assignment is in two rules of what is dropped.")
@@ -174,11 +195,15 @@ def read_rules(path: str | Path) -> Rules:
         own = _table(path, where, until)
         _known(path, where, own, assignments)
         for name, when in own.items():
-            extensions[student, name] = EXCUSED if when == EXCUSED else _moment(path, f"{where}.{name}", when, zone)
+            extensions[student, name] = (
+                EXCUSED if when == EXCUSED else _moment(path, f"{where}.{name}", when, zone)
+            )
     return Rules(
         str(said.get("name", path.stem)),
         zone,
-        datetime.timedelta(minutes=_number(path, "late.grace-minutes", late.get("grace-minutes", 0))),
+        datetime.timedelta(
+            minutes=_number(path, "late.grace-minutes", late.get("grace-minutes", 0))
+        ),
         shares["a-day"],
         shares["most"],
         None
@@ -220,13 +245,20 @@ def _demand(path: Path, where: str, table: Mapping[str, object], names: Collecti
     for name in table:
         if name not in names:
             there = f" in {where}" if where else ""
-            raise BadRules(f"{path}: what is {name!r}{there}? There are {', '.join(sorted(names))}.")
+            raise BadRules(
+                f"{path}: what is {name!r}{there}? There are {', '.join(sorted(names))}."
+            )
 
 
-def _known(path: Path, where: str, names: Iterable[str], assignments: Mapping[str, Assignment]) -> None:
+def _known(
+    path: Path, where: str, names: Iterable[str], assignments: Mapping[str, Assignment]
+) -> None:
     for name in names:
         if name not in assignments:
-            raise BadRules(f"{path}: {where}: there is no assignment {name!r}; there are {', '.join(assignments)}.")
+            raise BadRules(
+                f"{path}: {where}: there is no assignment {name!r}; there are "
+                f"{', '.join(assignments)}."
+            )
 
 
 def _number(path: Path, where: str, value: object, most: float = math.inf) -> float:
@@ -246,18 +278,23 @@ def _moment(path: Path, where: str, value: object, zone: ZoneInfo) -> datetime.d
 
 
 def in_zone(moment: datetime.datetime, zone: ZoneInfo, later: bool = True) -> datetime.datetime:
-    """A moment with its time zone; of an hour that a clock shows twice, or leaves out, the later or the earlier one."""
+    """A moment with its time zone; of an hour that a clock shows twice, or leaves out, the later or
+    the earlier one.
+    """
     if moment.tzinfo:
         return moment
     both = [moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1)]
     return (max if later else min)(both, key=lambda one: one.astimezone(datetime.UTC))
 
 
-def delay(handed_in: datetime.datetime, due: datetime.datetime, zone: ZoneInfo) -> datetime.timedelta:
+def delay(
+    handed_in: datetime.datetime, due: datetime.datetime, zone: ZoneInfo
+) -> datetime.timedelta:
     """How late something was handed in.
 
-    By the time that went by, and by the clocks of the course where these show less: in a night in which they are
-    set back, a day is as long as any other, so that it is the same whether a system says its time in UTC or not.
+    By the time that went by, and by the clocks of the course where these show less: in a night in
+    which they are set back, a day is as long as any other, so that it is the same whether a system
+    says its time in UTC or not.
 
     >>> amsterdam = ZoneInfo("Europe/Amsterdam")
     >>> due = datetime.datetime(2026, 10, 24, 23, 59, tzinfo=amsterdam)
@@ -265,7 +302,9 @@ def delay(handed_in: datetime.datetime, due: datetime.datetime, zone: ZoneInfo) 
     1 day, 0:00:00
     """
     by_time = handed_in.astimezone(datetime.UTC) - due.astimezone(datetime.UTC)
-    by_clock = handed_in.astimezone(zone).replace(tzinfo=None) - due.astimezone(zone).replace(tzinfo=None)
+    by_clock = handed_in.astimezone(zone).replace(tzinfo=None) - due.astimezone(zone).replace(
+        tzinfo=None
+    )
     return min(by_time, by_clock)
 
 
@@ -277,13 +316,17 @@ def _times(path: Path, zone: ZoneInfo) -> Times:
         row = person.row
         column = next((name for name in TIMES if name in row), None)
         if column is None:
-            raise BadRules(f"{path}: no column says when something was handed in; it may be called {', '.join(TIMES)}.")
+            raise BadRules(
+                f"{path}: no column says when something was handed in; it may be called "
+                f"{', '.join(TIMES)}."
+            )
         if row[column] in ("", "-"):
             continue
         when = as_time(row[column])
         if when is None:
             raise BadRules(
-                f"{path}: {student!r}: {row[column]!r} is no time that can be read. Write such as 2026-10-06 20:01, or "
+                f"{path}: {student!r}: {row[column]!r} is no time that can be read. Write such as "
+                "2026-10-06 20:01, or "
                 "download the table with your system in English."
             )
         found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
@@ -333,9 +376,14 @@ class Result(NamedTuple):
 
 
 def results_of(
-    student: str, records: Mapping[str, Record], rules: Rules, worth: Mapping[str, float], now: datetime.datetime
+    student: str,
+    records: Mapping[str, Record],
+    rules: Rules,
+    worth: Mapping[str, float],
+    now: datetime.datetime,
 ) -> tuple[list[Result], float | None]:
-    """What each assignment of the rules comes to for a student, and the share of everything that counts.
+    """What each assignment of the rules comes to for a student, and the share of everything that
+    counts.
 
     Parameters
     ----------
@@ -354,14 +402,23 @@ def results_of(
     total : float or None
         From 0 to 1; ``None`` as long as nothing counts.
     """
-    results = [_result(student, name, records.get(name), rules, worth, now) for name in rules.assignments]
+    results = [
+        _result(student, name, records.get(name), rules, worth, now) for name in rules.assignments
+    ]
     dropped = _dropped(results, rules)
-    results = [one._replace(state="dropped") if one.assignment in dropped else one for one in results]
+    results = [
+        one._replace(state="dropped") if one.assignment in dropped else one for one in results
+    ]
     return results, _mean([one for one in results if one.state in ("counted", "missing")], rules)
 
 
 def _result(
-    student: str, name: str, record: Record | None, rules: Rules, worth: Mapping[str, float], now: datetime.datetime
+    student: str,
+    name: str,
+    record: Record | None,
+    rules: Rules,
+    worth: Mapping[str, float],
+    now: datetime.datetime,
 ) -> Result:
     about = rules.assignments[name]
     extension = rules.extensions.get((student, name))
@@ -380,42 +437,61 @@ def _result(
     if extension == EXCUSED:
         state, late, penalty = EXCUSED, False, 0.0
     full = record.worth if record else worth.get(name, 0)
-    return Result(name, state, points, full, due, when, late, penalty, record.undecided if record else 0)
-
-
-def say_what_marked_costs(assignments: Sequence[str]) -> str:
-    """What is to be decided where a system marked work as late, and rules do not say what that costs."""
-    names = ", ".join(sorted(set(assignments)))
-    return (
-        f"Of {names}, {len(assignments)} are marked as late by the system, which does not say when they came, and so "
-        "far that costs nothing. Say what it costs: marked = 0.1 in [late], or 0; or name a table of times."
+    return Result(
+        name, state, points, full, due, when, late, penalty, record.undecided if record else 0
     )
 
 
-def _handed_in(student: str, record: Record, about: Assignment, zone: ZoneInfo) -> datetime.datetime | None:
+def say_what_marked_costs(assignments: Sequence[str]) -> str:
+    """What is to be decided where a system marked work as late, and rules do not say what that
+    costs.
+    """
+    names = ", ".join(sorted(set(assignments)))
+    return (
+        f"Of {names}, {len(assignments)} are marked as late by the system, which does not say when "
+        "they came, and so "
+        "far that costs nothing. Say what it costs: marked = 0.1 in [late], or 0; or name a table "
+        "of times."
+    )
+
+
+def _handed_in(
+    student: str, record: Record, about: Assignment, zone: ZoneInfo
+) -> datetime.datetime | None:
     """The latest time that a system says of the notebooks that count."""
     if about.times:
         called = record.identity.called
-        keys = [(kind, called[kind]) for kind in ("canvas", "moodle", "brightspace", "email", "name") if kind in called]
+        keys = [
+            (kind, called[kind])
+            for kind in ("canvas", "moodle", "brightspace", "email", "name")
+            if kind in called
+        ]
         keys += [("own", own) for own in (*(record.identity.own or ()), student)]
         found, _ = about.times.roster.find(keys)
         if found is not None and found in about.times.times:
             return about.times.times[found]
     said = [notebook.handed_in for notebook in record.notebooks]
-    moments = (in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one)
+    moments = (
+        in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one
+    )
     return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 
 
 def _mean(results: Iterable[Result], rules: Rules) -> float | None:
     weight = sum(rules.assignments[one.assignment].weight for one in results)
-    return sum(rules.assignments[one.assignment].weight * one.share for one in results) / weight if weight else None
+    return (
+        sum(rules.assignments[one.assignment].weight * one.share for one in results) / weight
+        if weight
+        else None
+    )
 
 
 def _dropped(results: Iterable[Result], rules: Rules) -> set[str]:
     """The assignments whose absence is best for the student.
 
-    With weights these need not be those of the lowest shares: against the mean m that is reached, an assignment
-    contributes weight (share - m), and the least of these are left out, until m does not change (Dinkelbach 1967).
+    With weights these need not be those of the lowest shares: against the mean m that is reached,
+    an assignment contributes weight (share - m), and the least of these are left out, until m does
+    not change (Dinkelbach 1967).
     """
     counted = {one.assignment: one for one in results if one.state in ("counted", "missing")}
 
@@ -428,7 +504,9 @@ def _dropped(results: Iterable[Result], rules: Rules) -> set[str]:
         worst: set[str] = set()
         for lowest, of in rules.drop:
             mine = sorted(
-                (rules.assignments[name].weight * (counted[name].share - mean), name) for name in of if name in counted
+                (rules.assignments[name].weight * (counted[name].share - mean), name)
+                for name in of
+                if name in counted
             )
             # Of few that count so far, one is always kept.
             worst.update(name for _, name in mine[: min(lowest, max(0, len(mine) - 1))])

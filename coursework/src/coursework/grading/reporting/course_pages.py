@@ -1,4 +1,6 @@
-"""What is written about a whole course: a table of all marks, a page for each student, and pages on the questions."""
+"""What is written about a whole course: a table of all marks, a page for each student, and pages on
+the questions.
+"""
 
 import datetime
 import json
@@ -19,7 +21,8 @@ from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
 ROSTER = "roster.json"
-#: How the state of an assignment is told to a student; where it simply counts there is nothing to tell.
+#: How the state of an assignment is told to a student; where it simply counts there is nothing to
+#: tell.
 STATES = {
     "counted": "",
     "dropped": "dropped: it does not count",
@@ -40,7 +43,9 @@ ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %
 
 
 class Then(NamedTuple):
-    """What was kept of a question in an earlier year: the mean share of the credit, and the version."""
+    """What was kept of a question in an earlier year: the mean share of the credit, and the
+    version.
+    """
 
     share: float | None
     version: str
@@ -109,11 +114,16 @@ def write_course(
         results, total = term.results_of(student, records, rules, worth, now)
         _write_student(folder, student, records, results, total, rules)
         rows.append(_row(student, results, total))
-        unknown += [one.assignment for one in results if one.assignment in records and one.due and not one.handed_in]
+        unknown += [
+            one.assignment
+            for one in results
+            if one.assignment in records and one.due and not one.handed_in
+        ]
         marked += [one.assignment for one in results if one.late and not one.handed_in]
     for name in sorted(set(unknown)):
         said.append(
-            f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness cost nothing. "
+            f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness "
+            "cost nothing. "
             f'A table of your system says it: times = "worksheet.csv" in [assignments.{name}].'
         )
     if marked and rules.marked is None and rules.late_costs:
@@ -127,7 +137,9 @@ def write_course(
 def _misspelt(rules: Rules, students: set[str], worth: Mapping[str, float]) -> list[str]:
     strangers = sorted({student for student, _ in rules.extensions} - students)
     if strangers:
-        raise term.BadRules(f"An extension is for {strangers[0]!r}, and nobody in the course is called so.")
+        raise term.BadRules(
+            f"An extension is for {strangers[0]!r}, and nobody in the course is called so."
+        )
     missing = [name for name in rules.assignments if name not in worth]
     others = sorted(set(worth) - set(rules.assignments))
     return [f"{name}: nothing of it was graded, so it does not count yet." for name in missing] + [
@@ -137,11 +149,20 @@ def _misspelt(rules: Rules, students: set[str], worth: Mapping[str, float]) -> l
 
 def _header(rules: Rules) -> list[str]:
     parts = ("points", "state", "handed in", "late: share lost", "share that counts")
-    return ["student", "total in %", "undecided", *(f"{name}: {part}" for name in rules.assignments for part in parts)]
+    return [
+        "student",
+        "total in %",
+        "undecided",
+        *(f"{name}: {part}" for name in rules.assignments for part in parts),
+    ]
 
 
 def _row(student: str, results: Sequence[term.Result], total: float | None) -> list[object]:
-    row: list[object] = [student, "" if total is None else round(100 * total, 2), sum(one.undecided for one in results)]
+    row: list[object] = [
+        student,
+        "" if total is None else round(100 * total, 2),
+        sum(one.undecided for one in results),
+    ]
     for one in results:
         graded = one.state not in ("missing", "not due")
         row += [
@@ -162,7 +183,9 @@ def _write_student(
     total: float | None,
     rules: Rules,
 ) -> None:
-    links = {name: f"../../feedback/{file_name(student)}/{file_name(name)}.html" for name in records}
+    links = {
+        name: f"../../feedback/{file_name(student)}/{file_name(name)}.html" for name in records
+    }
     content = page(
         "student.html",
         name=rules.name,
@@ -177,7 +200,9 @@ def _write_student(
     write(folder / "students" / f"{file_name(student)}.html", content, lasting=False)
 
 
-def _write_questions(folder: Path, statistics: Statistics, name: str, counts: Sequence[Year]) -> None:
+def _write_questions(
+    folder: Path, statistics: Statistics, name: str, counts: Sequence[Year]
+) -> None:
     assignments: dict[str, list[dict[str, object]]] = {}
     for (assignment, question), found in statistics.questions.items():
         place = f"answers/{file_name(assignment + ' ' + question)}.html"
@@ -201,7 +226,9 @@ def _write_questions(folder: Path, statistics: Statistics, name: str, counts: Se
 
 
 def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
-    """The answers of a question, by what the machine or a person said of them, the most frequent first."""
+    """The answers of a question, by what the machine or a person said of them, the most frequent
+    first.
+    """
     groups: dict[tuple[str, str], list[Same]] = {}
     anchors: dict[str, str] = {}
     for (outcome, did, _), same in found.answers.items():
@@ -210,7 +237,8 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
     made: list[dict[str, object]] = []
     outcomes: set[str] = set()
     ranked = sorted(
-        groups.items(), key=lambda entry: (order.index(entry[0][0]), -sum(same.number for same in entry[1]))
+        groups.items(),
+        key=lambda entry: (order.index(entry[0][0]), -sum(same.number for same in entry[1])),
     )
     for place, ((outcome, did), answers) in enumerate(ranked, 1):
         anchor = f"group-{place}" if outcome in outcomes else outcome.replace(" ", "-")

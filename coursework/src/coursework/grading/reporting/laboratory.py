@@ -1,7 +1,9 @@
-"""What a regrade would do, before a mark moves: who gains, who loses, and what cannot be judged from what is stored.
+"""What a regrade would do, before a mark moves: who gains, who loses, and what cannot be judged
+from what is stored.
 
-The questions as they are now are tried on all stored cases. What a mended question may do to marks is for its author
-to choose, as a policy: nobody loses by it, all who had a faulty variant have its points, or it counts for nobody.
+The questions as they are now are tried on all stored cases. What a mended question may do to marks
+is for its author to choose, as a policy: nobody loses by it, all who had a faulty variant have its
+points, or it counts for nobody.
 """
 
 import json
@@ -17,7 +19,8 @@ from ..tables import number, table
 FILE, TABLE, PAGE = "policies.json", "regrade.csv", "regrade.html"
 #: Instead of the name of a variant: all that the source has no more.
 TAKEN_OUT = "taken-out"
-#: The note of an answer that is to be run again, since it was not asked for what the question asks for now.
+#: The note of an answer that is to be run again, since it was not asked for what the question asks
+#: for now.
 RUN_AGAIN = "not called"
 
 
@@ -55,7 +58,9 @@ class Policies:
 
     def and_also(self, other: "Policies") -> "Policies":
         mine, theirs = asdict(self), asdict(other)
-        return Policies(**{name: tuple(dict.fromkeys((*mine[name], *theirs[name]))) for name in mine})
+        return Policies(
+            **{name: tuple(dict.fromkeys((*mine[name], *theirs[name]))) for name in mine}
+        )
 
     def demand(self, names: Iterable[str]) -> None:
         """Refuse a policy for a question that is not asked.
@@ -68,10 +73,13 @@ class Policies:
         for one in (*self.never_lower, *self.full_credit, *self.void):
             if one.partition("@")[0] not in there:
                 raise BadPolicy(
-                    f"There is no question {one.partition('@')[0]!r}; there are {', '.join(sorted(there))}."
+                    f"There is no question {one.partition('@')[0]!r}; there are "
+                    f"{', '.join(sorted(there))}."
                 )
 
-    def applied(self, name: str, mark: Mark, before: Mark | None, case: Case, taken_out: bool) -> Mark:
+    def applied(
+        self, name: str, mark: Mark, before: Mark | None, case: Case, taken_out: bool
+    ) -> Mark:
         """A mark as the policies have it.
 
         Parameters
@@ -88,7 +96,11 @@ class Policies:
         if name in self.void:
             said = "This question does not count."
             return replace(mark, points=0, worth=0, messages=(said,), policy="void")
-        wanted = {name, f"{name}@{case.own.variant}", *([f"{name}@{TAKEN_OUT}"] if taken_out else [])}
+        wanted = {
+            name,
+            f"{name}@{case.own.variant}",
+            *([f"{name}@{TAKEN_OUT}"] if taken_out else []),
+        }
         if wanted & set(self.full_credit):
             said = "There was a fault in this question: all who were asked it have its points."
             return replace(
@@ -132,7 +144,9 @@ class Change(NamedTuple):
 
 @dataclass
 class Laboratory:
-    """What a regrade would do to a class: the changes by questions, and the points that move ``by_people``."""
+    """What a regrade would do to a class: the changes by questions, and the points that move
+    ``by_people``.
+    """
 
     changes: list[Change] = field(default_factory=list)
     by_people: list[Any] = field(default_factory=list)
@@ -173,11 +187,13 @@ class Laboratory:
             if found:
                 points = sum(abs(one.after - one.before) for one in found)
                 said.append(
-                    f"{_students(found)} would {what}, {number(round(points, 4))} points in all: {_about(found)}."
+                    f"{_students(found)} would {what}, {number(round(points, 4))} points in all: "
+                    f"{_about(found)}."
                 )
         if self.again:
             said.append(
-                f"{_students(self.again)} would wait: what is stored does not tell how to judge {_about(self.again)}. "
+                f"{_students(self.again)} would wait: what is stored does not tell how to judge "
+                f"{_about(self.again)}. "
                 "`coursework grade`, as you said it before, runs just these again."
             )
         others = len(self.changes) - len(self.gain) - len(self.lose) - len(self.again)
@@ -196,7 +212,9 @@ class Laboratory:
             ("Who would lose", self.lose),
             ("What cannot be judged from what is stored, and is to be run again", self.again),
         )
-        write(folder / PAGE, page("laboratory.html", groups=groups, changes=order, lines=self.lines()))
+        write(
+            folder / PAGE, page("laboratory.html", groups=groups, changes=order, lines=self.lines())
+        )
 
 
 def _outcome(mark: Mark) -> str:

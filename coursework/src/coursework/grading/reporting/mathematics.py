@@ -1,7 +1,7 @@
 """A plain answer as mathematics on a page: TeX of a few operations, turned into MathML.
 
-What a student wrote comes in by its structure only: names are letters and digits, and whatever else is in an
-answer is not written here, but shown as text.
+What a student wrote comes in by its structure only: names are letters and digits, and whatever else
+is in an answer is not written here, but shown as text.
 """
 
 import re
@@ -13,12 +13,16 @@ from .pages import formula
 
 LONGEST = 4_000  # of the TeX of one answer
 GREEK = (
-    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi pi rho sigma tau "
+    "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi "
+    "pi rho sigma tau "
     "upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
 ).split()
 CONSTANTS = {"Pi": r"\pi", "Exp1": "e", "ImaginaryUnit": "i", "GoldenRatio": r"\phi"}
 FUNCTIONS = {
-    **{name: rf"\{name}" for name in ("sin", "cos", "tan", "cot", "sec", "csc", "log", "sinh", "cosh", "tanh")},
+    **{
+        name: rf"\{name}"
+        for name in ("sin", "cos", "tan", "cot", "sec", "csc", "log", "sinh", "cosh", "tanh")
+    },
     **{f"a{name}": rf"\arc{name}" for name in ("sin", "cos", "tan")},
     "exp": r"\exp",
     "atan2": r"\mathrm{atan2}",
@@ -57,13 +61,16 @@ def _value(value: Sequence[Any], nodes: Sequence[Any]) -> str:
         kind == "list"
         and rest[0]
         and all(
-            part[0] == "list" and part[1] and all(inner[0] == "expression" for inner in part[1]) for part in rest[0]
+            part[0] == "list" and part[1] and all(inner[0] == "expression" for inner in part[1])
+            for part in rest[0]
         )
     ):
         return _table([[writer.node(inner[1], 0) for inner in part[1]] for part in rest[0]])
     if kind == "frame" and len(rest[1]) == 1:
         ((other, inner),) = rest[1].items()
-        return rf"{{}}^{{{_name(rest[0])}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(inner, nodes)
+        return rf"{{}}^{{{_name(rest[0])}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(
+            inner, nodes
+        )
     raise NoMathematics
 
 
@@ -74,14 +81,18 @@ def _table(lines: Iterable[Iterable[str]]) -> str:
 
 def _name(name: str) -> str:
     base, _, index = name.partition("_")
-    if not re.fullmatch(r"[A-Za-z0-9]{1,20}", base) or not re.fullmatch(r"[A-Za-z0-9]{0,20}", index):
+    if not re.fullmatch(r"[A-Za-z0-9]{1,20}", base) or not re.fullmatch(
+        r"[A-Za-z0-9]{0,20}", index
+    ):
         raise NoMathematics
     shown = rf"\{base}" if base in GREEK else base if len(base) == 1 else rf"\mathrm{{{base}}}"
     return f"{shown}_{{{index}}}" if index else shown
 
 
 def _in_brackets(text: str) -> str:
-    """Brackets that grow with what is in them, where it is high: in a table others would grow with its line."""
+    """Brackets that grow with what is in them, where it is high: in a table others would grow with
+    its line.
+    """
     return rf"\left({text}\right)" if r"\frac" in text or "^" in text else f"({text})"
 
 
@@ -91,7 +102,9 @@ class _Writer:
         self.left = LONGEST
 
     def node(self, order: int, around: int, depth: int = 0) -> str:
-        """One node; `around` is how tightly what stands round it binds: 0 nothing, 1 a sum, 2 a product, 3 a power."""
+        """One node; `around` is how tightly what stands round it binds: 0 nothing, 1 a sum, 2 a
+        product, 3 a power.
+        """
         self.left -= 1
         if self.left <= 0 or depth > 30:
             raise NoMathematics
@@ -114,7 +127,9 @@ class _Writer:
             return bracketed(rest[0], 1 if rest[0].startswith("-") else 9)
         if operation == "rational":
             sign = "-" if rest[0].startswith("-") else ""
-            return bracketed(rf"{sign}\frac{{{rest[0].lstrip('-')}}}{{{rest[1]}}}", 1 if sign else 2)
+            return bracketed(
+                rf"{sign}\frac{{{rest[0].lstrip('-')}}}{{{rest[1]}}}", 1 if sign else 2
+            )
         if operation == "float":
             found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(rest[0]):.10g}")
             if not found:

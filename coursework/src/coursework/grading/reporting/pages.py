@@ -127,7 +127,8 @@ def formula(source: str, longest: int = 300) -> str:
         if len(source) > longest:
             raise ValueError
         found = convert(source)
-        # A student's words may have come into a message: only what draws mathematics is let through.
+        # A student's words may have come into a message: only what draws mathematics is let
+        # through.
         for element in ElementTree.fromstring(found).iter():
             name = element.tag.rpartition("}")[2]
             if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
@@ -149,7 +150,9 @@ def answer_as_text(plain: Plain | None, most: int = 300) -> str:
 
 
 class _Printer:
-    """Writes no more than asked for: what is shared in the nodes would fill a disk if it were written out."""
+    """Writes no more than asked for: what is shared in the nodes would fill a disk if it were
+    written out.
+    """
 
     def __init__(self, nodes: Sequence[Any], most: int) -> None:
         self.nodes = nodes
@@ -167,7 +170,9 @@ class _Printer:
         first, self.is_cut = not self.is_cut, True
         return "…" if first else ""
 
-    def parts(self, parts: Iterable[Part], write: Callable[[Part], str], between: str = ", ") -> str:
+    def parts(
+        self, parts: Iterable[Part], write: Callable[[Part], str], between: str = ", "
+    ) -> str:
         written: list[str] = []
         for part in parts:
             if self.left <= 0:
@@ -187,7 +192,10 @@ class _Printer:
         if kind == "printed":
             return self.put(f"printed {readable(rest[0])}")
         if kind == "frames":
-            return self.parts(sorted(rest[0]), lambda name: self.put(f"{readable(name)} ") + self.named(rest[0][name]))
+            return self.parts(
+                sorted(rest[0]),
+                lambda name: self.put(f"{readable(name)} ") + self.named(rest[0][name]),
+            )
         if kind == "raised":
             return self.put(f"raised {readable(rest[0])}")
         if kind == "expression":
@@ -197,7 +205,10 @@ class _Printer:
             lines = [entries[row * columns : (row + 1) * columns] for row in range(rows)]
             return (
                 "["
-                + self.parts(lines, lambda line: "[" + self.parts(line, lambda entry: self.node(entry, 0, 0)) + "]")
+                + self.parts(
+                    lines,
+                    lambda line: "[" + self.parts(line, lambda entry: self.node(entry, 0, 0)) + "]",
+                )
                 + "]"
             )
         if kind == "list":
@@ -210,7 +221,9 @@ class _Printer:
 
     def named(self, values: Mapping[str, Any]) -> str:
         return self.parts(
-            sorted(values), lambda name: self.put(f"in {readable(name)}: ") + self.value(values[name]), "; "
+            sorted(values),
+            lambda name: self.put(f"in {readable(name)}: ") + self.value(values[name]),
+            "; ",
         )
 
     def node(self, order: int, depth: int, around: int) -> str:
@@ -230,13 +243,21 @@ class _Printer:
         if operation == "Pow" and self.nodes[rest[1]] == ["rational", "1", "2"]:
             return self.put("sqrt(") + self.node(rest[0], depth + 1, 0) + self.put(")")
         if operation == "Mul" and len(rest) > 1 and self.nodes[rest[0]] == ["integer", "-1"]:
-            inner = self.put("-") + self.parts(rest[1:], lambda child: self.node(child, depth + 1, 2), "*")
+            inner = self.put("-") + self.parts(
+                rest[1:], lambda child: self.node(child, depth + 1, 2), "*"
+            )
             return f"({inner})" if around > 1 else inner
         if operation in OPERATORS:
             sign, binding = OPERATORS[operation]
-            inner = self.parts(rest, lambda child: self.node(child, depth + 1, binding + (operation == "Pow")), sign)
+            inner = self.parts(
+                rest,
+                lambda child: self.node(child, depth + 1, binding + (operation == "Pow")),
+                sign,
+            )
             inner = inner.replace("+ -", "- ")
             return f"({inner})" if around > binding else inner
         return (
-            self.put(f"{operation}(") + self.parts(rest, lambda child: self.node(child, depth + 1, 0)) + self.put(")")
+            self.put(f"{operation}(")
+            + self.parts(rest, lambda child: self.node(child, depth + 1, 0))
+            + self.put(")")
         )

@@ -29,14 +29,17 @@ LINKS = "links.json"
 #: What the author's attack says of the points of each assignment, and what that means for a mark.
 STRENGTHS = "strengths.json"
 GUESSING = (
-    "What lies before is earned without an idea by whoever lets a script try answers in `check`, at some 12 ms a try; what "
-    "lies behind was not found by the author's attack, and somebody may have a better one. An exam, a function, or a word "
+    "What lies before is earned without an idea by whoever lets a script try answers in `check`, "
+    "at some 12 ms a try; what "
+    "lies behind was not found by the author's attack, and somebody may have a better one. An "
+    "exam, a function, or a word "
     "with the student tells more."
 )
 ENVIRONMENT.globals["GUESSING"] = GUESSING
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
-#: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of the form.
+#: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of
+#: the form.
 DEEDS = {
     "transposed": "gave the transpose",
     "in degrees": "answered in degrees",
@@ -73,9 +76,13 @@ MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the t
 MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
-    "works only out of order": "It works only if its cells are run in another order than they stand in. The answers "
+    "works only out of order": "It works only if its cells are run in another order than they "
+    "stand in. The "
+    "answers "
     "count; before you hand in, choose *Restart the kernel and run all cells*.",
-    "wrote into the records": "Its code wrote where answers are recorded. What it wrote was not taken for more than "
+    "wrote into the records": "Its code wrote where answers are recorded. What it wrote "
+    "was not taken "
+    "for more than "
     "an answer.",
     "could not be run": "It could not be run here. Your instructor will look at it.",
 }
@@ -115,7 +122,9 @@ class _Assignment:
                 self.mixups[name, deed(mark)] += 1
             elif mark.outcome == "wrong" and mark.group:
                 if (name, mark.group) not in self.same:
-                    self.examples[name, mark.group] = pages.answer_as_text(record.answer(name).plain)
+                    self.examples[name, mark.group] = pages.answer_as_text(
+                        record.answer(name).plain
+                    )
                 self.same[name, mark.group] += 1
             if mark.outcome == "undecided":
                 self.waiting += 1
@@ -124,11 +133,18 @@ class _Assignment:
                     self.undecided.append((record.student, name, mark.messages, answer))
         for kind in _oddities(record):
             number, names = self.odd.get(kind, (0, []))
-            self.odd[kind] = number + 1, [*names, record.student] if len(names) < MOST_NAMES else names
+            self.odd[kind] = (
+                number + 1,
+                [*names, record.student] if len(names) < MOST_NAMES else names,
+            )
         for notebook in record.notebooks:
             isolation = notebook.isolation
-            self.ways[("WEAK: " if isolation.weak else "") + (", ".join(isolation.layers) or "none")] += 1
-        self.versions[", ".join(f"{name} {version}" for name, version in record.software.items())] += 1
+            self.ways[
+                ("WEAK: " if isolation.weak else "") + (", ".join(isolation.layers) or "none")
+            ] += 1
+        self.versions[
+            ", ".join(f"{name} {version}" for name, version in record.software.items())
+        ] += 1
 
     @property
     def numbers(self) -> dict[str, int]:
@@ -142,7 +158,12 @@ def write_all(store: Store) -> None:
     names: dict[str, None] = {}
     links = store.said(LINKS, by_name(text)) or {}
     for record in store.all():
-        place = store.folder / "feedback" / file_name(record.student) / f"{file_name(record.assignment)}.html"
+        place = (
+            store.folder
+            / "feedback"
+            / file_name(record.student)
+            / f"{file_name(record.assignment)}.html"
+        )
         _write_if_new(place, feedback(record, links))
         classes.setdefault(record.assignment, _Assignment()).add(record)
         names.update(dict.fromkeys(record.marks))
@@ -150,7 +171,10 @@ def write_all(store: Store) -> None:
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
-    write(store.folder / "report.html", report(classes, refused, store.said(STRENGTHS, by_name(text)) or {}))
+    write(
+        store.folder / "report.html",
+        report(classes, refused, store.said(STRENGTHS, by_name(text)) or {}),
+    )
 
 
 UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
@@ -181,7 +205,10 @@ def _write_if_new(path: Path, content: str) -> None:
 def grades(records: Iterable[Record], names: Sequence[str]) -> Iterator[str]:
     """All marks as CSV, line by line: one for each student and assignment."""
     header = ["student", "assignment", "points", "worth", "undecided", "late", *names]
-    return lines([*header, *(f"{name}: outcome" for name in names)], (_grades_of(record, names) for record in records))
+    return lines(
+        [*header, *(f"{name}: outcome" for name in names)],
+        (_grades_of(record, names) for record in records),
+    )
 
 
 def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
@@ -207,7 +234,12 @@ def feedback(record: Record, links: Mapping[str, str] | None = None) -> str:
         "feedback.html",
         record=record,
         questions=[
-            (name, mark, FINAL.get(mark.outcome) or OUTCOMES[mark.outcome][:2], _shown(record, name))
+            (
+                name,
+                mark,
+                FINAL.get(mark.outcome) or OUTCOMES[mark.outcome][:2],
+                _shown(record, name),
+            )
             for name, mark in record.marks.items()
         ],
         notebooks=[(notebook, _stopped(notebook)) for notebook in record.notebooks],
@@ -230,10 +262,16 @@ def _addresses(question: str, links: Mapping[str, str]) -> list[tuple[str, str]]
 
 
 def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
-    """An answer as it was read, as mathematics and as text; nothing where there is nothing to show."""
+    """An answer as it was read, as mathematics and as text; nothing where there is nothing to
+    show.
+    """
     plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
-    if not plain or record.marks[name].outcome == "not attempted" or plain["value"][0] == "function":
+    if (
+        not plain
+        or record.marks[name].outcome == "not attempted"
+        or plain["value"][0] == "function"
+    ):
         return None
     return plain, pages.answer_as_text(plain)
 
@@ -241,7 +279,9 @@ def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
 def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
     """The cells of a notebook that did not come to their end, with their numbers."""
     cells = enumerate(notebook.cells, 1)
-    return [(order, cell) for order, cell in cells if cell.outcome not in ("done", "not run")][:MOST_STOPPED]
+    return [(order, cell) for order, cell in cells if cell.outcome not in ("done", "not run")][
+        :MOST_STOPPED
+    ]
 
 
 # --- for the instructor -------------------------------------------------------------------------
@@ -263,21 +303,29 @@ def deed(mark: Mark) -> str:
     }
     # Two mistakes at once are named together, as in "transposed, and sign of one turn".
     notes = [mark.note] if mark.note in _deeds() else mark.note.split(", and ")
-    return " ".join(", and ".join(_deeds().get(note, note) for note in notes).format(**details).split())
+    return " ".join(
+        ", and ".join(_deeds().get(note, note) for note in notes).format(**details).split()
+    )
 
 
 @functools.cache
 def _deeds() -> dict[str, str]:
-    return DEEDS | {note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()}
+    return DEEDS | {
+        note: deed for plugin in plugins() for note, deed in getattr(plugin, "DEEDS", {}).items()
+    }
 
 
-def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused], strengths: Mapping[str, str]) -> str:
+def report(
+    classes: Mapping[str, _Assignment], refused: Sequence[Refused], strengths: Mapping[str, str]
+) -> str:
     """The page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
     versions = sum((found.versions for found in classes.values()), Counter())
     return page(
         "report.html",
-        classes=[(name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())],
+        classes=[
+            (name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())
+        ],
         refused=refused,
         strengths=strengths,
         ways=sorted(ways.items()),
@@ -294,7 +342,10 @@ def _about(found: _Assignment) -> dict[str, object]:
         "mean": f"{mean(points):.1f}",
         "median": median(points),
         "bars": _histogram(found.points, found.worth),
-        "success": [(*_success(name, counts), _tries(found.tries.get(name))) for name, counts in found.parts.items()],
+        "success": [
+            (*_success(name, counts), _tries(found.tries.get(name)))
+            for name, counts in found.parts.items()
+        ],
         "mixups": _mixups(found),
         "same": _same(found),
         "odd": sorted(found.odd.items()),
@@ -334,7 +385,9 @@ PARTS = (
 )
 
 
-def _success(name: str, counts: Counter[str]) -> tuple[str, list[tuple[str, float, float]], str, str]:
+def _success(
+    name: str, counts: Counter[str]
+) -> tuple[str, list[tuple[str, float, float]], str, str]:
     total, x, bars = sum(counts.values()), 0.0, []
     for part, _ in PARTS:
         if counts[part]:
@@ -346,15 +399,23 @@ def _success(name: str, counts: Counter[str]) -> tuple[str, list[tuple[str, floa
 
 
 def _tries(counts: Counter[int] | None) -> str:
-    """How many different answers were tried, as the notebooks of those remember that show it; or nothing."""
+    """How many different answers were tried, as the notebooks of those remember that show it; or
+    nothing.
+    """
     if not counts:
         return ""
     known, most = list(counts.elements()), max(counts)
-    return f"{median(known):g} ({most} at most, {len(known)} known)" if len(known) > 1 else f"{most} (1 known)"
+    return (
+        f"{median(known):g} ({most} at most, {len(known)} known)"
+        if len(known) > 1
+        else f"{most} (1 known)"
+    )
 
 
 def _part(mark: Mark) -> str:
-    return {"not attempted": "none", "decided": "correct" if mark.points else "wrong"}.get(mark.outcome, mark.outcome)
+    return {"not attempted": "none", "decided": "correct" if mark.points else "wrong"}.get(
+        mark.outcome, mark.outcome
+    )
 
 
 def _percent(part: int, whole: int) -> str:
@@ -363,7 +424,9 @@ def _percent(part: int, whole: int) -> str:
 
 
 def _mixups(found: _Assignment) -> list[tuple[str, str, int, str, float]]:
-    shown = sorted(found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1]))[:20]
+    shown = sorted(
+        found.mixups.items(), key=lambda entry: (-entry[1], found.numbers[entry[0][0]], entry[0][1])
+    )[:20]
     return [
         (name, what, count, _percent(count, found.students), 120 * count / found.students)
         for (name, what), count in shown
@@ -388,7 +451,9 @@ def _oddities(record: Record) -> dict[str, None]:
         if notebook.unknown_questions:
             found["it checks an answer to a question that there is not"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
-        found.update(dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes))
+        found.update(
+            dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)
+        )
     if record.superseded:
         found["handed in more than once; the newest counts"] = None
     return found

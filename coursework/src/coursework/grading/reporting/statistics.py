@@ -1,8 +1,9 @@
-"""What the class says of each question: how hard it is, whether it tells students apart, and what was mixed up.
+"""What the class says of each question: how hard it is, whether it tells students apart, and what
+was mixed up.
 
-One record after another is taken in, and what is kept grows with the number of different answers, not with the
-class. The counts of a year hold nobody's name and nobody's answer; they can be kept, and the next year stands beside
-them.
+One record after another is taken in, and what is kept grows with the number of different answers,
+not with the class. The counts of a year hold nobody's name and nobody's answer; they can be kept,
+and the next year stands beside them.
 """
 
 import math
@@ -52,7 +53,10 @@ class Correlation:
         value = self.value
         if value is None:
             return None
-        middle, half = math.atanh(max(-0.999999, min(0.999999, value))), 1.96 / math.sqrt(self.number - 3)
+        middle, half = (
+            math.atanh(max(-0.999999, min(0.999999, value))),
+            1.96 / math.sqrt(self.number - 3),
+        )
         return math.tanh(middle - half), math.tanh(middle + half)
 
 
@@ -137,7 +141,9 @@ class Statistics:
                 question.discrimination.add(share, (earned - mark.points) / (worth - mark.worth))
 
     def counts(self, name: str) -> dict[str, Json]:
-        """What can be kept for other years: numbers only, and none of so few that it points at somebody."""
+        """What can be kept for other years: numbers only, and none of so few that it points at
+        somebody.
+        """
         return {
             "format": FORMAT,
             "name": name,
@@ -159,6 +165,8 @@ class Statistics:
 
 
 def _without_few(notes: Mapping[str, int]) -> dict[str, Json]:
-    kept: dict[str, Json] = {what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW}
+    kept: dict[str, Json] = {
+        what: count for what, count in sorted(notes.items()) if count >= HIDDEN_BELOW
+    }
     others = sum(notes.values()) - sum(notes[what] for what in kept)
     return {**kept, "others": others} if others >= HIDDEN_BELOW else kept

@@ -1,4 +1,6 @@
-"""The templates of pages, in which everything is text unless it is said to be mathematics or a message of ours."""
+"""The templates of pages, in which everything is text unless it is said to be mathematics or a
+message of ours.
+"""
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
@@ -33,4 +35,6 @@ def source_of(name: str) -> str:
 
 def page(template: str, **about: object) -> str:
     """A page that is complete in one file, by the template of a name."""
-    return ENVIRONMENT.get_template(template).render(style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about)
+    return ENVIRONMENT.get_template(template).render(
+        style=Markup(pages.STYLE), policy=Markup(pages.POLICY), **about
+    )

@@ -1,8 +1,9 @@
-"""Who handed a file in: what the systems' archives say, and the roster, which alone decides where there is one.
+"""Who handed a file in: what the systems' archives say, and the roster, which alone decides where
+there is one.
 
-The name of a file or folder is a claim. What a system wrote stands at its beginning; what follows was chosen by
-the student and claims nothing, whatever it looks like. Where two submissions claim to be one student's, nobody
-knows whose they are: none of them is graded, and a person is asked.
+The name of a file or folder is a claim. What a system wrote stands at its beginning; what follows
+was chosen by the student and claims nothing, whatever it looks like. Where two submissions claim to
+be one student's, nobody knows whose they are: none of them is graded, and a person is asked.
 """
 
 import datetime
@@ -15,18 +16,26 @@ from typing import NamedTuple
 
 from .roster import Roster
 
-# What a system writes of a person's name holds none of its own marks: the first one is its own. Moodle leaves no
-# underscore in a name, and Canvas none with a number between two of them.
+# What a system writes of a person's name holds none of its own marks: the first one is its own.
+# Moodle leaves no underscore in a name, and Canvas none with a number between two of them.
 CANVAS = re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
-CANVAS_ANONYMOUS = re.compile(r"(?P<late>LATE_)?anon_(?P<user>[A-Za-z0-9]{5})_(?P<submission>\d+)_(?P<file>.+)")
-#: A name that ends in a number may be told from a file whose name begins with one only by who is in the course.
-CANVAS_NUMBERED = re.compile(r"(?P<name>.+?_\d+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)")
+CANVAS_ANONYMOUS = re.compile(
+    r"(?P<late>LATE_)?anon_(?P<user>[A-Za-z0-9]{5})_(?P<submission>\d+)_(?P<file>.+)"
+)
+#: A name that ends in a number may be told from a file whose name begins with one only by who is in
+#: the course.
+CANVAS_NUMBERED = re.compile(
+    r"(?P<name>.+?_\d+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)"
+)
 GRADESCOPE = re.compile(r"submission_\d+")
 #: What Gradescope puts beside the submissions: whose each is.
 GRADESCOPE_TABLE = "submission_metadata.yml"
-MOODLE = re.compile(r"(?P<name>[^_]+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?")
+MOODLE = re.compile(
+    r"(?P<name>[^_]+)_(?P<user>\d+)_assignsubmission_(?:file|onlinetext)(?:_(?P<file>.*))?"
+)
 BRIGHTSPACE = re.compile(
-    r"(?P<user>\d+)-(?P<folder>\d+) - (?P<name>.+?) - (?P<when>\w{3,9} \d{1,2}, \d{4} \d{3,4} [AP]M)"
+    r"(?P<user>\d+)-(?P<folder>\d+) - (?P<name>.+?) - (?P<when>\w{3,9} \d{1,2}, \d{4} "
+    r"\d{3,4} [AP]M)"
 )
 BLACKBOARD = re.compile(r"(?P<who>.+?)_attempt_(?P<when>\d{4}(?:-\d\d){5})(?:_(?P<file>.+)|\.txt)")
 RESUBMITTED = re.compile(r"(?P<stem>.+?)-(?P<number>\d{1,3})")
@@ -60,7 +69,8 @@ class Claim(NamedTuple):
     handed_in : str
         When, by the system's own clock; empty where it does not say.
     reply : str
-        How the name of a file begins that the system gives back to this student: what it wrote itself.
+        How the name of a file begins that the system gives back to this student: what it wrote
+        itself.
     place : str
         The name of the outermost folder or file, as it stands in what was handed in.
     """
@@ -78,7 +88,8 @@ class Claim(NamedTuple):
 
 
 class Layout:
-    """Tells from the names of all files how the submissions are laid out, and what each file's place claims.
+    """Tells from the names of all files how the submissions are laid out, and what each file's
+    place claims.
 
     One layout holds for all: a student cannot choose another by a name inside the own folder.
 
@@ -107,12 +118,19 @@ class Layout:
         self.assignments = sorted(assignments, key=len, reverse=True)
         self.roster = roster
         self.enclosing: Parts = ()
-        notebooks = [PurePosixPath(name).parts for name in names if name.lower().endswith((".ipynb", ".zip"))]
+        notebooks = [
+            PurePosixPath(name).parts for name in names if name.lower().endswith((".ipynb", ".zip"))
+        ]
         self._strip(notebooks)
         notebooks = [parts[len(self.enclosing) :] for parts in notebooks if self._is_inside(parts)]
         tops = [parts[0] for parts in notebooks]
         self.kind = next(
-            (kind for kind, fits in SYSTEMS if 2 * sum(fits(parts) for parts in notebooks) > len(notebooks)), "own"
+            (
+                kind
+                for kind, fits in SYSTEMS
+                if 2 * sum(fits(parts) for parts in notebooks) > len(notebooks)
+            ),
+            "own",
         )
         self.prefix = ""
         table = "/".join([*self.enclosing, GRADESCOPE_TABLE])
@@ -122,8 +140,12 @@ class Layout:
             self.kind = "own"
         if self.kind == "blackboard":
             # The assignment's name comes first, and is the same for all.
-            self.prefix = _shared({found["who"] for top in tops if (found := BLACKBOARD.fullmatch(top))}, "_")
-        elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(set(tops)):
+            self.prefix = _shared(
+                {found["who"] for top in tops if (found := BLACKBOARD.fullmatch(top))}, "_"
+            )
+        elif self.kind == "own" and 2 * len(set(tops) & self._inside(repositories)) > len(
+            set(tops)
+        ):
             # Of most: a repository inside the own folder changes nobody's name.
             self.prefix = _shared(set(tops), "-")
             self.kind = "github"
@@ -131,7 +153,11 @@ class Layout:
     def _strip(self, notebooks: list[Parts]) -> None:
         """Leave folders out that enclose everything, and nbgrader's."""
         first = {parts[0] for parts in notebooks if len(parts) > 1}
-        if len(first) == 1 and all(len(parts) > 1 for parts in notebooks) and first != {"submitted"}:
+        if (
+            len(first) == 1
+            and all(len(parts) > 1 for parts in notebooks)
+            and first != {"submitted"}
+        ):
             (enclosing,) = first
             inner = [parts[1:] for parts in notebooks]
             inside = {parts[0] for parts in inner}
@@ -141,7 +167,11 @@ class Layout:
             if not known and (
                 inside <= NBGRADER
                 or any(2 * sum(map(fits, inner)) > len(inner) for _, fits in SYSTEMS)
-                or (len(inside) > 1 and all(len(parts) > 1 for parts in inner) and not inside <= set(self.assignments))
+                or (
+                    len(inside) > 1
+                    and all(len(parts) > 1 for parts in inner)
+                    and not inside <= set(self.assignments)
+                )
             ):
                 self.enclosing = (enclosing,)
                 notebooks, first = inner, inside
@@ -201,18 +231,25 @@ class Layout:
         )
 
     def _read_as_canvas(self, name: str) -> tuple[str, re.Match[str] | None]:
-        """What Canvas wrote of a name; ``None`` where it may be read in two ways and the roster does not tell which."""
+        """What Canvas wrote of a name; ``None`` where it may be read in two ways and the roster
+        does not tell which.
+        """
         anonymous = CANVAS_ANONYMOUS.fullmatch(name)
         if anonymous:
             return "canvas anonymous", anonymous
-        readings = [found for found in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if found]
+        readings = [
+            found for found in (CANVAS.fullmatch(name), CANVAS_NUMBERED.fullmatch(name)) if found
+        ]
         roster = self.roster
-        people = [roster.find((("canvas", found["user"]),))[0] if roster else None for found in readings]
+        people = [
+            roster.find((("canvas", found["user"]),))[0] if roster else None for found in readings
+        ]
         if roster and len(readings) == 2 and people[1] is not None:
             readings = [
                 found
                 for found, student in zip(readings, people, strict=True)
-                if student is not None and roster.find((("letters", _clean(found["name"])),))[0] == student
+                if student is not None
+                and roster.find((("letters", _clean(found["name"])),))[0] == student
             ]
             return ("canvas", readings[0]) if len(readings) == 1 else ("canvas", None)
         return "canvas", readings[0] if readings else None
@@ -283,7 +320,8 @@ class Layout:
         )
 
     def _blackboard_user(self, who: str) -> str:
-        """The user's name, which stands behind the assignment's; both may hold the sign that joins them.
+        """The user's name, which stands behind the assignment's; both may hold the sign that joins
+        them.
 
         Where several of the roster could be meant it is no name, so that a person is asked.
         """
@@ -299,11 +337,19 @@ class Layout:
         user = parts[0].removeprefix(self.prefix)
         # Everybody chooses that name: it is not compared with the names that the course gave.
         keys = (("github", user),)
-        return Claim(_clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
+        return Claim(
+            _clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/"
+        )
 
     def _own(self, parts: Parts) -> Claim | None:
         if len(parts) > 1:
-            return Claim(_clean(parts[0]), _own(parts[0]), f"folder {parts[0]}", _inside(parts), reply=f"{parts[0]}/")
+            return Claim(
+                _clean(parts[0]),
+                _own(parts[0]),
+                f"folder {parts[0]}",
+                _inside(parts),
+                reply=f"{parts[0]}/",
+            )
         stem = PurePosixPath(parts[0]).stem
         for assignment in self.assignments:
             rest = stem.replace(assignment, "").strip(" _-.()")
@@ -315,7 +361,9 @@ class Layout:
 
 
 def _as_time(numbers: tuple[int, ...]) -> str:
-    """Year, month, day and so on as ISO 8601 has them, without a time zone; empty where they are no time."""
+    """Year, month, day and so on as ISO 8601 has them, without a time zone; empty where they are no
+    time.
+    """
     year, month, day, *clock = numbers
     hour, minute, second, *_ = (*clock, 0, 0, 0)
     try:
@@ -345,7 +393,10 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
     # Of Canvas only files: a folder with two numbers in its name may be a student's own.
     (
         "canvas",
-        lambda parts: len(parts) == 1 and bool(CANVAS.fullmatch(parts[0]) or CANVAS_ANONYMOUS.fullmatch(parts[0])),
+        lambda parts: (
+            len(parts) == 1
+            and bool(CANVAS.fullmatch(parts[0]) or CANVAS_ANONYMOUS.fullmatch(parts[0]))
+        ),
     ),
     ("moodle", _fits(MOODLE)),
     ("brightspace", _fits(BRIGHTSPACE, in_file=False)),
@@ -355,7 +406,9 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
 
 
 def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
-    """The name, the number or address, and the time of each of Gradescope's submissions that one person handed in."""
+    """The name, the number or address, and the time of each of Gradescope's submissions that one
+    person handed in.
+    """
     import yaml
 
     try:
@@ -367,7 +420,9 @@ def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
         people = about.get(":submitters") if isinstance(about, dict) else None
         # What a group handed in is nobody's alone: a person says whose it is.
         if isinstance(people, list) and len(people) == 1 and isinstance(people[0], dict):
-            name, number, address = (str(people[0].get(f":{key}") or "") for key in ("name", "sid", "email"))
+            name, number, address = (
+                str(people[0].get(f":{key}") or "") for key in ("name", "sid", "email")
+            )
             when = about.get(":created_at")
             time = when.isoformat() if isinstance(when, datetime.datetime) else ""
             if name or number or address:
@@ -392,10 +447,16 @@ def _clean(name: str) -> str:
     return " ".join(unicodedata.normalize("NFC", name).split())[:120] or "without a name"
 
 
-#: Cyrillic and Greek letters, small ones for both sizes, and the Latin ones that they are taken for: of the table of
-#: confusables of Unicode Technical Standard 39, what a keyboard writes.
+#: Cyrillic and Greek letters, small ones for both sizes, and the Latin ones that they are taken
+#: for: of the table of confusables of Unicode Technical Standard 39, what a keyboard writes.
 LOOK_ALIKES = str.maketrans(
-    dict(zip("\u0430\u0432\u0435\u043d\u043a\u043c\u043e\u0440\u0441\u0442\u0443\u0445", "abehkmopctyx", strict=True))
+    dict(
+        zip(
+            "\u0430\u0432\u0435\u043d\u043a\u043c\u043e\u0440\u0441\u0442\u0443\u0445",
+            "abehkmopctyx",
+            strict=True,
+        )
+    )
     | dict(zip("\u0456\u0458\u0455\u0501\u04bb\u051b\u051d\u04cf", "ijsdhqwl", strict=True))
     | dict(
         zip(
@@ -408,25 +469,45 @@ LOOK_ALIKES = str.maketrans(
 )
 
 
-#: What is not seen and is neither a control nor a format sign: joiners, fillers, variation selectors, an empty Braille.
+#: What is not seen and is neither a control nor a format sign: joiners, fillers, variation
+#: selectors, an empty Braille.
 UNSEEN = frozenset(
-    map(chr, (0x034F, 0x115F, 0x1160, 0x17B4, 0x17B5, *range(0x180B, 0x1810), 0x2800, *range(0xFE00, 0xFE10)))
+    map(
+        chr,
+        (
+            0x034F,
+            0x115F,
+            0x1160,
+            0x17B4,
+            0x17B5,
+            *range(0x180B, 0x1810),
+            0x2800,
+            *range(0xFE00, 0xFE10),
+        ),
+    )
 ) | frozenset(map(chr, range(0xE0100, 0xE01F0)))
 
 
 def looks_like(name: str) -> str:
     """What a person sees of a name, and what some file systems and gradebooks tell apart.
 
-    Wide letters as narrow ones, capitals as small letters, letters of another script as those they look like, and
-    nothing of signs that are not seen, nor of what stands at the end and may be lost.
+    Wide letters as narrow ones, capitals as small letters, letters of another script as those they
+    look like, and nothing of signs that are not seen, nor of what stands at the end and may be
+    lost.
     """
     plain = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
-    seen = "".join(sign for sign in plain if unicodedata.category(sign) not in ("Cf", "Cc") and sign not in UNSEEN)
+    seen = "".join(
+        sign
+        for sign in plain
+        if unicodedata.category(sign) not in ("Cf", "Cc") and sign not in UNSEEN
+    )
     return seen.translate(LOOK_ALIKES).strip(" .")
 
 
 def _when(text: str) -> tuple[int, ...]:
-    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language setting."""
+    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language
+    setting.
+    """
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
     hour = int(clock[:-2]) % 12 + (12 if half == "PM" else 0)

@@ -1,10 +1,12 @@
-"""What was handed in: notebooks found in a folder or an archive, read strictly, and never written to.
+"""What was handed in: notebooks found in a folder or an archive, read strictly, and never written
+to.
 
-Understood are a folder of notebooks, a folder for each student, nbgrader's ``submitted/student/assignment``,
-repositories of GitHub Classroom, and the archives (packed or unpacked) that Canvas, Moodle, Brightspace and
-Blackboard hand out; in each of them also an archive that a student packed. Everything here was named and written
-by strangers. What is not an honest notebook is refused by its name, with a reason, and the rest goes on: no link
-is followed, nothing is unpacked on disk, nothing is repaired. :mod:`coursework.grading.submissions.identity` says whose
+Understood are a folder of notebooks, a folder for each student, nbgrader's
+``submitted/student/assignment``, repositories of GitHub Classroom, and the archives (packed or
+unpacked) that Canvas, Moodle, Brightspace and Blackboard hand out; in each of them also an archive
+that a student packed. Everything here was named and written by strangers. What is not an honest
+notebook is refused by its name, with a reason, and the rest goes on: no link is followed, nothing
+is unpacked on disk, nothing is repaired. :mod:`coursework.grading.submissions.identity` says whose
 it is.
 """
 
@@ -65,7 +67,11 @@ LITTER = (
     ".coursework",
     "__pycache__",
 )
-INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)  # what Brightspace, nbgrader and Gradescope put there
+INDEXES = (
+    "index.html",
+    "timestamp.txt",
+    GRADESCOPE_TABLE,
+)  # what Brightspace, nbgrader and Gradescope put there
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
@@ -77,7 +83,10 @@ CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
 
 #: How a notebook says whose it is, to get the numbers of that student.
-SAYS = re.compile(r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""", re.M)
+SAYS = re.compile(
+    r"""^[^#\n]*?\b(?:me|student)\(\s*(?P<mark>['"])(?P<who>[^'"\n]{1,200})(?P=mark)\s*,?\s*\)""",
+    re.M,
+)
 
 
 class CodeCell(TypedDict):
@@ -108,7 +117,8 @@ class Beside(NamedTuple):
 
 
 class Notebook(NamedTuple):
-    """A notebook that was handed in; its cells are read when they are needed, so that a class needs no memory.
+    """A notebook that was handed in; its cells are read when they are needed, so that a class needs
+    no memory.
 
     Attributes
     ----------
@@ -208,7 +218,8 @@ def take_in(
     assignments : iterable of str
         Names of assignments, to tell a student's name from an assignment's in the name of a file.
     roster : Roster, optional
-        Who is in the course. What fits nobody in it, or several, is refused: a person must say whose it is.
+        Who is in the course. What fits nobody in it, or several, is refused: a person must say
+        whose it is.
     student : str, optional
         The one student who handed all of it in.
     out : path, optional
@@ -225,11 +236,17 @@ def take_in(
     repositories: set[str] = set()
     for name, when, read in _files(os.fspath(path), refused, repositories, out):
         if len(files) >= MOST_FILES:
-            refused.append(Refused(name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."))
+            refused.append(
+                Refused(
+                    name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."
+                )
+            )
             break
         files.append((name, when, read))
     contents = {name: read for name, _, read in files}
-    layout = Layout(list(contents), assignments, repositories, roster, lambda name: contents[name](), student)
+    layout = Layout(
+        list(contents), assignments, repositories, roster, lambda name: contents[name](), student
+    )
     others: Others = {}
     for name, when, read in files:
         if name.lower().endswith(".zip"):
@@ -254,12 +271,18 @@ def take_in(
             if not (of_system or _is_by_the_way(name)) or (claim and source not in have):
                 whose = claim.student if claim else ""
                 can = " The notebook beside it can read it." if source in have else ""
-                refused.append(Refused(name, whose, f"This is no notebook: its name does not end in .ipynb.{can}"))
+                refused.append(
+                    Refused(
+                        name, whose, f"This is no notebook: its name does not end in .ipynb.{can}"
+                    )
+                )
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 
 
 def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
-    """A file that was refused, with whose it is where a roster says so: its student did not hand in nothing."""
+    """A file that was refused, with whose it is where a roster says so: its student did not hand in
+    nothing.
+    """
     claim = layout.claim(refused.file)
     known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
     return refused if known is None else refused._replace(student=known)
@@ -270,7 +293,9 @@ TIMESTAMP = "timestamp.txt"
 
 
 def _when(one: Notebook, others: Others, layout: Layout) -> str:
-    """When a notebook was handed in, as the system says and never a student's file; empty if it says nothing."""
+    """When a notebook was handed in, as the system says and never a student's file; empty if it
+    says nothing.
+    """
     if one.claim.handed_in or not layout.is_nbgraders:
         return one.claim.handed_in
     place = PurePosixPath(*PurePosixPath(one.file).parts[: len(layout.enclosing) + 2], TIMESTAMP)
@@ -320,7 +345,9 @@ def _take(
     read: Read,
     outer: str,
 ) -> None:
-    """Look at one file; `outer` is its name, or that of the archive it was packed in, which says whose it is."""
+    """Look at one file; `outer` is its name, or that of the archive it was packed in, which says
+    whose it is.
+    """
     claim = layout.claim(outer)
     if name != outer and claim:
         claim = claim._replace(file=name.removeprefix(f"{outer}/"))
@@ -330,7 +357,9 @@ def _take(
     if claim is None and layout.is_beside_submissions(name):
         return
     if claim is None:
-        refused.append(Refused(name, "", "Its name does not say whose it is, as those of the others do."))
+        refused.append(
+            Refused(name, "", "Its name does not say whose it is, as those of the others do.")
+        )
         return
     try:
         data = read()
@@ -359,19 +388,32 @@ def _take(
 
 def _says(cells: Iterable[CodeCell]) -> str:
     """Whose a notebook says that it is: the last time that it says so."""
-    said = [found["who"] for cell in cells for found in SAYS.finditer(cell["source"]) if found["who"].strip()]
+    said = [
+        found["who"]
+        for cell in cells
+        for found in SAYS.finditer(cell["source"])
+        if found["who"].strip()
+    ]
     return said[-1] if said else ""
 
 
 @functools.lru_cache(1_000)
 def _shared_names(names: tuple[str, ...]) -> list[str]:
-    """The same list for all that name the same questions: of a hundred thousand notebooks nearly all do."""
+    """The same list for all that name the same questions: of a hundred thousand notebooks nearly
+    all do.
+    """
     return list(names)
 
 
-def _with_student(one: Notebook, roster: Roster | None, student: str | None, refused: list[Refused]) -> Notebook | None:
+def _with_student(
+    one: Notebook, roster: Roster | None, student: str | None, refused: list[Refused]
+) -> Notebook | None:
     """The notebook with its student, or ``None`` if nobody knows whose it is."""
-    known = {kind: value for kind, value in one.claim.keys if kind in ("canvas", "moodle", "brightspace", "name")}
+    known = {
+        kind: value
+        for kind, value in one.claim.keys
+        if kind in ("canvas", "moodle", "brightspace", "name")
+    }
     if "letters" in dict(one.claim.keys):
         known["name"] = dict(one.claim.keys)["letters"]
     if student is not None:
@@ -385,13 +427,17 @@ def _with_student(one: Notebook, roster: Roster | None, student: str | None, ref
         refused.append(Refused(one.file, one.claim.student, f"{how} Whose is it? {NOT_MATCHED}"))
         return None
     identity = roster.identity(found)
-    return one._replace(student=found, matched=how, identity=Identity({**known, **identity.called}, identity.own))
+    return one._replace(
+        student=found, matched=how, identity=Identity({**known, **identity.called}, identity.own)
+    )
 
 
 NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
 
 
-def _without_conflicts(notebooks: Sequence[Notebook], roster: Roster | None, refused: list[Refused]) -> list[Notebook]:
+def _without_conflicts(
+    notebooks: Sequence[Notebook], roster: Roster | None, refused: list[Refused]
+) -> list[Notebook]:
     """Leave out what two submissions claim to be: one of them may be a classmate's."""
     first: dict[str | tuple[str, str], str] = {}
     several: dict[str | tuple[str, str], tuple[set[str], set[str]]] = {}
@@ -412,7 +458,10 @@ def _without_conflicts(notebooks: Sequence[Notebook], roster: Roster | None, ref
     for one in notebooks:
         if one.student in unsure:
             those = ", ".join(sorted(unsure[one.student]))
-            why = f"Two submissions claim to be this student's: {those}. Neither was graded: whose are they?"
+            why = (
+                f"Two submissions claim to be this student's: {those}. Neither was graded: whose "
+                "are they?"
+            )
             refused.append(Refused(one.file, one.student, why))
     return [one for one in notebooks if one.student not in unsure]
 
@@ -421,18 +470,24 @@ def _identities(one: Notebook, roster: Roster | None) -> tuple[str | tuple[str, 
     """Who a notebook claims to be of, unless the person who grades has said so."""
     if one.matched == "as you said":
         return ()
-    # A name that only looks the same, or that differs in capitals alone, claims the same. Those of a roster are told
-    # apart by it.
+    # A name that only looks the same, or that differs in capitals alone, claims the same. Those of
+    # a roster are told apart by it.
     return looks_like(one.student) if roster is None else one.student, *_numbers(one.claim)
 
 
 def _numbers(claim: Claim) -> list[tuple[str, str]]:
     """The number by which the system knows a student: it writes none beside two names."""
-    return [key for key in claim.keys if claim.given_by_system and key[0] in ("canvas", "moodle", "brightspace")]
+    return [
+        key
+        for key in claim.keys
+        if claim.given_by_system and key[0] in ("canvas", "moodle", "brightspace")
+    ]
 
 
 def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
-    """The files that lie where the notebook lies, or below, by the names that its code would use."""
+    """The files that lie where the notebook lies, or below, by the names that its code would
+    use.
+    """
     found: list[Beside] = []
     folder, total = PurePosixPath(one.claim.file).parent, 0
     for claim, _, read in others.get(one.claim.source, ()):
@@ -453,7 +508,9 @@ def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
 
 
 def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
-    """What Canvas numbered because it was handed in again, also by the name that the notebook's code uses."""
+    """What Canvas numbered because it was handed in again, also by the name that the notebook's
+    code uses.
+    """
     numbered: dict[str, list[tuple[int, Beside]]] = {}
     names = {one.name for one in found}
     for one in found:
@@ -461,7 +518,10 @@ def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
         again = RESUBMITTED.fullmatch(path.stem)
         if again and (bare := str(path.with_name(again["stem"] + path.suffix))) not in names:
             numbered.setdefault(bare, []).append((int(again["number"]), one))
-    return [max(several, key=lambda entry: entry[0])[1]._replace(name=bare) for bare, several in numbered.items()]
+    return [
+        max(several, key=lambda entry: entry[0])[1]._replace(name=bare)
+        for bare, several in numbered.items()
+    ]
 
 
 # --- finding the files --------------------------------------------------------------------------
@@ -477,7 +537,9 @@ class _Folder:
         os.close(self.handle)
 
 
-def _files(path: str, refused: list[Refused], repositories: set[str], out: str | Path | None = None) -> Iterator[Found]:
+def _files(
+    path: str, refused: list[Refused], repositories: set[str], out: str | Path | None = None
+) -> Iterator[Found]:
     """Give the name of each file, its time, and a function that reads it: in a fixed order.
 
     The names of folders that are repositories of Git are added to ``repositories``.
@@ -501,7 +563,10 @@ def _files_of_folder(
 ) -> Iterator[Found]:
     results = os.stat(out) if out and os.path.isdir(out) else None
     if results and os.path.samestat(results, os.stat(root)):
-        raise Unfit(f"{root} holds what was handed in, and cannot hold the results, too: name another folder.")
+        raise Unfit(
+            f"{root} holds what was handed in, and cannot hold the results, too: name "
+            "another folder."
+        )
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
     top = _Folder(root)
     for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
@@ -519,16 +584,24 @@ def _files_of_folder(
                 refused.append(Refused(_text(full), "", f"It cannot be read: {error.strerror}."))
                 continue
             if stat.S_ISLNK(about.st_mode):
-                refused.append(Refused(_text(full), "", "This is a link to another place. It was not followed."))
+                refused.append(
+                    Refused(
+                        _text(full), "", "This is a link to another place. It was not followed."
+                    )
+                )
             elif stat.S_ISREG(about.st_mode):
                 yield _text(full), about.st_mtime_ns, functools.partial(_read_below, top, full)
             elif results and os.path.samestat(results, about):
                 folders.remove(name)
             elif not stat.S_ISDIR(about.st_mode):
-                refused.append(Refused(_text(full), "", "This is no file but a device or a channel."))
+                refused.append(
+                    Refused(_text(full), "", "This is no file but a device or a channel.")
+                )
         folders[:] = [name for name in folders if not _is_litter(name)]
         if folders and inside.count("/") >= DEEPEST:
-            refused.append(Refused(_text(inside), "", "Its folders are nested too deeply to be looked at."))
+            refused.append(
+                Refused(_text(inside), "", "Its folders are nested too deeply to be looked at.")
+            )
             folders.clear()
 
 
@@ -548,7 +621,11 @@ def _read_below(top: _Folder, name: str) -> bytes:
         *folders, last = name.split("/")
         for folder in folders:
             try:
-                handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC, dir_fd=handle)
+                handle = os.open(
+                    folder,
+                    os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC,
+                    dir_fd=handle,
+                )
             except OSError as error:
                 raise Unfit(f"It cannot be read: {error.strerror}.") from None
             stack.callback(os.close, handle)
@@ -558,7 +635,9 @@ def _read_below(top: _Folder, name: str) -> bytes:
 def _read_file(name: str, folder: int) -> bytes:
     try:
         # Not waiting, for what has become a channel in which nobody writes.
-        handle = os.open(name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder)
+        handle = os.open(
+            name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder
+        )
     except OSError as error:
         raise Unfit(f"It cannot be read: {error.strerror}.") from None
     with open(handle, "rb") as file:
@@ -574,7 +653,9 @@ def _no_more_than(data: bytes) -> bytes:
 
 
 class _OwnPlace(io.RawIOBase):
-    """A file that is read from a place of its own: a copy of this process reads it too, and does not move this one."""
+    """A file that is read from a place of its own: a copy of this process reads it too, and does
+    not move this one.
+    """
 
     def __init__(self, path: str) -> None:
         self.handle, self.place = os.open(path, os.O_RDONLY | os.O_CLOEXEC), 0
@@ -586,7 +667,11 @@ class _OwnPlace(io.RawIOBase):
         return True
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        start = {os.SEEK_SET: 0, os.SEEK_CUR: self.place, os.SEEK_END: os.fstat(self.handle).st_size}[whence]
+        start = {
+            os.SEEK_SET: 0,
+            os.SEEK_CUR: self.place,
+            os.SEEK_END: os.fstat(self.handle).st_size,
+        }[whence]
         self.place = start + offset
         return self.place
 
@@ -607,8 +692,11 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
         raise Unfit(f"{path} is no zip archive, or a damaged one ({error}).") from None
     entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
-    repeated = {one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename}
-    # What the archive knows of each is let go one by one: of a hundred thousand it would be half of the memory.
+    repeated = {
+        one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename
+    }
+    # What the archive knows of each is let go one by one: of a hundred thousand it would be half of
+    # the memory.
     archive.filelist.clear()
     archive.NameToInfo.clear()
     unpacked = 0
@@ -625,7 +713,10 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
             why = "The archive holds this name more than once."
         unpacked += min(entry.file_size, MOST_BYTES)
         if not why and unpacked > MOST_UNPACKED:
-            why = f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any more."
+            why = (
+                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not "
+                "read any more."
+            )
         if why:
             refused.append(Refused(shown, "", why))
         else:
@@ -637,7 +728,15 @@ class _Entry:
 
     __slots__ = ("archive", "name", "place")
     # By the last of these newer Pythons notice entries that overlap.
-    FIELDS = ("header_offset", "compress_size", "file_size", "CRC", "compress_type", "flag_bits", "_end_offset")
+    FIELDS = (
+        "header_offset",
+        "compress_size",
+        "file_size",
+        "CRC",
+        "compress_type",
+        "flag_bits",
+        "_end_offset",
+    )
     LAYOUT = struct.Struct("<QQQLHHq")
 
     def __init__(self, archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> None:
@@ -655,7 +754,12 @@ class _Entry:
 
 def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
     parts = name.replace("\\", "/").split("/")
-    if name.startswith(("/", "\\")) or ".." in parts or re.match(r"[A-Za-z]:", name) or "\\" in name:
+    if (
+        name.startswith(("/", "\\"))
+        or ".." in parts
+        or re.match(r"[A-Za-z]:", name)
+        or "\\" in name
+    ):
         return "Its name leads out of the archive."
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "This is a link to another place. It was not followed."
@@ -671,7 +775,15 @@ def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         with archive.open(entry) as file:
             # The size that is declared may be a lie.
             return _no_more_than(file.read(MOST_BYTES + 1))
-    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError, MemoryError) as error:
+    except (
+        zipfile.BadZipFile,
+        NotImplementedError,
+        RuntimeError,
+        EOFError,
+        OSError,
+        ValueError,
+        MemoryError,
+    ) as error:
         raise Unfit(f"It cannot be unpacked: {str(error)[:100]}") from None
     except Exception as error:
         if type(error).__module__ in ("zlib", "lzma", "_lzma", "bz2"):
@@ -711,7 +823,9 @@ def _read_packed(read: Read, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _is_by_the_way(name: str) -> bool:
-    """Whether a file is none that a student handed in for marks: an index, a picture beside a notebook."""
+    """Whether a file is none that a student handed in for marks: an index, a picture beside a
+    notebook.
+    """
     path = PurePosixPath(name)
     return (
         path.name in ("index.html", "timestamp.txt")
@@ -752,11 +866,18 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
     notebook = _json(data)
     version = notebook.get("nbformat", 4)
     if version not in (3, 4):
-        raise Unfit(f"It is a notebook of version {str(version)[:20]}; versions 3 and 4 can be read.")
+        raise Unfit(
+            f"It is a notebook of version {str(version)[:20]}; versions 3 and 4 can be read."
+        )
     if version == 3:
         sheets = notebook.get("worksheets", [])
         cells = (
-            [cell for sheet in sheets if isinstance(sheet, dict) for cell in _list(sheet.get("cells"))]
+            [
+                cell
+                for sheet in sheets
+                if isinstance(sheet, dict)
+                for cell in _list(sheet.get("cells"))
+            ]
             if isinstance(sheets, list)
             else []
         )
@@ -797,7 +918,11 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
     text = data.decode("utf8", "replace").replace('\\"', '"')  # as it stands in the texts of JSON
     for reply in REPLY.findall(text):
         about = dict(ABOUT_REPLY.findall(reply))
-        if not {"question", "tries"} <= set(about) or not about["tries"].isdecimal() or len(found) >= MOST_CELLS:
+        if (
+            not {"question", "tries"} <= set(about)
+            or not about["tries"].isdecimal()
+            or len(found) >= MOST_CELLS
+        ):
             continue
         one = found.get(about["question"], Remembered())
         found[about["question"]] = Remembered(
@@ -809,9 +934,11 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
 
 
 def pictures_in(data: bytes) -> dict[str, list[str]]:
-    """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the cell's number.
+    """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the
+    cell's number.
 
-    They are the student's to change, and are for people to look at; what is no picture from end to end is left out.
+    They are the student's to change, and are for people to look at; what is no picture from end to
+    end is left out.
     """
     found: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES
@@ -823,11 +950,17 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
             shown = output.get("data") if isinstance(output, dict) else None
             for kind in (PNG, JPEG):
                 text = shown.get(kind) if isinstance(shown, dict) else None
-                text = "".join(text) if isinstance(text, list) and all(isinstance(one, str) for one in text) else text
+                text = (
+                    "".join(text)
+                    if isinstance(text, list) and all(isinstance(one, str) for one in text)
+                    else text
+                )
                 if not isinstance(text, str) or len(text) > left:
                     continue
                 with contextlib.suppress(ValueError):
-                    if is_picture(kind, base64.b64decode(text := "".join(text.split()), validate=True)):
+                    if is_picture(
+                        kind, base64.b64decode(text := "".join(text.split()), validate=True)
+                    ):
                         found.setdefault(str(number), []).append(f"{kind};base64,{text}")
                         left -= len(text)
     return found

@@ -1,11 +1,12 @@
 """What the columns of gradebooks are called in other languages.
 
-Canvas writes its columns in English, whatever the language (`lib/gradebook_exporter.rb` of instructure/canvas-lms: the
-headers are constants, and only numbers follow the language). Moodle's worksheet has the words of the language packs
-(`mod/assign/gradingtable.php` of moodle/moodle: `recordid`, `maxgrade` and `gradecanbechanged` of `assign`, the others
-of `moodle`; the packs as projectestac/moodle-langpacks keeps them, June 2026, and for Portuguese also the `grade` of
-earlier versions, as in mudrd8mz/moodle-lang). Of Brightspace's other languages no public source was found: there the
-columns are named by hand.
+Canvas writes its columns in English, whatever the language (`lib/gradebook_exporter.rb` of
+instructure/canvas-lms: the headers are constants, and only numbers follow the language). Moodle's
+worksheet has the words of the language packs (`mod/assign/gradingtable.php` of moodle/moodle:
+`recordid`, `maxgrade` and `gradecanbechanged` of `assign`, the others of `moodle`; the packs as
+projectestac/moodle-langpacks keeps them, June 2026, and for Portuguese also the `grade` of earlier
+versions, as in mudrd8mz/moodle-lang). Of Brightspace's other languages no public source was found:
+there the columns are named by hand.
 """
 
 from collections.abc import Iterable
@@ -21,7 +22,8 @@ MOODLE = (
     "maximum grade",
     "grade can be changed",
 )
-#: The same in other languages, and the word for "no"; what was called otherwise earlier stands behind a stroke.
+#: The same in other languages, and the word for "no"; what was called otherwise earlier stands
+#: behind a stroke.
 LANGUAGES = {
     "German": (
         "ID",
@@ -247,7 +249,8 @@ LANGUAGES = {
 
 
 def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
-    """What the columns of a worksheet of Moodle in another language are called in English, and how "no" is said there.
+    """What the columns of a worksheet of Moodle in another language are called in English, and how
+    "no" is said there.
 
     Told from the two columns that no worksheet lacks: who it is, and the grade.
 

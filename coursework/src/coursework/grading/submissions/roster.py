@@ -1,4 +1,6 @@
-"""The roster: who is in the course, from a table of the instructor's or the gradebook that a system exports."""
+"""The roster: who is in the course, from a table of the instructor's or the gradebook that a system
+exports.
+"""
 
 import csv
 import io
@@ -30,7 +32,10 @@ COLUMNS = {
     "github": ("github", "github_username", "github username"),
     "handed in as": ("handed in as",),
 }  # fmt: skip
-FIRST, LAST = ("first name", "first_name", "firstname"), ("last name", "last_name", "lastname", "surname")
+FIRST, LAST = (
+    ("first name", "first_name", "firstname"),
+    ("last name", "last_name", "lastname", "surname"),
+)
 WORDS = {
     "own": "the name of the folder",
     "name": "the full name",
@@ -61,7 +66,8 @@ class Person:
     row : mapping of str
         Their whole line, by the names of the columns in small letters.
     local_part : str
-        What stands before the sign in their address, if it is of the same place as most; or nothing.
+        What stands before the sign in their address, if it is of the same place as most; or
+        nothing.
     """
 
     called: Mapping[str, tuple[str, ...]]
@@ -70,8 +76,13 @@ class Person:
 
     @property
     def student(self) -> str | None:
-        """The name that they have here, and that their variants follow from; ``None`` if there is none."""
-        return next((value for kind in ("own", "email", "name") for value in self.called.get(kind, ())), None)
+        """The name that they have here, and that their variants follow from; ``None`` if there is
+        none.
+        """
+        return next(
+            (value for kind in ("own", "email", "name") for value in self.called.get(kind, ())),
+            None,
+        )
 
     def spellings(self) -> Iterator[tuple[str, str]]:
         """All that they may be found by: a kind, and a value."""
@@ -94,9 +105,9 @@ class Roster:
     Parameters
     ----------
     path : path
-        A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace exports. Read are
-        the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or files, separated by semicolons,
-        for what cannot be matched otherwise.
+        A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace
+        exports. Read are the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or
+        files, separated by semicolons, for what cannot be matched otherwise.
 
     Attributes
     ----------
@@ -114,8 +125,14 @@ class Roster:
                 raise BadRoster(f"{path}, line {line}: {person.student!r} is there a second time.")
             self.people[person.student] = person
         if not self.people:
-            raise BadRoster(f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}.")
-        addresses = {name: one.called["email"][0] for name, one in self.people.items() if one.called.get("email")}
+            raise BadRoster(
+                f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}."
+            )
+        addresses = {
+            name: one.called["email"][0]
+            for name, one in self.people.items()
+            if one.called.get("email")
+        }
         for name, own in local_parts(addresses).items():
             self.people[name] = replace(self.people[name], local_part=own)
         self.index: dict[tuple[str, str], set[str]] = {}
@@ -125,9 +142,11 @@ class Roster:
         self.kinds = {kind for kind, _ in self.index}
 
     def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
-        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody is meant.
+        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody
+        is meant.
 
-        ``place`` is the name of the folder or file, for which the roster may have a word of its own.
+        ``place`` is the name of the folder or file, for which the roster may have a word of its
+        own.
         """
         names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
         keys = (*(("handed in as", name) for name in names), *keys)
@@ -137,7 +156,12 @@ class Roster:
                 return next(iter(found)), WORDS[kind]
             if found:
                 return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
-            if kind in self.kinds and kind in ("canvas", "canvas anonymous", "moodle", "gradescope"):
+            if kind in self.kinds and kind in (
+                "canvas",
+                "canvas anonymous",
+                "moodle",
+                "gradescope",
+            ):
                 break  # the system's number is known of others, so a name does not overrule it
             if kind == "github" and kind not in self.kinds:
                 return None, "The roster has no column `github`, and that name anybody may choose."
@@ -148,7 +172,10 @@ class Roster:
         person = self.people[student]
         kinds = ("canvas", "moodle", "brightspace", "name", "email")
         called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}
-        return Identity(called, (*person.called.get("own", ()), *((person.local_part,) if person.local_part else ())))
+        return Identity(
+            called,
+            (*person.called.get("own", ()), *((person.local_part,) if person.local_part else ())),
+        )
 
 
 def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
@@ -157,7 +184,8 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     except OSError as error:
         raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
     first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose their names, and would begin a line of theirs.
+    # Not at every sign that ends a line somewhere: students choose their names, and would begin a
+    # line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
@@ -171,7 +199,11 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
 
 def decoded(data: bytes) -> str:
     """The text of a table, in whichever encoding a spreadsheet left it."""
-    for mark, encoding in ((b"\xef\xbb\xbf", "utf-8-sig"), (b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
+    for mark, encoding in (
+        (b"\xef\xbb\xbf", "utf-8-sig"),
+        (b"\xff\xfe", "utf-16"),
+        (b"\xfe\xff", "utf-16"),
+    ):
         if data.startswith(mark):
             return data.decode(encoding)
     try:
@@ -192,16 +224,23 @@ def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
         if "," in row["name"]:
             row["name"] = turned(row["name"])
     elif "identifier" in row and ("full name" in row or "grade" in row):
-        row["moodle"] = re.sub(r"\D", "", row.pop("identifier"))  # Moodle's worksheet: "Participant 17"
+        row["moodle"] = re.sub(
+            r"\D", "", row.pop("identifier")
+        )  # Moodle's worksheet: "Participant 17"
     elif "id" in row:
         row.setdefault("student id", row.pop("id"))  # nbgrader's list
     known = {
-        kind: [value for name in names if (value := row.get(name, "").lstrip("#"))] for kind, names in COLUMNS.items()
+        kind: [value for name in names if (value := row.get(name, "").lstrip("#"))]
+        for kind, names in COLUMNS.items()
     }
-    first, last = (next((row[name] for name in names if row.get(name)), "") for names in (FIRST, LAST))
+    first, last = (
+        next((row[name] for name in names if row.get(name)), "") for names in (FIRST, LAST)
+    )
     if first or last:
         known["name"].append(f"{first} {last}".strip())
-    known["handed in as"] = [part.strip() for value in known["handed in as"] for part in value.split(";")]
+    known["handed in as"] = [
+        part.strip() for value in known["handed in as"] for part in value.split(";")
+    ]
     return {kind: tuple(values) for kind, values in known.items() if values}
 
 
@@ -213,7 +252,9 @@ def local_parts(addresses: Mapping[Key, str]) -> dict[Key, str]:
     >>> local_parts({1: 'ann@uni.example', 2: 'bob@uni.example', 3: 'ann@mail.example'})
     {1: 'ann', 2: 'bob'}
     """
-    parts = {key: address.partition("@")[::2] for key, address in addresses.items() if "@" in address}
+    parts = {
+        key: address.partition("@")[::2] for key, address in addresses.items() if "@" in address
+    }
     places = Counter(place.casefold() for _, place in parts.values()).most_common(1)
     return {key: own for key, (own, place) in parts.items() if place.casefold() == places[0][0]}
 

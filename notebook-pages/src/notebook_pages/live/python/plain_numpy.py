@@ -1,9 +1,11 @@
-"""What answers ``import numpy`` on a page until the real NumPy is there: small arrays, in plain Python.
+"""What answers ``import numpy`` on a page until the real NumPy is there: small arrays, in plain
+Python.
 
-It does what the book's cells do with a handful of orientations, with NumPy's results and in NumPy's way of writing
-them; ``tests/test_plain_numpy.py`` holds each function against the real one. What it does not do exactly so, it does
-not do: whatever is asked beyond it (another function, another option, a shape or a value that calls for a warning, or
-more work than plain Python gets through in a moment) is handed to the real NumPy, which the page then fetches.
+It does what the book's cells do with a handful of orientations, with NumPy's results and in NumPy's
+way of writing them; ``tests/test_plain_numpy.py`` holds each function against the real one. What it
+does not do exactly so, it does not do: whatever is asked beyond it (another function, another
+option, a shape or a value that calls for a warning, or more work than plain Python gets through in
+a moment) is handed to the real NumPy, which the page then fetches.
 """
 
 import functools
@@ -18,7 +20,13 @@ MOST_WORK = 4_000_000  # entries that one cell may make: some seconds in a brows
 work = 0  # entries made since the page last asked
 nan = math.nan
 KINDS = {"b": bool, "i": int, "f": float}  # of entries: truth values, whole numbers, floats
-OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": None}  # by the names that NumPy has
+OFFERED = {
+    "pi": math.pi,
+    "e": math.e,
+    "inf": math.inf,
+    "nan": nan,
+    "newaxis": None,
+}  # by the names that NumPy has
 
 
 # --- the real one -------------------------------------------------------------------------------
@@ -44,11 +52,15 @@ def handed_on(value):
 
 
 class Told(Exception):
-    """Wraps an error in the reader's own use of an array, in NumPy's words: it is theirs, and needs no real NumPy."""
+    """Wraps an error in the reader's own use of an array, in NumPy's words: it is theirs, and needs
+    no real NumPy.
+    """
 
 
 def or_the_real_one(function, find):
-    """``function``; where it cannot answer, what the real NumPy has in its place, by ``find(real, arguments)``."""
+    """``function``; where it cannot answer, what the real NumPy has in its place, by ``find(real,
+    arguments)``.
+    """
 
     @functools.wraps(function)
     def careful(*arguments, **options):
@@ -87,13 +99,17 @@ def within(part):
 
 
 class Part(types.ModuleType):
-    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it does not offer, the real one has."""
+    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it does not offer,
+    the real one has.
+    """
 
     __path__ = ()
 
     def __init__(self, name, offered):
         super().__init__(name)
-        self.__spec__ = importlib.machinery.ModuleSpec(name, None)  # for those who look whether there is a NumPy
+        self.__spec__ = importlib.machinery.ModuleSpec(
+            name, None
+        )  # for those who look whether there is a NumPy
         self.offered = offered
 
     def __getattr__(self, name):
@@ -118,7 +134,9 @@ def stand_in():
 
 
 def step_aside(names):
-    """Let the real NumPy take the place: in all modules that have imported this one, and among the reader's names."""
+    """Let the real NumPy take the place: in all modules that have imported this one, and among the
+    reader's names.
+    """
     if sys.modules.get("numpy") is not STAND_IN:
         return
     for part in (STAND_IN, *PARTS.values()):
@@ -135,8 +153,13 @@ def step_aside(names):
 
 
 def is_at_fault(error):
-    """Whether an error speaks of what stands in for NumPy: with the real one there may be none, or another."""
-    return any(f"'{kind.__name__}'" in str(error) for kind in (Array, Number, Integer, Truth, Generator, Part))
+    """Whether an error speaks of what stands in for NumPy: with the real one there may be none, or
+    another.
+    """
+    return any(
+        f"'{kind.__name__}'" in str(error)
+        for kind in (Array, Number, Integer, Truth, Generator, Part)
+    )
 
 
 def begin():
@@ -154,7 +177,12 @@ class DType:
     names = {"b": "bool", "i": "int64", "f": "float64"}
 
     def __init__(self, kind):
-        self.kind, self.char, self.name, self.itemsize = kind, {"b": "?", "i": "l", "f": "d"}[kind], self.names[kind], 8
+        self.kind, self.char, self.name, self.itemsize = (
+            kind,
+            {"b": "?", "i": "l", "f": "d"}[kind],
+            self.names[kind],
+            8,
+        )
 
     def __eq__(self, other):
         if isinstance(other, DType):
@@ -292,7 +320,11 @@ METHODS = set(
 
 def kind_of(dtype):
     for kind, python in KINDS.items():
-        if dtype is python or dtype is SCALARS[kind] or (isinstance(dtype, (DType, str)) and DType(kind) == dtype):
+        if (
+            dtype is python
+            or dtype is SCALARS[kind]
+            or (isinstance(dtype, (DType, str)) and DType(kind) == dtype)
+        ):
             return kind
     raise TypeError(dtype)
 
@@ -305,7 +337,9 @@ def scalar(kind, value):
 
 
 class Array:
-    """Entries in a list, which views share; where in it the entries stand, in order; the shape; and their kind."""
+    """Entries in a list, which views share; where in it the entries stand, in order; the shape; and
+    their kind.
+    """
 
     __array_priority__ = -1  # where it meets the real one, that decides
     __hash__ = None  # type: ignore[assignment]
@@ -363,7 +397,8 @@ class Array:
 
     def __bool__(self):
         if self.size != 1:
-            raise Told(ValueError("The truth value of an array with more than one element is ambiguous. "
+            raise Told(ValueError("The truth value of an array with more than one element is "
+                "ambiguous. "
                                   "Use a.any() or a.all()"))  # fmt: skip
         return bool(self.values[0])
 
@@ -391,7 +426,9 @@ class Array:
             rest = math.prod(length for length in shape if length != -1)
             shape = tuple(self.size // rest if length == -1 else length for length in shape)
         if math.prod(shape) != self.size:
-            raise Told(ValueError(f"cannot reshape array of size {self.size} into shape {written(shape)}"))
+            raise Told(
+                ValueError(f"cannot reshape array of size {self.size} into shape {written(shape)}")
+            )
         alike = isinstance(self.places, range)
         return self.view(shape, self.places) if alike else Array(self.values, shape, self.kind)
 
@@ -436,7 +473,9 @@ class Array:
         if type(index) is int and self.shape:
             length = self.shape[0]
             if not -length <= index < length:
-                raise Told(IndexError(f"index {index} is out of bounds for axis 0 with size {length}"))
+                raise Told(
+                    IndexError(f"index {index} is out of bounds for axis 0 with size {length}")
+                )
             rest = len(self.places) // length
             index %= length
             return self.shape[1:], self.places[index * rest : (index + 1) * rest], True
@@ -446,11 +485,16 @@ class Array:
         index = index if isinstance(index, tuple) else (index,)
         simple = (int, slice, type(None), type(Ellipsis))
         index = [
-            part if isinstance(part, simple) and not isinstance(part, (bool, Truth)) else as_array(part)
+            part
+            if isinstance(part, simple) and not isinstance(part, (bool, Truth))
+            else as_array(part)
             for part in index
         ]
         index = [
-            part.item() if isinstance(part, Array) and part.shape == () and part.kind == "i" else part for part in index
+            part.item()
+            if isinstance(part, Array) and part.shape == () and part.kind == "i"
+            else part
+            for part in index
         ]
         wanted = sum(part.ndim if isinstance(part, Array) and part.kind == "b" else part is not None
                      for part in index if part is not Ellipsis)  # fmt: skip
@@ -473,13 +517,19 @@ class Array:
                 found = [
                     place + more
                     for place in found
-                    for more in places_of(self.shape[axis : skipped.stop], steps[axis : skipped.stop])
+                    for more in places_of(
+                        self.shape[axis : skipped.stop], steps[axis : skipped.stop]
+                    )
                 ]
                 axis = skipped.stop
             elif isinstance(part, int):
                 length = self.shape[axis]
                 if not -length <= part < length:
-                    raise Told(IndexError(f"index {part} is out of bounds for axis {axis} with size {length}"))
+                    raise Told(
+                        IndexError(
+                            f"index {part} is out of bounds for axis {axis} with size {length}"
+                        )
+                    )
                 found = [place + part % length * steps[axis] for place in found]
                 axis += 1
             elif isinstance(part, slice):
@@ -501,7 +551,11 @@ class Array:
                     raise IndexError("arrays used as indices must be of integer (or boolean) type")
                 for k in part.values:
                     if not -length <= k < length:
-                        raise Told(IndexError(f"index {k} is out of bounds for axis {axis} with size {length}"))
+                        raise Told(
+                            IndexError(
+                                f"index {k} is out of bounds for axis {axis} with size {length}"
+                            )
+                        )
                 shape += part.shape
                 found = [place + k % length * steps[axis] for place in found for k in part.values]
                 axis += 1
@@ -511,14 +565,23 @@ class Array:
         shape, places, view = self.select(index)
         if not shape and view:
             return scalar(self.kind, self.entries[places[0]])
-        return self.view(shape, places) if view else Array([self.entries[place] for place in places], shape, self.kind)
+        return (
+            self.view(shape, places)
+            if view
+            else Array([self.entries[place] for place in places], shape, self.kind)
+        )
 
     def __setitem__(self, index, value):
         shape, places, _ = self.select(index)
         value = as_array(value)
         while value.ndim > len(shape) and value.shape[0] == 1:
             value = value[0]
-        if KINDS[value.kind] is float and self.kind != "f" or value.kind == "i" and self.kind == "b":
+        if (
+            KINDS[value.kind] is float
+            and self.kind != "f"
+            or value.kind == "i"
+            and self.kind == "b"
+        ):
             raise TypeError("another kind of number")
         convert = KINDS[self.kind]
         for place, entry in zip(places, list(spread(value, shape))):
@@ -602,7 +665,10 @@ def spread(value, shape):
     new = len(shape) - value.ndim
     if new < 0 or any(length not in (1, there) for length, there in zip(value.shape, shape[new:])):
         raise Told(
-            ValueError(f"could not broadcast input array from shape {written(value.shape)} into shape {written(shape)}")
+            ValueError(
+                f"could not broadcast input array from shape {written(value.shape)} into shape "
+                f"{written(shape)}"
+            )
         )
     if value.size == 1:
         return value.values * math.prod(shape)
@@ -657,9 +723,13 @@ def as_array(value, dtype=None):
         if dtype is None:
             raise TypeError(type(value))
         found = as_array(value.tolist(), dtype)
-    elif hasattr(value, "shape") and not type(value).__module__.startswith("numpy"):  # an array of orientation's own
+    elif hasattr(value, "shape") and not type(value).__module__.startswith(
+        "numpy"
+    ):  # an array of orientation's own
         found = as_array(value.tolist(), dtype)
-    elif dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number"):  # a number of SymPy
+    elif (
+        dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number")
+    ):  # a number of SymPy
         found = Array([float(value)], (), "f")
     else:
         raise TypeError(type(value))
@@ -684,8 +754,8 @@ def result(values, shape, kind):
 
 
 def entry_by_entry(function, *arguments, kind=None, quiet=False):
-    """Apply ``function`` to the entries. What would be infinite or no number, of numbers that are, is left to the
-    real one, which warns."""
+    """Apply ``function`` to the entries. What would be infinite or no number, of numbers that are,
+    is left to the real one, which warns."""
     arrays = [as_array(argument) for argument in arguments]
     kind = kind or max([array.kind for array in arrays], key="bif".index)
     if len(arrays) == 1:
@@ -706,7 +776,9 @@ def all_finite(values):
 
 
 def arithmetic(name, function, kind=None):
-    """An operator, both ways round, for arrays and for numbers, and the function of NumPy's that does the same."""
+    """An operator, both ways round, for arrays and for numbers, and the function of NumPy's that
+    does the same.
+    """
 
     def there(self, other):
         return joined(self, other) if can_join(other) else NotImplemented
@@ -732,7 +804,12 @@ def raised(base, exponent):
     if exponent == 0.5 and isinstance(exponent, float):
         return math.sqrt(base)
     found = base**exponent
-    if isinstance(base, int) and isinstance(exponent, int) and exponent < 0 or isinstance(found, complex):
+    if (
+        isinstance(base, int)
+        and isinstance(exponent, int)
+        and exponent < 0
+        or isinstance(found, complex)
+    ):
         raise ValueError("needs another kind of number")
     return found
 
@@ -760,7 +837,9 @@ def of_booleans(function):
             and (not isinstance(other, Array) or other.kind == "b")
             and self.kind == "b"
         ):
-            return entry_by_entry(lambda one, two: function(bool(one), bool(two)), self, other, kind="b")
+            return entry_by_entry(
+                lambda one, two: function(bool(one), bool(two)), self, other, kind="b"
+            )
         raise TypeError("not truth values")
 
     return there
@@ -862,7 +941,9 @@ OFFERED["absolute"] = abs_
 @offered
 def sign(value):
     value = as_array(value)
-    return entry_by_entry(sign_of if value.kind == "f" else lambda entry: (entry > 0) - (entry < 0), value)
+    return entry_by_entry(
+        sign_of if value.kind == "f" else lambda entry: (entry > 0) - (entry < 0), value
+    )
 
 
 @offered
@@ -895,7 +976,9 @@ def clip(value, low, high):
 def where(condition, yes, no):
     kind = max(as_array(yes).kind, as_array(no).kind, key="bif".index)
     convert = KINDS[kind]
-    return entry_by_entry(lambda c, y, n: convert(y if c else n), condition, yes, no, kind=kind, quiet=True)
+    return entry_by_entry(
+        lambda c, y, n: convert(y if c else n), condition, yes, no, kind=kind, quiet=True
+    )
 
 
 @offered
@@ -907,7 +990,9 @@ def choose(number, choices):
 @offered
 def isclose(one, two, rtol=1e-5, atol=1e-8):
     def close(a, b):
-        return abs(a - b) <= atol + rtol * abs(b) if math.isfinite(a) and math.isfinite(b) else a == b
+        return (
+            abs(a - b) <= atol + rtol * abs(b) if math.isfinite(a) and math.isfinite(b) else a == b
+        )
 
     return entry_by_entry(close, one, two, kind="b")
 
@@ -996,7 +1081,9 @@ def full_like(value, filling):
 def eye(count, dtype=float):
     convert = KINDS[kind_of(dtype)]
     return Array(
-        [convert(row == column) for row in range(count) for column in range(count)], (count, count), kind_of(dtype)
+        [convert(row == column) for row in range(count) for column in range(count)],
+        (count, count),
+        kind_of(dtype),
     )
 
 
@@ -1033,7 +1120,11 @@ def logspace(start, stop, num=50):
 
 @offered
 def loadtxt(file, delimiter, skiprows=0):
-    rows = [[float(entry) for entry in line.split(delimiter)] for line in list(file)[skiprows:] if line.strip()]
+    rows = [
+        [float(entry) for entry in line.split(delimiter)]
+        for line in list(file)[skiprows:]
+        if line.strip()
+    ]
     return as_array(rows)
 
 
@@ -1089,8 +1180,13 @@ def concatenate(arrays, axis=0):
     shape = list(arrays[0].shape)
     shape[axis] = sum(array.shape[axis] for array in arrays)
     chunks = [(array.values, math.prod(array.shape[axis:])) for array in arrays]
-    values = [KINDS[kind](entry) for k in range(math.prod(shape[:axis]))
-              for values, length in chunks for entry in values[k * length : (k + 1) * length]]  # fmt: skip
+    values = [
+        KINDS[kind](entry)
+        for k in range(math.prod(shape[:axis]))
+        # fmt: skip
+        for values, length in chunks
+        for entry in values[k * length : (k + 1) * length]
+    ]
     return Array(values, shape, kind)
 
 
@@ -1098,7 +1194,9 @@ def concatenate(arrays, axis=0):
 def stack(arrays, axis=0):
     arrays = [as_array(array) for array in arrays]
     axis %= arrays[0].ndim + 1
-    return concatenate([array.reshape(*array.shape[:axis], 1, *array.shape[axis:]) for array in arrays], axis)
+    return concatenate(
+        [array.reshape(*array.shape[:axis], 1, *array.shape[axis:]) for array in arrays], axis
+    )
 
 
 @offered
@@ -1114,7 +1212,9 @@ def hstack(arrays):
 
 @offered
 def column_stack(arrays):
-    return concatenate([array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, arrays)], 1)
+    return concatenate(
+        [array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, arrays)], 1
+    )
 
 
 @offered
@@ -1135,7 +1235,9 @@ def tile(value, counts):
 @offered
 def repeat(value, count):
     value = as_array(value).ravel()
-    return Array([entry for entry in value.values for _ in range(count)], (value.size * count,), value.kind)
+    return Array(
+        [entry for entry in value.values for _ in range(count)], (value.size * count,), value.kind
+    )
 
 
 @offered
@@ -1146,7 +1248,9 @@ def diag(value):
         for k, entry in enumerate(value.values):
             found[k, k] = entry
         return found
-    return Array([value[k, k].tolist() for k in range(min(value.shape))], (min(value.shape),), value.kind)
+    return Array(
+        [value[k, k].tolist() for k in range(min(value.shape))], (min(value.shape),), value.kind
+    )
 
 
 # --- along an axis ------------------------------------------------------------------------------
@@ -1200,7 +1304,10 @@ def along(value, axis, function, kind=None, keepdims=False, other=None):
     entries = (value.transpose(*kept, *axes) if kept and axes else value).values
     shape = tuple(value.shape[k] for k in kept)
     values = (
-        [function(entries[start : start + count]) for start in range(0, count * math.prod(shape), count)]
+        [
+            function(entries[start : start + count])
+            for start in range(0, count * math.prod(shape), count)
+        ]
         if count
         else []
     )
@@ -1313,7 +1420,11 @@ def percentile(value, q, axis=None):
                 raise ValueError("not finite")
             ordered, exact = sorted(values), part / 100 * (len(values) - 1)
             below = math.floor(exact)
-            low, high, share = ordered[below], ordered[min(below + 1, len(values) - 1)], exact - below
+            low, high, share = (
+                ordered[below],
+                ordered[min(below + 1, len(values) - 1)],
+                exact - below,
+            )
             return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
 
         return found
@@ -1405,7 +1516,8 @@ def flatnonzero(value):
 def argwhere(value):
     value = as_array(value)
     return as_array(
-        [unravel_index(place, value.shape) for place in flatnonzero(value).values] or zeros((0, value.ndim), int)
+        [unravel_index(place, value.shape) for place in flatnonzero(value).values]
+        or zeros((0, value.ndim), int)
     )
 
 
@@ -1421,7 +1533,10 @@ def unravel_index(place, shape):
 def searchsorted(ordered, value, side="left"):
     import bisect
 
-    find, ordered = {"left": bisect.bisect_left, "right": bisect.bisect_right}[side], as_array(ordered)
+    find, ordered = (
+        {"left": bisect.bisect_left, "right": bisect.bisect_right}[side],
+        as_array(ordered),
+    )
     if ordered.ndim != 1:
         raise ValueError("one axis")
     values = ordered.values
@@ -1471,7 +1586,8 @@ def product(one, two):
         said = f"size {right.shape[-2]} is different from {left.shape[-1]}"
         raise Told(
             ValueError(
-                "matmul: Input operand 1 has a mismatch in its core dimension 0, with gufunc signature "
+                "matmul: Input operand 1 has a mismatch in its core dimension 0, with gufunc "
+                "signature "
                 f"(n?,k),(k,m?)->(n?,m?) ({said})"
             )
         )
@@ -1487,7 +1603,9 @@ def product(one, two):
     for b in range(math.prod(batch)):
         rows = [lefts[start : start + k] for start in range(b * n * k, (b + 1) * n * k, k)]
         columns = [rights[start : start + k] for start in range(b * m * k, (b + 1) * m * k, k)]
-        values += [in_turn(list(map(operator.mul, row, column))) for row in rows for column in columns]
+        values += [
+            in_turn(list(map(operator.mul, row, column))) for row in rows for column in columns
+        ]
     shape = batch + ((n,) if one.ndim > 1 else ()) + ((m,) if two.ndim > 1 else ())
     return result(values, shape, kind)
 
@@ -1545,7 +1663,9 @@ def einsum(formula, *arrays):
     batch = "".join(chr(ord("A") + k) for k in range(dots))
     names, lengths = [], {}
     for k, array in enumerate(arrays):
-        own = inputs[k].replace("...", batch[len(batch) - (array.ndim - len(inputs[k].replace("...", ""))) :])
+        own = inputs[k].replace(
+            "...", batch[len(batch) - (array.ndim - len(inputs[k].replace("...", ""))) :]
+        )
         if len(set(own)) < len(own) or len(own) != array.ndim:
             raise NotImplementedError(formula)
         names.append(own)
@@ -1561,7 +1681,9 @@ def einsum(formula, *arrays):
     for own, array in zip(names, arrays):
         steps = dict(zip(own, steps_of(array.shape)))
         values = array.values
-        columns.append([values[place] for place in places_of(shape, [steps.get(name, 0) for name in order])])
+        columns.append(
+            [values[place] for place in places_of(shape, [steps.get(name, 0) for name in order])]
+        )
     products = columns[0]
     for column in columns[1:]:
         products = list(map(operator.mul, products, column))
@@ -1586,7 +1708,12 @@ def inner(one, two):
 
 def eliminated(rows, right):
     """Solve by Gauss's elimination with row exchanges; returns the solution and the determinant."""
-    rows, right, n, determinant = [row[:] for row in rows], [row[:] for row in right], len(rows), 1.0
+    rows, right, n, determinant = (
+        [row[:] for row in rows],
+        [row[:] for row in right],
+        len(rows),
+        1.0,
+    )
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(rows[i][k]))
         if best != k:
@@ -1617,7 +1744,12 @@ def solve(matrix, right):
         right = broadcast_to(right, (*batch, *right.shape[-2:]))
     columns = right.shape[-1] if right.ndim > 1 else 1
     rights = nested(right.values, (len(stack_of), n, columns))
-    values = [entry for rows, own in zip(stack_of, rights) for row in eliminated(rows, own)[0] for entry in row]
+    values = [
+        entry
+        for rows, own in zip(stack_of, rights)
+        for row in eliminated(rows, own)[0]
+        for entry in row
+    ]
     return Array(values, right.shape, "f")
 
 
@@ -1626,7 +1758,9 @@ def inv(matrix):
     stack_of, batch, n = matrices(matrix)
     unit = eye(n).tolist()
     return Array(
-        [entry for rows in stack_of for row in eliminated(rows, unit)[0] for entry in row], (*batch, n, n), "f"
+        [entry for rows in stack_of for row in eliminated(rows, unit)[0] for entry in row],
+        (*batch, n, n),
+        "f",
     )
 
 
@@ -1641,7 +1775,9 @@ def of_symmetric(rows):
     a, n = [row[:] for row in rows], len(rows)
     vectors = eye(n).tolist()
     for _ in range(60):
-        if sum(a[p][q] ** 2 for p in range(n) for q in range(p)) < 1e-40 * sum(a[p][p] ** 2 for p in range(n)):
+        if sum(a[p][q] ** 2 for p in range(n) for q in range(p)) < 1e-40 * sum(
+            a[p][p] ** 2 for p in range(n)
+        ):
             break
         for p in range(n):
             for q in range(p + 1, n):
@@ -1653,9 +1789,15 @@ def of_symmetric(rows):
                 s = t * c
                 for row in a:
                     row[p], row[q] = c * row[p] - s * row[q], s * row[p] + c * row[q]
-                a[p], a[q] = ([c * x - s * y for x, y in zip(a[p], a[q])], [s * x + c * y for x, y in zip(a[p], a[q])])
-                vectors[p], vectors[q] = ([c * x - s * y for x, y in zip(vectors[p], vectors[q])],
-                                          [s * x + c * y for x, y in zip(vectors[p], vectors[q])])  # fmt: skip
+                a[p], a[q] = (
+                    [c * x - s * y for x, y in zip(a[p], a[q])],
+                    [s * x + c * y for x, y in zip(a[p], a[q])],
+                )
+                vectors[p], vectors[q] = (
+                    [c * x - s * y for x, y in zip(vectors[p], vectors[q])],
+                    # fmt: skip
+                    [s * x + c * y for x, y in zip(vectors[p], vectors[q])],
+                )
     order = sorted(range(n), key=lambda k: a[k][k])
     return [a[k][k] for k in order], [vectors[k] for k in order]
 
@@ -1677,7 +1819,9 @@ def eigvalsh(matrix):
 
 
 def singular(rows):
-    """Columns of the left factor, singular values, and rows of the right factor, by turning columns (Hestenes)."""
+    """Columns of the left factor, singular values, and rows of the right factor, by turning columns
+    (Hestenes).
+    """
     n = len(rows)
     columns, right = [list(column) for column in zip(*rows)], eye(n).tolist()
     for _ in range(60):
@@ -1694,8 +1838,11 @@ def singular(rows):
                 c = 1 / math.hypot(t, 1)
                 s = c * t
                 for pair in (columns, right):
-                    pair[p], pair[q] = ([c * x - s * y for x, y in zip(pair[p], pair[q])],
-                                        [s * x + c * y for x, y in zip(pair[p], pair[q])])  # fmt: skip
+                    pair[p], pair[q] = (
+                        [c * x - s * y for x, y in zip(pair[p], pair[q])],
+                        # fmt: skip
+                        [s * x + c * y for x, y in zip(pair[p], pair[q])],
+                    )
         if not turned:
             break
     sizes = [math.hypot(*column) for column in columns]
@@ -1704,7 +1851,9 @@ def singular(rows):
 
 
 def orthonormal(columns, sizes):
-    """Columns that are at right angles, of unit length; where one has shrunk to nothing, another at right angles."""
+    """Columns that are at right angles, of unit length; where one has shrunk to nothing, another at
+    right angles.
+    """
     found = []
     for column, size in zip(columns, sizes):
         if size <= 1e-14 * sizes[0] or not size:
@@ -1787,7 +1936,7 @@ class Quiet:
 OFFERED["errstate"] = Quiet
 
 
-# --- random numbers: PCG64, seeded and shaped as NumPy does it (O'Neill 2014; Marsaglia and Tsang 2000) -----------
+# --- random numbers: PCG64, seeded and shaped as NumPy does it (O'Neill 2014; Marsaglia and Tsang 2
 
 WORD, LONG, HUGE = 2**32 - 1, 2**64 - 1, 2**128 - 1
 
@@ -1827,7 +1976,8 @@ def seeded(seed):
     return first << 64 | second, third << 64 | fourth
 
 
-#: NumPy's table of widths was made with rounded numbers: so far it is from the exact ones, in units in the last place.
+#: NumPy's table of widths was made with rounded numbers: so far it is from the exact ones, in units
+#: in the last place.
 ROUNDED = """
     -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7 -8 -8 -8 -7 -8
     -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4 -3 -4 -3 -3 -3 -3 -4 -3 -4 -3
@@ -1841,24 +1991,35 @@ ROUNDED = """
 
 @functools.cache
 def ziggurat():
-    """The 256 layers of equal area under the bell curve: their bounds as whole numbers, widths and heights."""
+    """The 256 layers of equal area under the bell curve: their bounds as whole numbers, widths and
+    heights.
+    """
     import mpmath
 
     with mpmath.workdps(60):
         start = mpmath.mpf("3.6541528853610087963519472518")
         height = lambda x: mpmath.exp(-x * x / 2)  # noqa: E731
-        area = start * height(start) + mpmath.sqrt(mpmath.pi / 2) * mpmath.erfc(start / mpmath.sqrt(2))
+        area = start * height(start) + mpmath.sqrt(mpmath.pi / 2) * mpmath.erfc(
+            start / mpmath.sqrt(2)
+        )
         edges = [start]
         for _ in range(254):
             edges.append(mpmath.sqrt(-2 * mpmath.log(area / edges[-1] + height(edges[-1]))))
-        edges = [area / height(start), *edges]  # from the widest, which stands for the tail, to the narrowest
+        edges = [
+            area / height(start),
+            *edges,
+        ]  # from the widest, which stands for the tail, to the narrowest
         scale = mpmath.mpf(2) ** 52
         widths = [edges[0], *reversed(edges[1:])]
         bounds = [edges[1] / edges[0], 0, *(widths[k - 1] / widths[k] for k in range(2, 256))]
         widths = [float(width / scale) for width in widths]
         heights = [1.0, *(float(height(width * scale)) for width in widths[1:])]
         bounds = [int(bound * scale) for bound in bounds]
-    return bounds, [width + int(more) * math.ulp(width) for width, more in zip(widths, ROUNDED)], heights
+    return (
+        bounds,
+        [width + int(more) * math.ulp(width) for width, more in zip(widths, ROUNDED)],
+        heights,
+    )
 
 
 class Generator:
@@ -1886,7 +2047,9 @@ class Generator:
         self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
 
     def bits(self):
-        state = self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
+        state = self.state = (
+            self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment
+        ) & HUGE
         value, turn = (state >> 64 ^ state) & LONG, state >> 122
         return (value >> turn | value << (64 - turn)) & LONG
 
@@ -1907,7 +2070,9 @@ class Generator:
                     beyond = -math.log1p(-self.share()) * 0.27366123732975828
                     if -2 * math.log1p(-self.share()) > beyond * beyond:
                         return -(edge + beyond) if whole >> 8 & 1 else edge + beyond
-            elif (heights[layer - 1] - heights[layer]) * self.share() + heights[layer] < math.exp(-0.5 * value * value):
+            elif (heights[layer - 1] - heights[layer]) * self.share() + heights[layer] < math.exp(
+                -0.5 * value * value
+            ):
                 return value
 
     def drawn(self, draw, size):
@@ -1964,7 +2129,9 @@ def places_after(value, form):
 
 
 def writer(values, kind):
-    """The function that writes each entry, all in one width, as NumPy's default settings have it."""
+    """The function that writes each entry, all in one width, as NumPy's default settings have
+    it.
+    """
     if kind == "b":
         return lambda value: f"{value!s:>5}"
     if kind == "i":
@@ -1972,9 +2139,14 @@ def writer(values, kind):
         return lambda value: f"{value:>{width}}"
     finite = [value for value in values if math.isfinite(value)]
     sizes = [abs(value) for value in finite if value]
-    exponents = bool(sizes) and (max(sizes) >= 1e8 or min(sizes) < 1e-4 or max(sizes) / min(sizes) > 1000)
+    exponents = bool(sizes) and (
+        max(sizes) >= 1e8 or min(sizes) < 1e-4 or max(sizes) / min(sizes) > 1000
+    )
     form = "e" if exponents else "f"
-    digits = max((min(places_after(value, f".8{form}"), shortest(value, form)) for value in finite), default=0)
+    digits = max(
+        (min(places_after(value, f".8{form}"), shortest(value, form)) for value in finite),
+        default=0,
+    )
 
     def one(value):
         if not math.isfinite(value):
@@ -2030,10 +2202,22 @@ def written_array(value, between, prefix):
 
 
 # Whatever the methods of an array or a number cannot answer, those of the real ones can.
-_OWN = {"__init__", "__getattr__", "__array__", "__reduce__", "__hash__", "view", "select", "__repr__", "__str__"}
+_OWN = {
+    "__init__",
+    "__getattr__",
+    "__array__",
+    "__reduce__",
+    "__hash__",
+    "view",
+    "select",
+    "__repr__",
+    "__str__",
+}
 for _owner in (Array, Number, Integer, Truth):
     for _name, _method in list(vars(_owner).items()):
-        if callable(_method) and (_name not in _OWN or _owner is Array and _name in ("__repr__", "__str__")):
+        if callable(_method) and (
+            _name not in _OWN or _owner is Array and _name in ("__repr__", "__str__")
+        ):
 
             def _find(numpy, arguments, name=_name):
                 return lambda self, *rest, **options: getattr(self, name)(*rest, **options)

@@ -1,8 +1,8 @@
 """Runs the cells of a page and says what they put out: the Python side of code in the page.
 
-The same file runs in the browser, in Pyodide, and at build time, where it finds out which cells need
-more than SymPy. Results take the forms that IPython gives them, so that they equal the stored ones.
-Everything goes to the page as JSON, through one function.
+The same file runs in the browser, in Pyodide, and at build time, where it finds out which cells
+need more than SymPy. Results take the forms that IPython gives them, so that they equal the stored
+ones. Everything goes to the page as JSON, through one function.
 """
 
 import ast
@@ -213,7 +213,10 @@ class Shell:
         class Line(BaseComm):
             def publish_msg(line, msg_type, data=None, metadata=None, buffers=None, **more):
                 if buffers:
-                    raise TypeError("a widget on this page can send numbers, text, lists and dictionaries, not bytes")
+                    raise TypeError(
+                        "a widget on this page can send numbers, text, lists and "
+                        "dictionaries, not bytes"
+                    )
                 self.send({"type": msg_type, "id": line.comm_id, "data": data})
 
             def handle_msg(line, message):  # its own would tell the events of IPython's shell
@@ -222,7 +225,9 @@ class Shell:
         comm.create_comm = Line
 
     def hear(self, name, data):
-        """Take what the page says to the widget ``name``: JSON, in the form of Jupyter's own messages."""
+        """Take what the page says to the widget ``name``: JSON, in the form of Jupyter's own
+        messages.
+        """
         import comm
 
         message = {"content": {"comm_id": name, "data": json.loads(data)}, "buffers": []}
@@ -256,7 +261,9 @@ class Shell:
         for number in plt.get_fignums():
             picture = io.StringIO()
             with plt.rc_context({"svg.hashsalt": "orientation", "svg.fonttype": "path"}):
-                plt.figure(number).savefig(picture, format="svg", bbox_inches="tight", metadata={"Date": None})
+                plt.figure(number).savefig(
+                    picture, format="svg", bbox_inches="tight", metadata={"Date": None}
+                )
             self.send({"type": "display", "data": {"image/svg+xml": picture.getvalue()}})
             plt.close(number)
 
@@ -265,8 +272,9 @@ class Shell:
     def run(self, code, name):
         """Run one cell; return its outcome as JSON.
 
-        The outcome has a ``status``: 'ok' (and whether ``plain`` Python computed in the place of NumPy), 'error' (with
-        a ``traceback``), 'interrupted', or 'missing' (with the ``package`` that is not here, and the reason).
+        The outcome has a ``status``: 'ok' (and whether ``plain`` Python computed in the place of
+        NumPy), 'error' (with a ``traceback``), 'interrupted', or 'missing' (with the ``package``
+        that is not here, and the reason).
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
@@ -307,7 +315,11 @@ class Shell:
         if package is None and "numpy" in self.missing.reasons and plain_numpy.is_at_fault(error):
             package = "numpy"
         if package:
-            return {"status": "missing", "package": package, "reason": self.missing.reasons[package]}
+            return {
+                "status": "missing",
+                "package": package,
+                "reason": self.missing.reasons[package],
+            }
         told = traceback.TracebackException.from_exception(error, compact=True)
         shorten(told)
         if isinstance(error, SyntaxError) and error.filename == name:
@@ -327,10 +339,18 @@ def hint(error, name):
     if line.startswith(("%", "!")):
         command = line.lstrip("%!").split()[0] if line.lstrip("%!").split() else ""
         if command in ("pip", "conda"):
-            return "\n\nOn this page nothing can be installed: it has SymPy and this book's own packages."
+            return (
+                "\n\nOn this page nothing can be installed: it has SymPy and this book's own "
+                "packages."
+            )
         if command in ("time", "timeit"):
-            return "\n\nCommands that begin with % are Jupyter's. Here: import timeit, and call timeit.timeit."
-        return "\n\nCommands that begin with % or ! are Jupyter's; on this page there is Python alone."
+            return (
+                "\n\nCommands that begin with % are Jupyter's. Here: import timeit, and call "
+                "timeit.timeit."
+            )
+        return (
+            "\n\nCommands that begin with % or ! are Jupyter's; on this page there is Python alone."
+        )
     if line.endswith("?") or line.startswith("?"):
         return f"\n\nThe question mark is Jupyter's. Here: help({line.strip('?')})"
     return ""
@@ -347,7 +367,9 @@ def ends_in_semicolon(code):
 
 
 def shorten(told):
-    """Keep of a traceback the cells' own lines: what a package says helps, and not the line of it that says so."""
+    """Keep of a traceback the cells' own lines: what a package says helps, and not the line of it
+    that says so.
+    """
     while told is not None:
         frames = [frame for frame in told.stack if frame.filename != __file__]
         own = [frame for frame in frames if frame.filename.startswith("cell ")]
