@@ -110,8 +110,11 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     Symbols are compared by name, so that ``theta`` with and without assumptions, or as a function
     of time, are one angle. The two quaternions :math:`q` and :math:`-q` are the same orientation.
 
-    Parameters ---------- first, second : SymPy matrices or arrays of shape ``(..., 3, 3)``, or both
-    ``(4,)`` or ``(..., 4)`` tolerance : float
+    Parameters
+    ----------
+    first, second : SymPy matrices or arrays
+        Both of shape ``(..., 3, 3)``, or both ``(4,)`` or ``(..., 4)``.
+    tolerance : float
         Largest difference between two entries that counts as rounding.
 
     Returns
@@ -179,9 +182,10 @@ def diagnose(
     A mix-up is named only if it reproduces the given answer at every random value of the symbols.
     If several do, they are mathematically the same for this answer, and all of them are named.
 
-    Parameters ---------- given, expected : direction cosine matrices of shape ``(3, 3)``, or
-    quaternions of shape ``(4,)``
-        Symbols or numbers.
+    Parameters
+    ----------
+    given, expected : direction cosine matrices or quaternions
+        Of shape ``(3, 3)`` or ``(4,)``; symbols or numbers.
     angles, sequence : optional
         The Euler angles and the body fixed sequence that ``expected`` is made of. For a symbolic
         matrix of up to three angles they are recognised without being given.

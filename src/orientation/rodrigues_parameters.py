@@ -42,9 +42,10 @@ def dcm_from_rodrigues(vector: Values) -> Array | Matrix:
 
     .. math::
 
-       {}^A\mathbf{C}^N = \left(\mathbf{I} - [\mathbf{g}]_\times\right)\left(\mathbf{I} +
-       [\mathbf{g}]_\times\right)^{-1} = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T -
-       2\,[\mathbf{g}]_\times}{1 + g^2}
+       {}^A\mathbf{C}^N
+       = \left(\mathbf{I} - [\mathbf{g}]_\times\right)
+         \left(\mathbf{I} + [\mathbf{g}]_\times\right)^{-1}
+       = \frac{(1 - g^2)\,\mathbf{I} + 2\,\mathbf{g}\mathbf{g}^T - 2\,[\mathbf{g}]_\times}{1 + g^2}
 
     Parameters
     ----------

@@ -168,9 +168,11 @@ def fit_field(time, rates, field, seconds=0.25):
     FieldFit or None
         None where the turns do not decide, or nothing is better for the correction.
 
-    Notes ----- Carried back by the gyroscope to the beginning of a run of some seconds, the
-    corrected field is one vector: ``D.T @ (A m - c) = f``. That is linear in ``A``, ``c`` and the
-    field ``f`` of each run.
+    Notes
+    -----
+    Carried back by the gyroscope to the beginning of a run of some seconds, the corrected field is
+    one vector: ``D.T @ (A m - c) = f``. That is linear in ``A``, ``c`` and the field ``f`` of each
+    run.
     """
     parts, size = pieces(time, rates, longest=80.0, seconds=seconds)
     outer, plain, runs = [], [], []

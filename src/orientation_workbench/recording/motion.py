@@ -329,9 +329,10 @@ def fit_scale(
     bias : array of shape ``(3,)``, optional
         Radians per second, where it is known.
 
-    Returns ------- scale, its standard deviation, bias of shape ``(3,)``, its standard deviations,
-    and what is left in radians
-        The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not
+    Returns
+    -------
+    scale, its standard deviation, bias of shape ``(3,)``, its standard deviations, and what is left
+        The last in radians. The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not
         suffice.
     """
     ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])

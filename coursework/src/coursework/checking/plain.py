@@ -5,10 +5,11 @@ a text. Here it becomes a table of numbers, names and operations that JSON can h
 
 ``{'value': value, 'nodes': [node, ...]}``
 
-``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``, ``['matrix',
-rows, columns, [k, ...]]``, ``['list', [value, ...]]``, ``['frame', name, {other: value, ...}]``
-(its direction cosine matrix with respect to each frame it is connected to), ``['frames', {target:
-{source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its components in each frame) or
+``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``,
+``['matrix', rows, columns, [k, ...]]``, ``['list', [value, ...]]``,
+``['frame', name, {other: value, ...}]`` (its direction cosine matrix with respect to each frame it
+is connected to), ``['frames', {target: {source: value, ...}, ...}]``,
+``['vector', {frame: value, ...}]`` (its components in each frame) or
 ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says whether its
 body works anything out. Each ``k`` counts into ``nodes``; a node is ``['integer', digits]``,
 ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``, ``['constant', name]`` or
