@@ -18,9 +18,10 @@ import pytest
 TABLE = Path(__file__).with_name("TIMES.md")
 HEAD = """# What the tests cost
 
-Written by `make times`. The unit is the processor time that starting Python and importing SymPy takes on the same
-machine, so that tables of different machines can be compared. `make test` leaves out what is marked as long, and of
-what has many alike cases runs a few; `make test-all`, as every night, runs everything.
+Written by `make times`. The unit is the processor time that starting Python and importing SymPy
+takes on the same machine, so that tables of different machines can be compared. `make test` leaves
+out what is marked as long, and of what has many alike cases runs a few; `make test-all`, as every
+night, runs everything.
 
 | part | `make test` | `make test-all` | share of everything |
 | --- | ---: | ---: | ---: |
