@@ -191,8 +191,11 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
     """That share in words, for authors and for instructors; and how many variants it is of, where
     there are any.
 
-    >>> said_beyond({"levers/arm": {"worth": 1, "tries": [0, 20, None]}, "levers/plain": {"worth": 2, "tries": [0]}})
-    '83% of 3 points are behind more than 65,536 tries of a script, as far as 3 of 4 variants were attacked'
+    >>> arm, plain = {"worth": 1, "tries": [0, 20, None]}, {"worth": 2, "tries": [0]}
+    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[:62]
+    '83% of 3 points are behind more than 65,536 tries of a script,'
+    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[63:]
+    'as far as 3 of 4 variants were attacked'
     """
     from .attack import BUDGET  # needed here alone: it brings NumPy
 
