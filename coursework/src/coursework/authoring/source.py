@@ -215,8 +215,8 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
 def said_found(one: Measured) -> str:
     """What was measured of a question in words, for a table.
 
-    >>> said_found({"worth": 1, "tries": [0, 2000, 31, None]}), said_found({"worth": 1, "tries": [0]})
-    ('after 31 tries, 2 of 3 variants', 'not found')
+    >>> [said_found({"tries": tries}) for tries in ([0, 2000, 31, None], [4], [0])]
+    ['after 31 tries, 2 of 3 variants', 'after 4 tries', 'not found']
     """
     tries = [count for count in one["tries"] if count is not None]
     found = [count for count in tries if count]
