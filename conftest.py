@@ -49,10 +49,6 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
-def pytest_addoption(parser):
-    parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
-
-
 def pytest_configure(config):
     # What is installed must be what stands in pyproject.toml: entry points are read from the
     # installed metadata.

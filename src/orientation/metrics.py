@@ -111,7 +111,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     Examples
     --------
     >>> from orientation import mean_orientation, same_orientation, simple_dcm
-    >>> same_orientation(mean_orientation(simple_dcm('z', [0.1, 0.2, 0.6]), metric='angle'), simple_dcm('z', 0.3))
+    >>> mean = mean_orientation(simple_dcm('z', [0.1, 0.2, 0.6]), metric='angle')
+    >>> same_orientation(mean, simple_dcm('z', 0.3))
     True
 
     Notes

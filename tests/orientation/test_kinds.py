@@ -645,7 +645,8 @@ assert o.same_orientation(o.simple_dcm('y', c) * o.simple_dcm('x', b) * o.simple
 assert o.same_orientation(o.dcm_from_space_fixed(s, 'zxy'), o.dcm_from_body_fixed((c, b, a), 'yxz'))
 assert o.same_orientation(o.dcm_from_quaternion(o.quaternion_from_axis_angle((1, 2, 2), a)),
                           o.dcm_from_axis_angle((1, 2, 2), a))
-o.multiply_quaternions(q, q), o.dcm_from_body_fixed((a, 0, 0.1), 'zxz'), o.dcm_from_rotation_vector(s)
+o.multiply_quaternions(q, q), o.dcm_from_body_fixed((a, 0, 0.1), 'zxz')
+o.dcm_from_rotation_vector(s)
 print(o.diagnose(dcm.T, dcm))
 print(o.diagnose(o.dcm_from_body_fixed((c, b, a), 'yxz'), dcm))
 print(o.diagnose((q[1], q[2], q[3], q[0]), q))
@@ -653,7 +654,8 @@ frames = (o.Frames().orient_axis('B', 'A', 'z', a).orient_axis('C', 'B', (1, 0, 
           .orient_body_fixed('D', 'C', (c, 0, 0.5), 'yxz').orient_dcm('E', 'D', dcm)
           .orient_quaternion('F', 'E', o.quaternion_from_axis_angle((0, 1, 0), a)))
 assert frames.orient_axis('B', 'A', 'z', a) is frames
-o.check_dcm(frames.dcm('F', 'A')), frames.dcm('A', 'F'), frames.dcm('A', 'A'), frames.equation('F', 'A')
+o.check_dcm(frames.dcm('F', 'A')), frames.dcm('A', 'F'), frames.dcm('A', 'A')
+frames.equation('F', 'A')
 frames.reference_frames()
 try:
     frames.orient_axis('C', 'A', 'x', a)

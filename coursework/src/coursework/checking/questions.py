@@ -263,7 +263,8 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
 
     Its pages are those that the first one has not, and follow upon them.
 
-    >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, {'kind': 'vector', 'salt': 'a', 'ladder': []})
+    >>> first = {'kind': 'vector', 'salt': 'a', 'ladder': []}
+    >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, first)
     {'salt': 'b', 'shown': {'arm': '2'}, 'ladder': None}
     """
     return {
