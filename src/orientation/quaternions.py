@@ -163,7 +163,7 @@ def quaternion_components_from_dcm(
         ],
     )
     share = f.where(scalar < 0, -1.0, 1.0) / f.norm(scalar, x, y, z)
-    return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
+    return share * scalar, share * x, share * y, share * z
 
 
 def quaternion_from_dcm(dcm: Values) -> Array:
