@@ -10,11 +10,19 @@ from notebook_pages.first_view import MARKED, first_part
 LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
 SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
+FIGURES = re.compile(r'<link rel="figure-script" href="([^"?]*)')
 #: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of
 #: its code.
 SCRIPTS = 1 + 2 + 2 + 1
 # What lies below is left alone until the test lets go.
 HOLD = "window.held = []; window.requestIdleCallback = (action) => held.push(action);"
+# The frames after the first view are drawn when the test says so.
+HOLD_FRAMES = """
+window.held = [];
+const draw = window.requestAnimationFrame.bind(window);
+window.requestAnimationFrame = (action) => document.documentElement.matches(".settling") ? draw(action) : held.push(action);
+window.release = () => { window.requestAnimationFrame = draw; held.splice(0).forEach((action) => draw(action)); };
+"""
 # Where each block of the text begins.
 PLACES = """() => [...document.querySelectorAll('.bd-article section > *')].map(
   (block) => Math.round(block.getBoundingClientRect().top + scrollY))"""
@@ -74,7 +82,8 @@ def test_long_pages_are_marked_and_short_ones_are_not():
 
 
 def test_few_scripts_are_fetched():
-    fetched = {name: SCRIPT.findall((HTML / name).read_text("utf8")) for name in html_pages()}
+    pages = {name: (HTML / name).read_text("utf8") for name in html_pages()}
+    fetched = {name: SCRIPT.findall(text) + FIGURES.findall(text) for name, text in pages.items()}
     assert {name: found for name, found in fetched.items() if len(found) > SCRIPTS} == {}
 
 
@@ -109,6 +118,23 @@ def test_scripts_are_asked_for_when_the_text_has_come():
         text = (HTML / name).read_text("utf8")
         assert SCRIPT.search(text.partition("</head>")[0]) is None, name
         assert SCRIPT.search(text), name
+
+
+def test_figures_are_brought_to_life_when_the_first_view_stands(open_page):
+    """Their scripts are more than half of a page's: nobody waits for them with an empty screen."""
+    page = open_page(LONG, script=HOLD_FRAMES)
+    page.wait_for_function("held.length", polling=50)  # nothing is drawn from here on
+    asked = """() => performance.getEntriesByType('resource').filter(
+      ({ name }) => /moving\\/.*js/.test(name)).length"""
+    assert page.evaluate(asked) == 0
+    assert page.locator(".moving .still").first.is_visible()
+    page.evaluate("release()")
+    page.wait_for_function(
+        "[...document.querySelectorAll('.moving[data-figure]')].every((f) => 'ready' in f.dataset)",
+        polling=50,
+    )
+    names = FIGURES.findall((HTML / LONG).read_text("utf8"))
+    assert page.evaluate(asked) == len(names) > 1
 
 
 def test_link_within_a_page_leads_to_its_place_at_once(open_page):

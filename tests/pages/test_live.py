@@ -37,9 +37,14 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   const output = cell.querySelector(':scope > .cell_output');
   if (!output) return '';
   const copy = output.cloneNode(true);
-  // The build writes a formula in fewer words than KaTeX; what is set is the same.
-  copy.querySelectorAll('.katex').forEach((formula) =>
-    formula.replaceChildren(formula.dataset.tex ?? formula.querySelector('annotation').textContent));
+  // The build writes a formula in fewer words than KaTeX; what is set is the same. It keeps the TeX of those alone
+  // that stand by themselves.
+  copy.querySelectorAll('.katex').forEach((formula) => {
+    const tex = formula.querySelector('annotation');
+    tex?.remove();
+    const alone = formula.parentElement.matches('.katex-display');
+    formula.replaceChildren(alone ? formula.dataset.tex ?? tex.textContent : formula.querySelector('math').textContent);
+  });
   copy.querySelectorAll('.katex').forEach((formula) => formula.removeAttribute('data-tex'));
   // The figures of a built page share one style, and one set of outlines for their letters.
   copy.querySelectorAll('use').forEach((use) => use.setAttribute('href',

@@ -132,7 +132,7 @@ def keep_punctuation(app, doctree, docname):
 
 
 def visit_inline(translator, node):
-    translator.body.append(f'<span class="math">{render(node, display=False)}</span>')
+    translator.body.append(render(node, display=False))
     raise nodes.SkipNode
 
 

@@ -1,8 +1,8 @@
 """Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
 
 A cell that ends in a moving figure of the book puts out a still, with the state of the figure, and
-a widget for Jupyter. The page shows the still, and one script for each kind of figure brings it to
-life.
+a widget for Jupyter. The page shows the still, and one script for each kind of figure, which
+book.js asks for when the first view stands, brings it to life.
 """
 
 import os
@@ -83,9 +83,8 @@ def add_scripts(app, pagename, templatename, context, doctree):
         return
     texts, later = scripts_and_styles(kinds)
     write(Path(app.outdir) / "_static" / "moving", texts | later)
-    for name in texts:
-        if name.endswith(".js"):
-            app.add_js_file(f"moving/{name}", loading_method="defer")
+    address = context["pathto"]("_static/moving", 1)
+    context["figure_scripts"] = [f"{address}/{name}" for name in texts if name.endswith(".js")]
     context["styles"] = [
         *context["styles"],
         *(f"moving/{name}" for name in texts if name.endswith(".css")),

@@ -2,6 +2,8 @@
 
 import re
 import subprocess
+from collections import Counter
+from hashlib import sha256
 from pathlib import Path
 
 from docutils import nodes
@@ -103,7 +105,35 @@ LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></c
 NAME = re.compile(
     r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>'
 )
+#: A program, and a word of it that has a colour of its own.
+PROGRAM = re.compile(r"<pre\b.*?</pre>", re.DOTALL)
+TOKEN = re.compile(r'<span class="(\w{1,3})">([^<]*)</span>')
 STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
+
+
+STYLED = re.compile(r' style="([^"]*)"')
+BEGIN = re.compile(r'<svg\b(?:[^">]|"[^"]*")*>')
+
+
+def name_styles(drawing):
+    """Say each style that a plot repeats once, in the plot, so that it goes where that goes.
+
+    The name follows from the style: plots of several pages may stand in one document. The book's
+    own drawings have classes, and are left as they are.
+    """
+    found = Counter(STYLED.findall(drawing))
+    names = {
+        style: f"s{sha256(style.encode()).hexdigest()[:6]}"
+        for style, times in found.items()
+        if times > 2
+    }
+    if not names or " class=" in drawing:
+        return drawing
+    rules = "".join(f".{name}{{{style}}}" for style, name in names.items())
+    drawing = BEGIN.sub(lambda begin: f"{begin[0]}<style>{rules}</style>", drawing, count=1)
+    return STYLED.sub(
+        lambda style: f' class="{names[style[1]]}"' if style[1] in names else style[0], drawing
+    )
 
 
 def share_outlines(body):
@@ -132,7 +162,8 @@ def share_outlines(body):
             )
 
         text = DEFINITIONS.sub(take, drawing[0].replace(" />", "/>"))
-        return USE.sub(place, PLACED.sub(r'<use x="\1" y="\2" href=', text))
+        text = USE.sub(place, PLACED.sub(r'<use x="\1" y="\2" href=', text))
+        return name_styles(text.replace(' y="0"', ""))
 
     body = re.sub(r"<svg\b.*?</svg>", share, body, flags=re.DOTALL)
     table = "".join(f'<path id="o{number}" {outline}/>' for outline, number in numbers.items())
@@ -160,7 +191,9 @@ def lighten(body):
     body = re.sub(r'<figure (?=class="orientation-figure)', '<figure role="none" ', body)
     body = STILL.sub(r"\1<noscript>\2</noscript>\3", body)
     body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
-    return share_outlines(re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body))
+    body = re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body)
+    body = PROGRAM.sub(lambda program: TOKEN.sub(r"<i class=\1>\2</i>", program[0]), body)
+    return share_outlines(body)
 
 
 def trim_page(app, pagename, templatename, context, doctree):
@@ -280,7 +313,7 @@ def join_scripts(site):
         }
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
         (static / file).write_text("\n;".join(parts), "utf8")
-    make_small(static, [static / file for file in files], "error")
+    make_small(static, [*(static / file for file in files), *static.glob("moving/*.js")], "error")
     for name in PAGE_SCRIPTS:
         (static / name).unlink()
 

@@ -25,11 +25,15 @@
     // The frame that shows the first view is drawn before anything is asked for that it does not need.
     await frame();
     await frame();
+    for (const { href } of document.querySelectorAll("link[rel='figure-script']")) {
+      document.head.append(Object.assign(document.createElement("script"), { src: href, async: false })); // in their order
+    }
+    if (!later.length) return;
     await Promise.race([faces(), aWhile()]);
     whenIdle(goOn, { timeout: 200 });
   };
-  if (later.length) begin();
-  else whole();
+  if (!later.length) whole();
+  begin();
   for (const name of ["hashchange", "beforeprint"]) addEventListener(name, whole);
   document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
 }

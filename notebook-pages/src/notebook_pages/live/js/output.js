@@ -78,7 +78,7 @@ function setFormulas(box) {
     if (!/\$[^$]+\$/.test(text.data) || text.parentElement.closest("code, pre, script, style, svg")) continue;
     const parts = text.data.split(/\$([^$]+)\$/).map((part, place) => {
       if (place % 2 === 0) return part;
-      const math = element("span", "math");
+      const math = element("span");
       math.innerHTML = katex.renderToString(part, { output: "htmlAndMathml", throwOnError: false, strict: "ignore" });
       return math;
     });
