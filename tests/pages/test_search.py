@@ -2,8 +2,8 @@
 the keyboard.
 
 The queries in ``queries`` were written down, with the places that answer, before the search was
-first run on them; those in the files called held-out were never looked at while it was tuned, and
-asked-held-out was gathered after that.
+first run on them; those in the files called held-out were never looked at while it was tuned,
+asked-held-out was gathered after that, and asked-last when all phrases and shares had been fixed.
 """
 
 import json
@@ -29,7 +29,8 @@ REACHED = {
     "held-out": (0.8, 0.96),
     "held-out-too": (0.9, 0.98),
     "forums-held-out": (0.7, 0.8),
-    "asked-held-out": (0.65, 0.85),
+    "asked-held-out": (0.7, 0.86),
+    "asked-last": (0.73, 0.86),
 }
 FIRST_ANSWER = 150_000  # bytes before it
 CHAPTER = "chapters/gimbal-lock.html"
