@@ -49,10 +49,6 @@ def pytest_xdist_make_scheduler(config, log):
     return ByFile(config, log)
 
 
-def pytest_addoption(parser):
-    parser.addoption("--write-times", action="store_true", help="write the table of tests/TIMES.md")
-
-
 def pytest_configure(config):
     # What is installed must be what stands in pyproject.toml: entry points are read from the
     # installed metadata.
@@ -64,7 +60,7 @@ def pytest_configure(config):
     nbval.plugin.IPyNbCell.compare_outputs = stored_outputs.compare_outputs
     nbval.plugin.IPyNbCell.format_output_compare = stored_outputs.format_output_compare
     nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
-    config.pluginmanager.register(times.Times(config))
+    config.pluginmanager.register(times.Times(config), "times")
     config.addinivalue_line(
         "markers",
         "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of "

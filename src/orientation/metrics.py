@@ -58,10 +58,10 @@ def angle_between(first: Values, second: Values) -> Scalars:
     """
 
     def excess(f: NumberFunctions[Number], *entries: Number) -> Number:
-        return f.largest(dcm_excess(f, *entries[:9]), dcm_excess(f, *entries[9:18]))
+        return f.largest(dcm_excess(f, *entries[:9]), dcm_excess(f, *entries[9:]))
 
     def explain(entries: Sequence[float], where: str) -> None:
-        for name, nine in (("first", entries[:9]), ("second", entries[9:18])):
+        for name, nine in (("first", entries[:9]), ("second", entries[9:])):
             if not dcm_excess(NUMBERS, *nine) <= TOLERANCE:
                 explain_dcm(nine, where, name)
 
@@ -111,7 +111,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     Examples
     --------
     >>> from orientation import mean_orientation, same_orientation, simple_dcm
-    >>> same_orientation(mean_orientation(simple_dcm('z', [0.1, 0.2, 0.6]), metric='angle'), simple_dcm('z', 0.3))
+    >>> mean = mean_orientation(simple_dcm('z', [0.1, 0.2, 0.6]), metric='angle')
+    >>> same_orientation(mean, simple_dcm('z', 0.3))
     True
 
     Notes

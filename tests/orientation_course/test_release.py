@@ -340,7 +340,8 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
     )
     said = "\n".join(update(two, work))
     there = {
-        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended", "d": "my answer", "e": "e",
+        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended",
+        "d": "my answer", "e": "e",
     }  # fmt: skip
     assert code_in(work) == there
     assert (
@@ -448,8 +449,8 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     said = update(new, work)
     assert install(said) == "sealed in 1.1.0.post20261201080000\n"
     assert {path.name for path in work.iterdir()} == {
-        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb", "a-new-1.ipynb",
-        MANIFEST,
+        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
+        "a-new-1.ipynb", MANIFEST,
     }  # fmt: skip
     assert (work / "a.ipynb").read_text() == "my answer"
     assert (work / "requirements.txt").read_text().splitlines() == [

@@ -127,8 +127,8 @@ def entries_of_page(page, article):
             if id(part) not in inner and part is not heading
         )
         yield {
-            "kind": kind, "title": title, "number": number, "anchor": anchor, "about": first_sentence(section, rest),
-            "text": own,
+            "kind": kind, "title": title, "number": number, "anchor": anchor,
+            "about": first_sentence(section, rest), "text": own,
         }  # fmt: skip
         for box in section.select("div.math[id]"):
             if box.find_parent("section") is section and box["id"] in numbers:
