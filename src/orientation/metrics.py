@@ -58,10 +58,10 @@ def angle_between(first: Values, second: Values) -> Scalars:
     """
 
     def excess(f: NumberFunctions[Number], *entries: Number) -> Number:
-        return f.largest(dcm_excess(f, *entries[:9]), dcm_excess(f, *entries[9:18]))
+        return f.largest(dcm_excess(f, *entries[:9]), dcm_excess(f, *entries[9:]))
 
     def explain(entries: Sequence[float], where: str) -> None:
-        for name, nine in (("first", entries[:9]), ("second", entries[9:18])):
+        for name, nine in (("first", entries[:9]), ("second", entries[9:])):
             if not dcm_excess(NUMBERS, *nine) <= TOLERANCE:
                 explain_dcm(nine, where, name)
 

@@ -15,6 +15,7 @@ from orientation import (
     interpolate_quaternions,
     mean_orientation,
     random_orientations,
+    rotation_vector_from_dcm,
     same_orientation,
 )
 
@@ -53,11 +54,18 @@ def test_one_way_is_shorter_as_soon_as_they_are_nearer(scalar):
 
 @pytest.mark.parametrize("length", [1e-308, 1e-200, 1e-170, 1e-150, 1e-9])
 def test_the_square_of_a_small_rotation_vector_may_be_nothing(length):
-    """Where the square of its length is 0 in doubles, the length itself is not."""
-    found = dcm_from_rotation_vector((0.6 * length, 0, 0.8 * length))
-    assert np.array_equal(np.diag(found), [1, 1, 1])
-    assert np.allclose([found[0, 1], found[1, 2]], [0.8 * length, 0.6 * length], rtol=1e-15, atol=0)
-    assert found[0, 2] == pytest.approx(0.24 * length * length, rel=1e-6)
+    """Where the square of its length is 0 in doubles, the vector itself is not, alone or in a
+    batch.
+    """
+    vector = np.array([0.6 * length, 0, 0.8 * length])
+    for found in (dcm_from_rotation_vector(vector), dcm_from_rotation_vector([vector, vector])[1]):
+        assert np.array_equal(np.diag(found), [1, 1, 1])
+        assert np.allclose(
+            [found[0, 1], found[1, 2]], [0.8 * length, 0.6 * length], rtol=1e-15, atol=0
+        )
+        assert found[0, 2] == pytest.approx(0.24 * length * length, rel=1e-6)
+        for back in (rotation_vector_from_dcm(found), rotation_vector_from_dcm([found, found])[1]):
+            assert np.allclose(back, vector, rtol=1e-15, atol=0)
 
 
 # ---- the mean of far orientations --------------------------------------------------------------
