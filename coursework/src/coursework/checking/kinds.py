@@ -145,7 +145,7 @@ def components(value: list[Any], length: int, wanted: str) -> list[int]:
 
 
 def _measurement(question: Question, value: list[Any]) -> list[int]:
-    wanted = "A number and its unit, such as `(3.2, 'N m')`,"
+    wanted = "A number and its unit, such as `(3.2, 'N m')`"
     if value[0] != "list" or len(value[1]) != 2 or value[1][1][0] != "text":
         raise shape_fault(wanted, value)
     return [leaf(value[1][0], wanted)]
@@ -227,9 +227,7 @@ def _spelled(plain: Plain) -> str | None:
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(
-        plain, f"One of {listed(question.options)}, in quotation marks,"
-    )
+    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
     # out.
@@ -247,7 +245,7 @@ def _choice(question: Question, plain: Plain) -> str:
 
 def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
-    wanted = f"A list of {length} truth values, `True` or `False`,"
+    wanted = f"A list of {length} truth values, `True` or `False`"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
     given = []
@@ -265,7 +263,7 @@ def _truths(question: Question, plain: Plain) -> str:
 
 def _words(question: Question, plain: Plain) -> str:
     value, length, options = plain["value"], question.length, question.options
-    wanted = f"A list of {length} words, each one of {listed(options)},"
+    wanted = f"A list of {length} words, each one of {listed(options)}"
     if value[0] != "list" or len(value[1]) != length:
         raise shape_fault(wanted, value)
     if any(map(is_blank, value[1])):
