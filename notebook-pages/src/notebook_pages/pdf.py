@@ -197,7 +197,10 @@ def article(site, page, set_formula=as_picture):
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
-        if paragraph.get_text().rstrip().endswith((":", ",")):
+        # A sentence that goes on below it, and a remark in italics right under a heading.
+        words, before = paragraph.get_text().strip(), paragraph.find_previous_sibling()
+        remark = paragraph.em and paragraph.em.get_text() == words
+        if words.endswith((":", ",")) or (remark and before and before.name in ("h1", "h2", "h3")):
             paragraph["class"] = [*paragraph.get("class", []), "leads-on"]
     for code in text.select("div.cell_input, .cell_output .output"):
         if len(code.get_text().strip().splitlines()) > LONG:
