@@ -88,8 +88,9 @@ def run_plainly(cells):
     names = {"__name__": "__main__"}
     absent = Absent()
     if door != "laptop":
-        for name in [name for name in sys.modules if name.partition(".")[0] in ("numpy", "matplotlib", "scipy")]:
-            del sys.modules[name]
+        for name in [*sys.modules]:
+            if name.partition(".")[0] in ("numpy", "matplotlib", "scipy"):
+                del sys.modules[name]
         sys.meta_path.insert(0, absent)
     for cell in cells:
         try:

@@ -873,9 +873,9 @@ def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
     """
     for one in KINDS.values():
         assert set(one.sealed().as_json()) <= {
-            "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options", "tolerance", "relative",
-            "calls", "takes", "result", "quantity", "either sign", "unit vector", "every symbol",
-            "salt", "lockers", "pages", "ladder", "worth", "answer",
+            "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options",
+            "tolerance", "relative", "calls", "takes", "result", "quantity", "either sign",
+            "unit vector", "every symbol", "salt", "lockers", "pages", "ladder", "worth", "answer",
         }  # fmt: skip
         assert one.public.salt in [
             hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16]

@@ -225,15 +225,15 @@ needs_solutions = pytest.mark.skipif(
 @pytest.mark.parametrize("name", COMMITTED)
 def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"
-    write_to[0].mkdir()
-    shutil.copy(COURSE.sources / f"{name}.ipynb", write_to[0])
+    # All of them: what a right answer opens hints for may stand in another notebook.
+    shutil.copytree(COURSE.sources, write_to[0])
     one = random.Random(f"{SEED} {name}").randrange(1, 8)
     # The other variants say how many lockers each of them is filled up to.
     (write_to[2] / "variants").mkdir(parents=True)
     for path in (COURSE.sealed / "variants").glob(f"{name}-*.json"):
         if path.stem.removeprefix(f"{name}-") != str(one):
             shutil.copy(path, write_to[2] / "variants")
-    release.release(made_in(tmp_path), variants=[one])
+    release.release(made_in(tmp_path), [name], variants=[one])
     variants = [
         folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)
     ]
@@ -340,7 +340,8 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
     )
     said = "\n".join(update(two, work))
     there = {
-        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended", "d": "my answer", "e": "e",
+        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended",
+        "d": "my answer", "e": "e",
     }  # fmt: skip
     assert code_in(work) == there
     assert (
@@ -448,8 +449,8 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     said = update(new, work)
     assert install(said) == "sealed in 1.1.0.post20261201080000\n"
     assert {path.name for path in work.iterdir()} == {
-        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb", "a-new-1.ipynb",
-        MANIFEST,
+        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
+        "a-new-1.ipynb", MANIFEST,
     }  # fmt: skip
     assert (work / "a.ipynb").read_text() == "my answer"
     assert (work / "requirements.txt").read_text().splitlines() == [

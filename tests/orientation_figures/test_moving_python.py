@@ -67,7 +67,8 @@ def refused(error, ask):
 
 CHANGES = eval(sys.argv[1])
 NEEDS_NUMPY = {"nine_numbers": "nearest", "motion": "dcm", "successive": "dcms", "graph": "dcm"}
-figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
+names = set(moving.__all__) - {"MovingFigure", "SequenceExplorer"}
+figures = [getattr(moving, name) for name in sorted(names)]
 for kind in figures:
     figure, heard = kind(), []
     (name, value), before = CHANGES[figure.kind], figure.state()
@@ -86,7 +87,8 @@ for kind in figures:
     for ask in (figure.drawing, figure.still):
         assert refused(ImportError, ask).name == "numpy"
     if figure.kind in NEEDS_NUMPY:
-        assert refused(ImportError, lambda: getattr(figure, NEEDS_NUMPY[figure.kind])).name == "numpy"
+        needed = NEEDS_NUMPY[figure.kind]
+        assert refused(ImportError, lambda: getattr(figure, needed)).name == "numpy"
     elif figure.kind != "workbench":  # which shows two orientations, and needs NumPy to find them
         assert figure.dcm.shape == (3, 3)
 cycle = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]

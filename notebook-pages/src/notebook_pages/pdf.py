@@ -71,8 +71,10 @@ FIT = """smallest => {
     if (element.closest(".katex") && element.className !== "katex") continue;
     const box = element.getBoundingClientRect();
     if (box.width && (box.right > sheet.right + 1 || box.left < sheet.left - 30))
-      faults.push(`${element.tagName.toLowerCase()}.${element.className} in #${element.closest("[id]")?.id}: ` +
-                  `${Math.round(box.right - sheet.right)} px too wide: ${element.textContent.slice(0, 60)}`);
+      faults.push(
+        `${element.tagName.toLowerCase()}.${element.className} ` +
+        `in #${element.closest("[id]")?.id}: ${Math.round(box.right - sheet.right)} px too wide: ` +
+        element.textContent.slice(0, 60));
   }
   return faults;
 }"""
@@ -287,8 +289,9 @@ def faces():
     files = NODE_MODULES / "@fontsource"
     return "".join(
         f'@font-face {{ font-family: "{family}"; font-weight: {weight}; '
-        f"src: url({(files / name / 'files' / f'{name}-{script}-{weight}-normal.woff2').as_uri()}); }}\n"
+        f"src: url({(files / name / 'files' / file).as_uri()}); }}\n"
         for family, name, script, weight in FACES
+        for file in [f"{name}-{script}-{weight}-normal.woff2"]
     )
 
 
@@ -339,7 +342,8 @@ def document(site, title):
     return (
         '<!doctype html><html lang="en" data-theme="light"><head><meta '
         f'charset="utf-8"><title>{escape(title)}</title>'
-        f"{links}<style>{fonts.face_rules(static + '/fonts')}{faces()}{own}{running_heads(chapters)}</style></head>"
+        f"{links}<style>{fonts.face_rules(static + '/fonts')}{faces()}{own}"
+        f"{running_heads(chapters)}</style></head>"
         f"<body>{''.join(body)}</body></html>"
     )
 

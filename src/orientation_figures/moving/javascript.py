@@ -24,9 +24,10 @@ _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 _IN_ORDER = ("area", "cylinder", "dot", "label", "label_beyond", "line", "path", "ring")
 _METHODS = {"append": "push", "index": "indexOf", "lower": "toLowerCase"}
 _OPERATORS = {
-    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2), ast.Pow: ("**", 3),
-    ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Is: "===",
-    ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!", ast.USub: "-",
+    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
+    ast.Pow: ("**", 3), ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">",
+    ast.GtE: ">=", ast.Is: "===", ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!",
+    ast.USub: "-",
 }  # fmt: skip
 #: How strongly what is no operation of two numbers binds.
 _STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}

@@ -106,9 +106,8 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             place.write_bytes(data)
             for path in older[name]:
                 path.unlink()
-            said.append(
-                f"{'replaced' if older[name] else 'added':<12}{', '.join(path.name for path in older[name]) or name}"
-            )
+            replaced = ", ".join(path.name for path in older[name])
+            said.append(f"replaced    {replaced}" if replaced else f"added       {name}")
         elif not place.exists():
             place.write_bytes(data)
             said.append(f"added       {name}")
