@@ -967,6 +967,28 @@ def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
     assert "kept" in shared.try_code(3, "kept")
 
 
+# What Python does wherever it looks for an interrupt, with Stop pressed between its two steps.
+LOOKS = """
+import time
+from js import Reflect
+from pyodide_js import _module as module
+looked_at, listens = module.Py_EmscriptenSignalBuffer, module._Py_EMSCRIPTEN_SIGNAL_HANDLING
+Reflect.set(module.HEAP8, listens, 0)
+assert Reflect.get(looked_at, 0) == 0
+print('begun')
+time.sleep(1)
+Reflect.set(looked_at, 0, 0)
+Reflect.set(module.HEAP8, listens, 1)
+while True:
+    pass"""
+
+
+def test_stop_that_comes_while_python_looks_for_it_is_heard(shared):
+    shared.try_code(3, "kept = 'kept'")
+    assert "still there" in stop(shared, 3, LOOKS)
+    assert "kept" in shared.try_code(3, "kept")
+
+
 def test_stop_ends_what_does_not_listen(shared):
     assert "Stopped." in stop(shared, 3, ONE_STEP)
     assert "here again" in shared.try_code(3, "print('here again')")
