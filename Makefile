@@ -119,12 +119,10 @@ release: $(VENV)/ready-release setup
 anywhere: $(VENV)/ready-test setup
 	@$(RUN) -m tools.anywhere $(ONLY)
 
-# What survives is told at the end: a test that notices it is missing, or it is no change.
+# What survives is told as it is found: a test that notices it is missing, or it is no change (ONLY="quaternions metrics").
 mutants: $(VENV)/ready-mutants setup
-	@$(RUN) -m mutmut run
-	@$(RUN) -m mutmut results
-	@cd coursework && ../$(RUN) -m mutmut run
-	@cd coursework && ../$(RUN) -m mutmut results
+	@$(RUN) -m tools.mutants orientation $(ONLY)
+	@$(if $(ONLY),,$(RUN) -m tools.mutants coursework.checking)
 
 # The programs of the convention card, each in its newest version: what they answer otherwise than stored. It fetches
 # some gigabytes.

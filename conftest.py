@@ -60,7 +60,7 @@ def pytest_configure(config):
     nbval.plugin.IPyNbCell.compare_outputs = stored_outputs.compare_outputs
     nbval.plugin.IPyNbCell.format_output_compare = stored_outputs.format_output_compare
     nbval.kernel.KernelManager = warm_kernels.WarmKernelManager
-    config.pluginmanager.register(times.Times(config))
+    config.pluginmanager.register(times.Times(config), "times")
     config.addinivalue_line(
         "markers",
         "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of "

@@ -227,15 +227,15 @@ needs_solutions = pytest.mark.skipif(
 @pytest.mark.parametrize("name", COMMITTED)
 def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"
-    write_to[0].mkdir()
-    shutil.copy(COURSE.sources / f"{name}.ipynb", write_to[0])
+    # All of them: what a right answer opens hints for may stand in another notebook.
+    shutil.copytree(COURSE.sources, write_to[0])
     one = random.Random(f"{SEED} {name}").randrange(1, 8)
     # The other variants say how many lockers each of them is filled up to.
     (write_to[2] / "variants").mkdir(parents=True)
     for path in (COURSE.sealed / "variants").glob(f"{name}-*.json"):
         if path.stem.removeprefix(f"{name}-") != str(one):
             shutil.copy(path, write_to[2] / "variants")
-    release.release(made_in(tmp_path), variants=[one])
+    release.release(made_in(tmp_path), [name], variants=[one])
     variants = [
         folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)
     ]

@@ -721,15 +721,16 @@ def test_stored_number_does_not_stand_under_other_code(context, site):
     """Where NumPy is absent, the book's result is folded away from below the reader's changed
     code.
     """
-    page = "chapters/back-from-a-matrix"
+    page = "chapters/measured-matrices"
     tab = Tab(context, site, page)
-    covered = tab.page.evaluate(
-        "[...document.querySelectorAll('div.cell')].map((cell) => !!cell.closest('[inert]'))"
+    with_results = tab.page.evaluate(
+        "[...document.querySelectorAll('div.cell')].map((cell) => "
+        "!cell.closest('[inert]') && !!cell.querySelector('.cell_output'))"
     )
     number = next(
         place
         for place, cell in enumerate(kinds_of_cells()[page], 1)
-        if "numpy" in cell["needs"] and not covered[place - 1]
+        if "numpy" in cell["needs"] and with_results[place - 1]
     )
     tab.page.click(f"button.run-cell >> nth={number - 1}")
     cell = tab.page.locator("div.cell").nth(number - 1)

@@ -212,6 +212,20 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
     )
 
 
+def said_found(one: Measured) -> str:
+    """What was measured of a question in words, for a table.
+
+    >>> [said_found({"tries": tries}) for tries in ([0, 2000, 31, None], [4], [0])]
+    ['after 31 tries, 2 of 3 variants', 'after 4 tries', 'not found']
+    """
+    tries = [count for count in one["tries"] if count is not None]
+    found = [count for count in tries if count]
+    if not found:
+        return "not found" if tries else "nothing to try"
+    said = f"after {min(found):,} {'try' if min(found) == 1 else 'tries'}"
+    return f"{said}, {len(found)} of {len(tries)} variants" if len(tries) > 1 else said
+
+
 def measured_questions(sources: str | Path) -> dict[str, Measured]:
     """What was measured of each question by name, as
     :func:`coursework.authoring.selftest.measured_of` gives it.

@@ -49,20 +49,16 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     'ae4d0c95af6b46d3'
     """
     inner, outer = (
-        hashlib.sha256(bytes(byte ^ pad for byte in _block(password))) for pad in (0x36, 0x5C)
+        hashlib.sha256(bytes(byte ^ pad for byte in _block(password))).copy for pad in (0x36, 0x5C)
     )
-
-    def authenticate(message: bytes) -> bytes:
-        first, second = inner.copy(), outer.copy()
-        first.update(message)
+    as_number = int.from_bytes
+    current, total = salt + b"\0\0\0\1", 0
+    for _ in range(rounds):  # a browser's Python feels each call of a function of ours
+        first, second = inner(), outer()
+        first.update(current)
         second.update(first.digest())
-        return second.digest()
-
-    current = authenticate(salt + b"\0\0\0\1")
-    total = int.from_bytes(current, "big")
-    for _ in range(rounds - 1):
-        current = authenticate(current)
-        total ^= int.from_bytes(current, "big")
+        current = second.digest()
+        total ^= as_number(current, "big")
     return total.to_bytes(32, "big")
 
 
