@@ -233,9 +233,7 @@ def _spelled(plain: Plain) -> str | None:
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(
-        plain, f"One of {listed(question.options)}, in quotation marks"
-    )
+    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
     # out.
