@@ -303,15 +303,14 @@ def _shuffled(
 
 
 def _shuffled_number(number: sympy.Expr, chance: random.Random) -> sympy.Expr:
-    return chance.choice(
-        [
-            lambda: number,
-            lambda: number.evalf(30),
-            lambda: sympy.Add(number, pi, -pi, evaluate=False),
-            lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
-            lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False),
-        ]
-    )()
+    forms: list[Callable[[], sympy.Expr]] = [
+        lambda: number,
+        lambda: number.evalf(30),
+        lambda: sympy.Add(number, pi, -pi, evaluate=False),
+        lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
+        lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False),
+    ]
+    return chance.choice(forms)()
 
 
 def another_answer(public: Question, answer: Answer, chance: random.Random | None = None) -> Answer:

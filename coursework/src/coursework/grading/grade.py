@@ -397,7 +397,7 @@ def grade(
         strengths, guessed = _strengths(course.folder, questions)
         for file, said in ((reports.STRENGTHS, strengths), (reports.GUESSED, guessed)):
             known = store.said(file, by_name(text)) or {}
-            write(store.folder / file, as_text({**known, **said}))
+            write(store.folder / file, as_text(known | said))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
