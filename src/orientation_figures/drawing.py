@@ -20,7 +20,7 @@ from orientation.direction_cosines import simple_dcm
 
 from .style import STYLE
 from .vectors import unit
-from .words import Words
+from .words import Words, hatted  # noqa: F401  # those who draw took it from here before
 
 #: How the labels of the book's drawings are set: ``python -m tools.labels`` writes it.
 LABELS = Path(__file__).with_name("labels.json")

@@ -9,8 +9,7 @@ from orientation.direction_cosines import simple_dcm
 from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed
 from orientation.rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 
-from .drawing import Drawing, view_from
-from .words import hatted
+from .drawing import Drawing, hatted, view_from
 
 # Along north, west and up, in which these drawings are made: rows of the frame north, east, down.
 NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
