@@ -47,8 +47,6 @@ IMPORT = re.compile(r"^(?:import|export) \{([^}]*)\} from .*;\n", re.MULTILINE)
 IMPORT_FROM = re.compile(r"^import \{([^}]*)\} from '\./(\w+)\.js';\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=(?:async function|function|class|const) (\w+))", re.MULTILINE)
 COMMENT = re.compile(r"^\s*//.*\n|^ +| {2,}// .*$", re.MULTILINE)
-#: Lines end here for whoever reads the sources.
-END_OF_LINE = re.compile(r"(?<=[;{,(\[])\n")
 
 
 @cache
@@ -59,7 +57,7 @@ def source(name):
 
 def body(name):
     """Return a module's text without imports and exports, for a scope where the names are known."""
-    return END_OF_LINE.sub("", EXPORT.sub("", IMPORT.sub("", source(name))))
+    return EXPORT.sub("", IMPORT.sub("", source(name)))
 
 
 def whole(name):
