@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all times take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
+.PHONY: help setup book serve new-chapter new-question check test test-all take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -27,7 +27,6 @@ help:
 	@echo "make check      style, types, pins and what a chapter needs (a minute at most; nothing is built)"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as every night"
-	@echo "make times      the same, and write down what each part costs in tests/TIMES.md"
 	@echo "make notebooks  run every notebook and store it with its outputs"
 	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
 	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
@@ -107,10 +106,7 @@ test: $(VENV)/ready-test book
 # The PDF is printed by a browser; where there is none, the tests that need one are skipped.
 test-all: $(VENV)/ready-test book
 	@if $(RUN) -m notebook_pages.browser; then $(RUN) -m notebook_pages.whole_book; fi
-	@$(RUN) -m pytest -n auto $(TABLE)
-
-times: TABLE := --write-times
-times: test-all
+	@$(RUN) -m pytest -n auto
 
 notebooks: setup
 	@$(RUN) -m notebook_pages.notebooks
@@ -123,12 +119,10 @@ release: $(VENV)/ready-release setup
 anywhere: $(VENV)/ready-test setup
 	@$(RUN) -m tools.anywhere $(ONLY)
 
-# What survives is told at the end: a test that notices it is missing, or it is no change.
+# What survives is told as it is found: a test that notices it is missing, or it is no change (ONLY="quaternions metrics").
 mutants: $(VENV)/ready-mutants setup
-	@$(RUN) -m mutmut run
-	@$(RUN) -m mutmut results
-	@cd coursework && ../$(RUN) -m mutmut run
-	@cd coursework && ../$(RUN) -m mutmut results
+	@$(RUN) -m tools.mutants orientation $(ONLY)
+	@$(if $(ONLY),,$(RUN) -m tools.mutants coursework.checking)
 
 # The programs of the convention card, each in its newest version: what they answer otherwise than stored. It fetches
 # some gigabytes.

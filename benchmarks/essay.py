@@ -35,7 +35,8 @@ PHONE = {
 WATCH = """
 window.seen = { shift: 0, paint: 0, ready: 0 };
 const watch = (type, take) =>
-  new PerformanceObserver((list) => list.getEntries().forEach(take)).observe({ type, buffered: true });
+  new PerformanceObserver((list) => list.getEntries().forEach(take)).observe(
+    { type, buffered: true });
 watch('largest-contentful-paint', (one) => { seen.paint = one.startTime; });
 watch('layout-shift', (one) => { if (!one.hadRecentInput) seen.shift += one.value; });
 new MutationObserver((_, observer) => {
@@ -46,7 +47,8 @@ new MutationObserver((_, observer) => {
 """
 # Takes hold of the camera and drags it to and fro, one move for each picture.
 DRAG = """async (pictures) => {
-  const { world } = document.querySelector('.world'), { canvas } = world, box = canvas.getBoundingClientRect();
+  const { world } = document.querySelector('.world'), { canvas } = world;
+  const box = canvas.getBoundingClientRect();
   const [right, up] = world.onScreen([0, 0, 0]);
   const x = box.left + box.width / 2 + right, y = box.top + box.height / 2 - up;
   const send = (type, across) => canvas.dispatchEvent(new PointerEvent(type,

@@ -66,9 +66,8 @@ def print_line(name, steps):
     shares = [100 * step[0] for step in drawn] or [0]
     row = f"{min(shares):12.0f}{statistics.median(shares):7.0f}{max(shares):5.0f}"
     silent = sum(not words for _, words, _ in drawn)
-    print(
-        f"{name:27}{len(steps):7}{len(drawn):7}{row}{silent:18}{sum(bool(high) for *_, high in steps):10}"
-    )
+    cut = sum(bool(high) for *_, high in steps)
+    print(f"{name:27}{len(steps):7}{len(drawn):7}{row}{silent:18}{cut:10}")
 
 
 if __name__ == "__main__":

@@ -52,10 +52,12 @@ BARE = """
   const start = performance.now();
   const program = `
     import { loadPyodide } from "${runtime}pyodide/pyodide.js";
-    const python = await loadPyodide({ lockFileURL: "${runtime}pyodide-lock.json", packages: ["sympy"] });
+    const python = await loadPyodide(
+      { lockFileURL: "${runtime}pyodide-lock.json", packages: ["sympy"] });
     python.runPython("import sympy");
     postMessage("imported");`;
-  const worker = new Worker(URL.createObjectURL(new Blob([program], { type: "text/javascript" })), { type: "module" });
+  const script = new Blob([program], { type: "text/javascript" });
+  const worker = new Worker(URL.createObjectURL(script), { type: "module" });
   worker.onerror = (event) => reject(new Error(event.message));
   worker.onmessage = () => {
     worker.terminate();
@@ -65,7 +67,8 @@ BARE = """
 """
 FIRST_SYMPY = """
 () => [...document.querySelectorAll('div.cell')].findIndex(
-  (cell) => cell.querySelector('pre').textContent.includes('import sympy') && cell.querySelector('.cell_output .katex'))
+  (cell) => cell.querySelector('pre').textContent.includes('import sympy')
+    && cell.querySelector('.cell_output .katex'))
 """
 WRITE = """
 ([number, code]) => {

@@ -31,7 +31,8 @@ FIGURES = [
 SLOWED, FRAME, HEAVIEST = 4, 16, 80_000  # times, milliseconds, bytes
 PICTURES, ROUNDS = 120, 5
 PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{kind}</title>
-<style>body {{ width: 714px; margin: auto; font: 16px/1.6 sans-serif; }} figure {{ margin: 0; }} {style}</style></head>
+<style>body {{ width: 714px; margin: auto; font: 16px/1.6 sans-serif; }} figure {{ margin: 0; }}
+{style}</style></head>
 <body>{still}<script>{shared}</script><script>{script}</script></body></html>"""
 DRAG = """async (pictures) => {
   const range = document.querySelector('.live input[type=range], .live input');

@@ -22,11 +22,12 @@ STANDARD = set(HEADINGS) | set(
 #: What may stand in what, for lists and tables.
 WITHIN = {
     "LI": {"L"}, "Lbl": {"LI", "P", "Note", "Reference", "TOCI", "Span"}, "LBody": {"LI"},
-    "TR": {"Table", "THead", "TBody", "TFoot"}, "TH": {"TR"}, "TD": {"TR"}, "THead": {"Table"}, "TBody": {"Table"},
+    "TR": {"Table", "THead", "TBody", "TFoot"}, "TH": {"TR"}, "TD": {"TR"}, "THead": {"Table"},
+    "TBody": {"Table"},
 }  # fmt: skip
 INSIDE = {
-    "L": {"LI", "L", "Caption"}, "LI": {"Lbl", "LBody"}, "Table": {"TR", "THead", "TBody", "TFoot", "Caption"},
-    "TR": {"TH", "TD"},
+    "L": {"LI", "L", "Caption"}, "LI": {"Lbl", "LBody"},
+    "Table": {"TR", "THead", "TBody", "TFoot", "Caption"}, "TR": {"TH", "TD"},
 }  # fmt: skip
 PAINTS = {
     "f",

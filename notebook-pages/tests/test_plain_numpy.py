@@ -47,43 +47,62 @@ np.arange(0, 1, 0.1)
 np.arange(5, 1, -2)
 np.eye(3)[[1, 2, 0]]
 np.zeros((2, 0)).shape
-np.float64(1.5) + 1, 2 / np.float64(3), -np.float64(1), abs(np.float64(-2.5)), np.float64(7) % 3, np.float64(2) ** 0.5
-round(np.float64(1.23456), 2), round(np.float64(2.5)), np.float64(2.675).round(2), np.int64(7) / 2, np.int64(7) // 2
+np.float64(1.5) + 1, 2 / np.float64(3), -np.float64(1), abs(np.float64(-2.5)), np.float64(7) % 3
+np.float64(2) ** 0.5
+round(np.float64(1.23456), 2), round(np.float64(2.5)), np.float64(2.675).round(2), np.int64(7) / 2
+np.int64(7) // 2
 np.float64(1.0) > 0, np.float64(1.0) == 1, not np.float64(0.0), np.int64(3) < 2
 0.5 * (np.float64(1.0) > 0), np.array([1.0, 2.0]) * np.array([True, False])
 f"{np.float64(1.5):.3f} {np.int64(7):3} {np.array([1.5])[0]:+.1e} {np.array([1.5, 2])}"
-A[0], A[0, 1], A[:, 1], A[1:, ::-1], A[..., 0], A[None].shape, A[-1], A[A > 2], A[[0, 2]], A[:, [2, 0]]
+A[0], A[0, 1], A[:, 1], A[1:, ::-1], A[..., 0], A[None].shape, A[-1], A[A > 2], A[[0, 2]]
+A[:, [2, 0]]
 A.T @ v, A @ A, v @ v, v @ A, A @ [1, 2, 3], [1, 2, 3] @ A, (S @ A).shape, S @ S.swapaxes(-1, -2)
 A.sum(), A.sum(axis=0), A.sum(axis=1), A.mean(), A.mean(axis=-1, keepdims=True)
 A.max(axis=1), A.min(), A.std(axis=0)
 S.sum(axis=(1, 2)), S.mean(axis=0), S.max(axis=-1).max(axis=-1), np.linalg.norm(S, axis=(1, 2))
 np.linalg.norm(A, axis=1)
-A.argmax(), A.argmin(axis=0), (A > 0).all(), (A > 0).any(axis=0), np.ptp(v), np.median(v), A.ravel(), A.reshape(1, -1)
+A.argmax(), A.argmin(axis=0), (A > 0).all(), (A > 0).any(axis=0), np.ptp(v), np.median(v)
+A.ravel(), A.reshape(1, -1)
 np.percentile(v, 90), np.percentile(S, (5, 50, 95), axis=0), np.percentile(v, (5, 50, 95))
-np.sin(v), np.cos(0.3), np.arctan2(v, 2), np.degrees([1, 2]), np.radians(30), np.sqrt(2), np.hypot(3, v), np.exp(v)
-np.sign([-2.0, 0, 3]), np.abs([-1.5, 2]), np.square(v), np.minimum(v, 1), np.clip(v, -1, 1), np.rint([0.5, 1.5, -0.2])
+np.sin(v), np.cos(0.3), np.arctan2(v, 2), np.degrees([1, 2]), np.radians(30), np.sqrt(2)
+np.hypot(3, v), np.exp(v)
+np.sign([-2.0, 0, 3]), np.abs([-1.5, 2]), np.square(v), np.minimum(v, 1), np.clip(v, -1, 1)
+np.rint([0.5, 1.5, -0.2])
 np.round([1.005, 2.675, -0.04], 1), np.array([-0.2]).round(), np.around(123.456, -1), np.sinc(v)
-np.where(v > 0, v, 0), np.isfinite(v), np.isclose(v, v + 1e-9), np.allclose(v, v + 1e-3), np.array_equal(v, v)
-np.cross(v, [1, 2, 3]), np.outer(v, v), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A), np.dot(v, v)
+np.where(v > 0, v, 0), np.isfinite(v), np.isclose(v, v + 1e-9), np.allclose(v, v + 1e-3)
+np.array_equal(v, v)
+np.cross(v, [1, 2, 3]), np.outer(v, v), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A)
+np.dot(v, v)
 np.einsum('ij,j->i', A, v), np.einsum('kij,kj->ki', S, A[:2]), np.einsum('...i,i->...', S, v)
-np.linalg.inv(A), np.linalg.det(A).round(12), np.linalg.solve(A, v), np.linalg.solve(A, A), np.linalg.matrix_rank(A)
-np.linalg.svd(A, compute_uv=False), np.linalg.eigvalsh(A + A.T).round(12), np.linalg.matrix_power(A, 5)
-np.stack([v, v], axis=-1), np.concatenate([A, A], axis=1), np.column_stack([v, v]), np.vstack([v, v]), np.hstack([v, v])
-np.tile(v, 2), np.tile(v, (2, 1)), np.repeat([1.0, 2], 2), np.broadcast_to(v, (2, 3)), np.append(v, 1)
+np.linalg.inv(A), np.linalg.det(A).round(12), np.linalg.solve(A, v), np.linalg.solve(A, A)
+np.linalg.matrix_rank(A)
+np.linalg.svd(A, compute_uv=False), np.linalg.eigvalsh(A + A.T).round(12)
+np.linalg.matrix_power(A, 5)
+np.stack([v, v], axis=-1), np.concatenate([A, A], axis=1), np.column_stack([v, v])
+np.vstack([v, v]), np.hstack([v, v])
+np.tile(v, 2), np.tile(v, (2, 1)), np.repeat([1.0, 2], 2), np.broadcast_to(v, (2, 3))
+np.append(v, 1)
 np.diff(v), np.diff(A, axis=0), np.diff(v, prepend=v[0]), np.cumsum(v)
 np.cumsum(A, axis=0), np.gradient(v)
 np.gradient(v, [0, 1, 3.0]), np.gradient(A, 0.5, axis=0), np.unwrap([0, 3.0, 6.5, -3])
 np.unwrap([0.0, 350, 10], period=360)
-np.flatnonzero(v > 0), np.argwhere(A > 1), np.searchsorted([1.0, 2, 3], [0.5, 2.0]), np.unique([3, 1, 3])
-np.sort(v), np.full(2, 3.0), np.ones((2, 2)), np.zeros(2, int), np.zeros_like(v), np.empty(0).shape, np.atleast_2d(v)
+np.flatnonzero(v > 0), np.argwhere(A > 1), np.searchsorted([1.0, 2, 3], [0.5, 2.0])
+np.unique([3, 1, 3])
+np.sort(v), np.full(2, 3.0), np.ones((2, 2)), np.zeros(2, int), np.zeros_like(v), np.empty(0).shape
+np.atleast_2d(v)
 np.float64(3)[..., None]
-v.tolist(), A.shape, A.size, A.ndim, A.dtype, v.astype(int), len(A), list(v), v[0].shape, (v > 0).sum(), (v > 0).mean()
-v % 2, v // 1, v ** 2, 2 ** v, v / 3, 1 / v, -v, v == v, v > 1, ~(v > 1), (v > 0) & (v < 1), (v > 0) | (v < -1)
-np.array([[1.23456789e-7, 1], [100, 5]]), np.array([1.5, 100000.25]), np.array([123456789.0, 1.0]), np.array([1e8])
-S, S[:, None] - S[None], np.random.default_rng(3).normal(size=(2, 3)), np.random.default_rng(0).uniform(-3, 3, 4)
+v.tolist(), A.shape, A.size, A.ndim, A.dtype, v.astype(int), len(A), list(v), v[0].shape
+(v > 0).sum(), (v > 0).mean()
+v % 2, v // 1, v ** 2, 2 ** v, v / 3, 1 / v, -v, v == v, v > 1, ~(v > 1), (v > 0) & (v < 1)
+(v > 0) | (v < -1)
+np.array([[1.23456789e-7, 1], [100, 5]]), np.array([1.5, 100000.25]), np.array([123456789.0, 1.0])
+np.array([1e8])
+S, S[:, None] - S[None], np.random.default_rng(3).normal(size=(2, 3))
+np.random.default_rng(0).uniform(-3, 3, 4)
 np.random.default_rng(7).random(), np.random.default_rng(2**70).standard_normal(2)
 np.random.default_rng(7).normal(1.0, 2.0)
-v.dot(v), A.trace(), A.transpose(), A.flatten(), S.transpose(2, 0, 1).shape, A.copy(), A.T.reshape(-1), A.T.ravel()
+v.dot(v), A.trace(), A.transpose(), A.flatten(), S.transpose(2, 0, 1).shape, A.copy()
+A.T.reshape(-1), A.T.ravel()
 """.strip().splitlines()
 NAMES = "v, A, S"
 

@@ -95,9 +95,12 @@ def test_a_number_is_read_as_one_writes_it(built, browser, typed, read):
 
 def test_every_page_with_code_can_be_taken_away(built):
     notebook = nbformat.read(built / "take-away" / "triangles.ipynb", as_version=4)
-    assert [cell.source.splitlines()[-1] for cell in notebook.cells if cell.cell_type == "code"] == [
-        "sm.pi - alpha - beta", "sm.pi - alpha - beta - (sm.pi - beta - alpha)",
-    ]  # fmt: skip
+    assert [
+        cell.source.splitlines()[-1] for cell in notebook.cells if cell.cell_type == "code"
+    ] == [
+        "sm.pi - alpha - beta",
+        "sm.pi - alpha - beta - (sm.pi - beta - alpha)",
+    ]
     compile((built / "take-away" / "triangles.py").read_text("utf8"), "triangles.py", "exec")
     assert not list((built / "take-away").glob("*.whl"))
 

@@ -123,9 +123,11 @@ def build(folder, chapters, **changed):
     jupyter_book = Path(sys.executable).with_name("jupyter-book")
     done = subprocess.run(
         [jupyter_book, "build", folder, "-q", "-W", "-n", "--keep-going"],
-        cwd=folder, env=os.environ | {"NO_COLOR": "1", "NOTEBOOK_PAGES_FETCHED": str(paths.FETCHED)},
-        capture_output=True, text=True,
-    )  # fmt: skip
+        cwd=folder,
+        env=os.environ | {"NO_COLOR": "1", "NOTEBOOK_PAGES_FETCHED": str(paths.FETCHED)},
+        capture_output=True,
+        text=True,
+    )
     return done.returncode, done.stdout + done.stderr
 
 

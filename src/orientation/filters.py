@@ -89,7 +89,8 @@ class MultiplicativeKalmanFilter:
     >>> estimate.turn((0, 0, 1.0), 0.01)
     >>> estimate.observe((0, 0, 1.0), (0, 0, 1.0), 0.01).difference.tolist()
     [0.0, 0.0, 0.0]
-    >>> bool(estimate.covariance[0, 0] < 0.0002 < estimate.covariance[2, 2])  # up says nothing of the heading
+    >>> tilt, heading = estimate.covariance[0, 0], estimate.covariance[2, 2]
+    >>> bool(tilt < 0.0002 < heading)  # up says nothing of the heading
     True
 
     Notes

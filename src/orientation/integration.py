@@ -60,7 +60,8 @@ def turns_from_angular_velocity(
     --------
     >>> import numpy as np
     >>> from orientation import turns_from_angular_velocity
-    >>> turns_from_angular_velocity(lambda t: np.outer(t, [0, 0, 2.0]), [0, 1, 2]).round(12).tolist()
+    >>> faster = lambda t: np.outer(t, [0, 0, 2.0])
+    >>> turns_from_angular_velocity(faster, [0, 1, 2]).round(12).tolist()
     [[0.0, 0.0, 1.0], [0.0, 0.0, 3.0]]
 
     Notes

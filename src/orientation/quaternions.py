@@ -163,7 +163,7 @@ def quaternion_components_from_dcm(
         ],
     )
     share = f.where(scalar < 0, -1.0, 1.0) / f.norm(scalar, x, y, z)
-    return share * scalar + 0.0, share * x + 0.0, share * y + 0.0, share * z + 0.0
+    return share * scalar, share * x, share * y, share * z
 
 
 def quaternion_from_dcm(dcm: Values) -> Array:
@@ -307,12 +307,12 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
     def excess(f: NumberFunctions[Number], *components: Number) -> Number:
         return f.largest(
             _length_excess(f, *components[:4]),
-            _length_excess(f, *components[4:8]),
-            f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1),
+            _length_excess(f, *components[4:]),
+            f.where(abs(_dot(components[:4], components[4:])) > 1e-12, 0, 1),
         )
 
     def explain(components: Sequence[float], where: str) -> None:
-        for name, part in (("first", components[:4]), ("second", components[4:8])):
+        for name, part in (("first", components[:4]), ("second", components[4:])):
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(

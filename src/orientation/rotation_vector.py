@@ -74,6 +74,7 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
         cosine = f.cos(angle)
+        # In a batch the length of a vector below 1e-162 is 0, whose components are not.
         first = f.where(turning, f.sin(angle) / length, 1.0)
         # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers.
         # It is divided twice because the square of a very small length is 0.
@@ -125,7 +126,7 @@ def rotation_vector_from_dcm(dcm: Values) -> Array:
     def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         sine = f.norm(x, y, z)
-        # Both limits are right at rest: twice the vector part.
+        # Twice the vector part, at rest and wherever its length is 0 but its components are not.
         share = f.where(sine > 0, 2 * f.atan2(sine, scalar) / f.where(sine > 0, sine, 1.0), 2.0)
         return share * x, share * y, share * z
 

@@ -76,7 +76,8 @@ def dcm_from_scipy_rotation(rotation: Rotation) -> Array:
     >>> from scipy.spatial.transform import Rotation
     >>> from orientation import dcm_from_body_fixed, dcm_from_scipy_rotation, same_orientation
     >>> rotation = Rotation.from_euler('ZXY', (0.1, 0.2, 0.3))
-    >>> same_orientation(dcm_from_scipy_rotation(rotation), dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
+    >>> dcm = dcm_from_scipy_rotation(rotation)
+    >>> same_orientation(dcm, dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy'))
     True
     """
     if not hasattr(rotation, "as_matrix"):

@@ -13,7 +13,8 @@ from .style import STYLE
 # animation clock (SMIL) be set by the slider or run by the button.
 SCRIPT = """
 document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
-  const svg = figure.querySelector('svg'), [button, slider] = figure.querySelectorAll('button, input');
+  const svg = figure.querySelector('svg');
+  const [button, slider] = figure.querySelectorAll('button, input');
   const said = figure.querySelector('output'), [steps, texts] = JSON.parse(figure.dataset.texts);
   const frame = %s, last = texts.length - 1;
   let playing = false;

@@ -106,8 +106,8 @@ class Drawing(Words):
     >>> import numpy as np
     >>> from orientation import simple_dcm
     >>> from orientation_figures.drawing import Drawing, looking_down
-    >>> drawing = Drawing('n x points right and n y up; a x and a y are turned counterclockwise from '
-    ...                   'them through 0.5 radians.', view=looking_down('z'))
+    >>> drawing = Drawing('n x points right and n y up; a x and a y are turned counterclockwise '
+    ...                   'from them through 0.5 radians.', view=looking_down('z'))
     >>> drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', 0.5)).alt[:17]
     'n x points right '
     """

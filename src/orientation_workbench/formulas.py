@@ -288,8 +288,8 @@ CHOICES = {
     **{
         name: ("sequence", orientation.SEQUENCES)
         for name in (
-            "dcm_from_body_fixed", "dcm_from_space_fixed", "body_fixed_from_dcm", "space_fixed_from_dcm",
-            "gimbal_lock_margin", "angular_velocity_matrix",
+            "dcm_from_body_fixed", "dcm_from_space_fixed", "body_fixed_from_dcm",
+            "space_fixed_from_dcm", "gimbal_lock_margin", "angular_velocity_matrix",
         )
     },
 }  # fmt: skip
@@ -300,10 +300,13 @@ def formula_of(name, components, choice=None):
     values.
     """
     given = [
-        [entries[k : k + 3] for k in (0, 3, 6)] if kind in ("matrix", "entries") else entries if kind in LISTS
+        [entries[k : k + 3] for k in (0, 3, 6)]
+        if kind in ("matrix", "entries")
+        else entries
+        if kind in LISTS
         else entries[0]
         for kind, entries in zip(FORMULAS[name][0].values(), components)
-    ]  # fmt: skip
+    ]
     chosen = [] if choice is None else [choice]
     arguments = [*chosen, *given] if name == "simple_dcm" else [*given, *chosen]
     return recorded(getattr(orientation, name), *arguments)

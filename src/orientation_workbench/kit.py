@@ -120,8 +120,8 @@ def convention_of(
     best = found.chains[0]
     relation = best.relation
     return Convention(
-        best.first["choices"], best.second["choices"], relation["inverse"], relation["body"], relation["world"],
-        found.faults,
+        best.first["choices"], best.second["choices"], relation["inverse"], relation["body"],
+        relation["world"], found.faults,
     )  # fmt: skip
 
 
@@ -179,7 +179,8 @@ def assert_convention(
     --------
     >>> from scipy.spatial.transform import Rotation
     >>> from orientation_workbench import assert_convention
-    >>> assert_convention(lambda q: Rotation.from_quat(q).as_matrix(), 'quaternion', order='xyzw', inverse=True)
+    >>> of_scipy = lambda q: Rotation.from_quat(q).as_matrix()
+    >>> assert_convention(of_scipy, 'quaternion', order='xyzw', inverse=True)
     """
     if unknown := set(expected) - set(EXPECTED):
         raise ValueError(

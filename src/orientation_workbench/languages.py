@@ -85,8 +85,8 @@ LANGUAGES = {
         "{name}", "{name}", "    {part} = {value};", "    if {condition}, {part} = {yes}; else, "
             "{part} = {no}; end",
         result="    result({index}) = {value};", alone="    result = {value};",
-        frame_alone="function result = {function}({arguments})\n{body}\nend", index="{name}({index})", start=1,
-        whole="{}",
+        frame_alone="function result = {function}({arguments})\n{body}\nend",
+        index="{name}({index})", start=1, whole="{}",
     ),
     "JavaScript": Language(
         "function {function}({arguments}) {{\n    const result = new Array({count});\n{body}\n"

@@ -113,7 +113,7 @@ def walks():
     return rows, lights
 
 
-def test_the_filter_is_better_than_two_sensors_on_a_walk_and_what_varies_decides_what_a_car_leaves():
+def test_the_filter_beats_two_sensors_on_a_walk_and_what_varies_decides_what_a_car_leaves():
     rows, _ = walks()
     groups = ["nothing", "pose", "all", "all, no car"]
     for group in groups:

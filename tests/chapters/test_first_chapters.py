@@ -15,8 +15,9 @@ from scipy.spatial.transform import Rotation
 from orientation import PROPER_EULER, SEQUENCES, multiply_quaternions
 
 FIRST = (
-    "reference-frames", "simple-orientations", "direction-cosine-matrices", "successive-orientations",
-    "orientation-with-sympy", "euler-angles", "other-descriptions", "unit-quaternions",
+    "reference-frames", "simple-orientations", "direction-cosine-matrices",
+    "successive-orientations", "orientation-with-sympy", "euler-angles", "other-descriptions",
+    "unit-quaternions",
 )  # fmt: skip
 
 ALL = sorted(path.stem for path in (REPOSITORY / "chapters").glob("*.ipynb"))
@@ -146,7 +147,7 @@ def test_a_prediction_is_a_question_and_not_only_a_box(name):
 # --- chapter 1: hands -----------------------------------------------------------------------------
 
 
-def test_a_left_handed_triad_passes_where_it_is_measured_along_itself_and_fails_along_a_right_handed_one():
+def test_a_left_handed_triad_passes_along_itself_and_fails_along_a_right_handed_one():
     names = names_of("reference-frames")
     mirrored, turned = (
         sm.Matrix.hstack(*(names[f"{letter}_{axis}"] for axis in "xyz")) for letter in "ma"

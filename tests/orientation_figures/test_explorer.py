@@ -84,9 +84,10 @@ def test_numbers_and_expressions_can_be_typed():
     assert "Here it is locked" in explorer.message
 
 
-@pytest.mark.parametrize("text", ["3 0", "", "sin", "x == y", "(1, 2)", "__import__('os')", "psi.diff()", "9**9**9",
-                                  "lambda: 1", "a and b", "1/0", "sqrt(-1)", "tan(pi/2)", "True",
-                                  "open('x')", "phi(2)"])  # fmt: skip
+@pytest.mark.parametrize("text", [
+    "3 0", "", "sin", "x == y", "(1, 2)", "__import__('os')", "psi.diff()", "9**9**9", "lambda: 1",
+    "a and b", "1/0", "sqrt(-1)", "tan(pi/2)", "True", "open('x')", "phi(2)",
+])  # fmt: skip
 def test_what_is_no_angle_is_refused_by_name(text):
     explorer = SequenceExplorer()
     before = explorer.result
@@ -99,9 +100,10 @@ def test_what_is_no_angle_is_refused_by_name(text):
         SequenceExplorer(angles=(text, 0, 0))
 
 
-@pytest.mark.parametrize("text, angle", [("beta", sm.Symbol("beta")), ("2*zeta - 1", 2 * sm.Symbol("zeta") - 1),
-                                         ("I", sm.Symbol("I")), ("asin(1)", sm.pi / 2),
-                                         ("-phi/2", -PHI / 2)])  # fmt: skip
+@pytest.mark.parametrize("text, angle", [
+    ("beta", sm.Symbol("beta")), ("2*zeta - 1", 2 * sm.Symbol("zeta") - 1),
+    ("I", sm.Symbol("I")), ("asin(1)", sm.pi / 2), ("-phi/2", -PHI / 2),
+])  # fmt: skip
 def test_greek_and_other_names_are_symbols(text, angle):
     assert angle_from_text(text) == angle
 

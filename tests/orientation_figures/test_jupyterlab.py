@@ -23,7 +23,9 @@ names = { ({kind: FIGURES[kind].__name__ for kind in KINDS})!r}
 figures = {{name: getattr(moving, figure)() for name, figure in names.items()}}
 heard = []
 for name, figure in figures.items():
-    figure.observe(lambda change, name=name: heard.append((name, change.name, change.new)), list(figure.state()))
+    figure.observe(
+        lambda change, name=name: heard.append((name, change.name, change.new)),
+        list(figure.state()))
 """
 
 
@@ -62,10 +64,22 @@ def laboratory(tmp_path_factory):
     )
     with (folder / "log").open("w") as log:
         server = subprocess.Popen(
-            [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", "--port=0", "--ip=127.0.0.1",
-             f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}",
-             "--LabApp.expose_app_in_browser=True"],
-            env=environment, stdout=log, stderr=log)  # fmt: skip
+            [
+                sys.executable,
+                "-m",
+                "jupyterlab",
+                "--no-browser",
+                "--allow-root",
+                "--port=0",
+                "--ip=127.0.0.1",
+                f"--IdentityProvider.token={TOKEN}",
+                f"--ServerApp.root_dir={folder}",
+                "--LabApp.expose_app_in_browser=True",
+            ],
+            env=environment,
+            stdout=log,
+            stderr=log,
+        )
         try:
             yield folder, wait_for_address(server, folder)
         finally:

@@ -265,9 +265,14 @@ HOLD = """([part, corner]) => {
   grip.parentNode.append(grip);   // another grip may lie over it
   return [place.x, place.y];
 }"""
-DRAGS = [("triad", "1", None, (10, 45)), ("triad", "axis", None, (-20, 50)), ("gimbal", "B", 4, (10, 50)),
-         ("gimbal", "C", 12, (15, -45)), ("gimbal", "D", None, (10, 35)),
-         ("nine_numbers", "0", None, (-10, 45))]  # fmt: skip
+DRAGS = [
+    ("triad", "1", None, (10, 45)),
+    ("triad", "axis", None, (-20, 50)),
+    ("gimbal", "B", 4, (10, 50)),
+    ("gimbal", "C", 12, (15, -45)),
+    ("gimbal", "D", None, (10, 35)),
+    ("nine_numbers", "0", None, (-10, 45)),
+]
 
 
 @pytest.mark.sampled(2)

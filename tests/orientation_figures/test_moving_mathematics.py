@@ -23,7 +23,8 @@ APPLY = """
 import { readFileSync } from 'node:fs';
 const { jobs } = JSON.parse(readFileSync(0));
 const functions = { NAMES };
-console.log(JSON.stringify(jobs.map(([name, calls]) => calls.map((call) => functions[name](...call)))));
+console.log(JSON.stringify(
+  jobs.map(([name, calls]) => calls.map((call) => functions[name](...call)))));
 """
 
 
@@ -220,9 +221,9 @@ def words_of_the_module(matrix):
 def test_faults_are_told_in_the_words_of_check_dcm(in_browser_language):
     valid = orientations()[:200]
     matrices = [
-        *valid, *measured(400), *valid.round(3), *valid.round(1), *(valid * [[1], [1], [-1]]), *(1.2 * valid[:20]),
-        *(valid + 3e-10 * np.eye(3)), *(valid + 1e-7), *(valid[:, [1, 0, 2]]), np.zeros((3, 3)), 1e-5 * np.eye(3),
-        3e7 * np.eye(3),
+        *valid, *measured(400), *valid.round(3), *valid.round(1), *(valid * [[1], [1], [-1]]),
+        *(1.2 * valid[:20]), *(valid + 3e-10 * np.eye(3)), *(valid + 1e-7), *(valid[:, [1, 0, 2]]),
+        np.zeros((3, 3)), 1e-5 * np.eye(3), 3e7 * np.eye(3),
     ]  # fmt: skip
     expected = [words_of_the_module(matrix) for matrix in matrices]
     assert {message.split(":")[0] for message in expected} == {

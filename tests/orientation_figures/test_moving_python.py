@@ -75,7 +75,8 @@ def refused(error, ask):
     raise AssertionError(f"no {error.__name__}")
 
 CHANGES = eval(sys.argv[1])
-figures = [getattr(moving, name) for name in moving.__all__ if name not in ("MovingFigure", "SequenceExplorer")]
+names = set(moving.__all__) - {"MovingFigure", "SequenceExplorer"}
+figures = [getattr(moving, name) for name in sorted(names)]
 for kind in figures:
     figure, heard = kind(), []
     (name, value), before = CHANGES[figure.kind], figure.state()

@@ -196,8 +196,13 @@ def andro_sensor():
     found, time, gyr, acc, mag, _ = _parts()
     gravity = _gravity(found)
     names = []
-    for stem, unit in (("ACCELEROMETER", "m/s²"), ("GRAVITY", "m/s²"), ("LINEAR ACCELERATION", "m/s²"),
-                       ("GYROSCOPE", "rad/s"), ("MAGNETIC FIELD", "μT")):  # fmt: skip
+    for stem, unit in (
+        ("ACCELEROMETER", "m/s²"),
+        ("GRAVITY", "m/s²"),
+        ("LINEAR ACCELERATION", "m/s²"),
+        ("GYROSCOPE", "rad/s"),
+        ("MAGNETIC FIELD", "μT"),
+    ):
         names += [f"{stem} {axis} ({unit})" for axis in "XYZ"]
     names += ["SOUND LEVEL (dB)", "Time since start in ms ", "YYYY-MO-DD HH-MI-SS_SSS"]
     columns = [
@@ -255,8 +260,8 @@ def meta_wear():
 
     def one(values, unit):
         rows = (
-            f"{1.5e12 + 1000 * t:.0f},2018-09-07T19.17.{int(t) % 60:02}.{int(1000 * t) % 1000:03},{t:.3f},"
-            + ",".join(f"{part:.4f}" for part in row)
+            f"{1.5e12 + 1000 * t:.0f},2018-09-07T19.17.{int(t) % 60:02}.{int(1000 * t) % 1000:03},"
+            f"{t:.3f}," + ",".join(f"{part:.4f}" for part in row)
             for t, row in zip(time, values, strict=True)
         )
         return "\n".join([f"{head},x-axis ({unit}),y-axis ({unit}),z-axis ({unit})", *rows])
@@ -368,9 +373,19 @@ def pico_quake():
 def gyroflow():
     """Counts, with their scales in the lines above."""
     _, time, gyr, acc, _, _ = _parts()
-    head = ["GYROFLOW IMU LOG", "version,1.3", "id,custom_logger_name", "orientation,YxZ", "note,development_test",
-            "fwversion,FIRMWARE_0.1.0", "timestamp,1644159993", "vendor,potatocam", "tscale,0.001",
-            "gscale,0.00122173047", "ascale,0.00048828125"]  # fmt: skip
+    head = [
+        "GYROFLOW IMU LOG",
+        "version,1.3",
+        "id,custom_logger_name",
+        "orientation,YxZ",
+        "note,development_test",
+        "fwversion,FIRMWARE_0.1.0",
+        "timestamp,1644159993",
+        "vendor,potatocam",
+        "tscale,0.001",
+        "gscale,0.00122173047",
+        "ascale,0.00048828125",
+    ]
     columns = [1000 * time, gyr / 0.00122173047, acc / GRAVITY / 0.00048828125]
     return Form(
         _table(["t", "gx", "gy", "gz", "ax", "ay", "az"], columns, number="{:.0f}", head=head),
@@ -383,8 +398,12 @@ def betaflight():
     are wanted.
     """
     _, time, gyr, acc, _, _ = _parts()
-    head = ['"Product","Blackbox flight data recorder by Nicholas Sherlock"', '"firmwareType","Cleanflight"',
-            '"acc_1G","2048"', '"gyro_scale","0x3f800000"']  # fmt: skip
+    head = [
+        '"Product","Blackbox flight data recorder by Nicholas Sherlock"',
+        '"firmwareType","Cleanflight"',
+        '"acc_1G","2048"',
+        '"gyro_scale","0x3f800000"',
+    ]
     names = [
         "loopIteration",
         "time",
@@ -680,8 +699,18 @@ def flight_test():
     """
     found, time, gyr, acc, _, _ = _parts()
     angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
-    names = ["TIME", "P (deg/s)", "Q (deg/s)", "R (deg/s)", "AX (g)", "AY (g)", "AZ (g)", "PHI (deg)", "THETA (deg)",
-             "PSI (deg)"]  # fmt: skip
+    names = [
+        "TIME",
+        "P (deg/s)",
+        "Q (deg/s)",
+        "R (deg/s)",
+        "AX (g)",
+        "AY (g)",
+        "AZ (g)",
+        "PHI (deg)",
+        "THETA (deg)",
+        "PSI (deg)",
+    ]
     rows = [
         f"09:{15 + int(t) // 60:02}:{int(t) % 60:02}:{round(1000 * t) % 1000:03},"
         + ",".join(f"{one:.6f}" for one in row)
@@ -777,8 +806,8 @@ def polar():
     def one(unit, values):
         head = f"Phone timestamp;sensor timestamp [ns];X [{unit}];Y [{unit}];Z [{unit}] "
         rows = (
-            f"2024-03-05T09:{int(t) // 60:02}:{t % 60:06.3f};{599_628_000_000_000_000 + round(1e9 * t)};"
-            + ";".join(f"{part:.5f}" for part in row)
+            f"2024-03-05T09:{int(t) // 60:02}:{t % 60:06.3f};"
+            f"{599_628_000_000_000_000 + round(1e9 * t)};" + ";".join(f"{part:.5f}" for part in row)
             for t, row in zip(time, values, strict=True)
         )
         return "\n".join([head, *rows])

@@ -26,21 +26,38 @@ def sympy_quaternion(axis, angle):
 
 #: For each library a function, what it takes, and what its manual says of it.
 LIBRARIES = {
-    "SciPy's angles": (lambda a: Rotation.from_euler("ZXY", a).as_matrix(), "Euler angles",
-                       {"sequence": "zxy", "inverse": True}),
-    "SciPy's space fixed angles": (lambda a: Rotation.from_euler("zxy", a).as_matrix(), "Euler angles",
-                                   {"sequence": "zxy", "turns": "space fixed", "inverse": True}),
-    "SciPy's vector": (lambda v: Rotation.from_rotvec(v).as_quat(), "rotation vector", {"order": "xyzw"}),
-    "pytransform3d's angles": (lambda a: pr.matrix_from_euler(a, 2, 0, 1, extrinsic=False), "Euler angles",
-                               {"sequence": "zxy", "inverse": True}),
+    "SciPy's angles": (
+        lambda a: Rotation.from_euler("ZXY", a).as_matrix(),
+        "Euler angles",
+        {"sequence": "zxy", "inverse": True},
+    ),
+    "SciPy's space fixed angles": (
+        lambda a: Rotation.from_euler("zxy", a).as_matrix(),
+        "Euler angles",
+        {"sequence": "zxy", "turns": "space fixed", "inverse": True},
+    ),
+    "SciPy's vector": (
+        lambda v: Rotation.from_rotvec(v).as_quat(),
+        "rotation vector",
+        {"order": "xyzw"},
+    ),
+    "pytransform3d's angles": (
+        lambda a: pr.matrix_from_euler(a, 2, 0, 1, extrinsic=False),
+        "Euler angles",
+        {"sequence": "zxy", "inverse": True},
+    ),
     "pytransform3d's quaternion": (pr.matrix_from_quaternion, "quaternion", {"inverse": True}),
     "SymPy's angles": (sympy_matrix, "Euler angles", {"sequence": "zxy"}),
     "SymPy's quaternion": (sympy_quaternion, "axis and angle", {}),
     "AHRS's quaternion": (lambda q: ahrs.Quaternion(q).to_DCM(), "quaternion", {"inverse": True}),
     "AHRS's matrix": (lambda m: ahrs.DCM(m).to_quaternion(), "matrix", {"inverse": True}),
-    "this book's angles": (lambda a: orientation.dcm_from_body_fixed(a, "zxy"), "Euler angles", {"sequence": "zxy"}),
+    "this book's angles": (
+        lambda a: orientation.dcm_from_body_fixed(a, "zxy"),
+        "Euler angles",
+        {"sequence": "zxy"},
+    ),
     "this book's quaternion": (orientation.quaternion_from_dcm, "matrix", {}),
-}  # fmt: skip
+}
 NO_TURN = {
     "Euler angles": (np.zeros(3),),
     "rotation vector": (np.zeros(3),),

@@ -292,17 +292,15 @@ SPELLED = {
     "by index in C++": "\n".join(
         f"R({k // 3},{k % 3}) = {entry};" for k, entry in enumerate(entries())
     ),
-    "MATLAB's console": "R =\n\n    {}    {}    {}\n    {}    {}    {}\n    {}    {}    {}\n".format(
-        *entries()
-    ),
+    "MATLAB's console": "R =\n\n    {}    {}    {}\n    {}    {}    {}\n"
+    "    {}    {}    {}\n".format(*entries()),
     "MATLAB's live script": "R = 3\u00d73\n    {}    {}    {}\n    {}    {}    {}\n"
     "    {}    {}    {}".format(*entries()),
     "Julia": "3\u00d73 SMatrix{{Float64}} with indices SOneTo(3)\u00d7SOneTo(3):\n {} {} {}\n"
     " {} {} {}\n"
     " {} {} {}".format(*entries()),
-    "Blender": "<Matrix 3x3 ({}, {}, {})\n            ({}, {}, {})\n            ({}, {}, {})>".format(
-        *entries()
-    ),
+    "Blender": "<Matrix 3x3 ({}, {}, {})\n            ({}, {}, {})\n"
+    "            ({}, {}, {})>".format(*entries()),
     "nalgebra": "  \u250c              \u2510\n  \u2502 {} {} {} \u2502\n  \u2502 {} {} {} \u2502"
     "\n  \u2502 {} {} {} \u2502\n  \u2514         \u2518".format(*entries()),
     "OpenCV's YAML": "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ {},\n"
@@ -416,13 +414,19 @@ def test_a_line_that_names_the_columns_is_read():
         ("# x y z w\n[{x}, {y}, {z}, {w}]", {"order": "xyzw"}),
         ("time;p_x;p_y;p_z;q_z;q_y;q_x;q_w\n0.01;1;2;3;{z};{y};{x};{w}", {"order": "zyxw"}),
         ("| w | x | y | z |\n|---|---|---|---|\n| {w} | {x} | {y} | {z} |", {"order": "wxyz"}),
-        ("IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 {w} {x} {y} {z} 1 2 3 1 a.jpg", {"order": "wxyz"}),
+        (
+            "IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+            "1 {w} {x} {y} {z} 1 2 3 1 a.jpg",
+            {"order": "wxyz"},
+        ),
         ("quaternion (x, y, z, w): {x} {y} {z} {w}", {"order": "xyzw"}),
         (f"time,roll_deg,pitch_deg,yaw_deg\n0.1,{roll},{pitch},{yaw}", turns | {"places": "321"}),
-        (f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n"
+        (
+            f"Yaw (\N{DEGREE SIGN})\tPitch (\N{DEGREE SIGN})\tRoll (\N{DEGREE SIGN})\n"
             f"{yaw}\t{pitch}\t{roll}",
-         turns | {"places": "123"}),
-    ):  # fmt: skip
+            turns | {"places": "123"},
+        ),
+    ):
         text = text.format(**named)
         assert read_poses(text, "first").declared == said, text
         assert (
@@ -465,8 +469,11 @@ def test_every_fault_leads_to_a_section_and_to_a_checked_question():
     something checked.
     """
     groups = {group["group"] for groups in table.KINDS.values() for group in groups}
-    assert {*FAULTS.values()} == {*table.TAUGHT} == groups | {f"inverse {kind}" for kind in table.COUNTS} | {
-        "body", "world", "hand", "turn"}  # fmt: skip
+    assert (
+        {*FAULTS.values()}
+        == {*table.TAUGHT}
+        == groups | {f"inverse {kind}" for kind in table.COUNTS} | {"body", "world", "hand", "turn"}
+    )
     for section, *questions in table.TAUGHT.values():
         assert questions
         for (address, title), folder in (
@@ -573,8 +580,11 @@ def test_numbers_that_begin_with_a_minus_are_no_option(capsys):
 
 
 def test_the_command_is_installed():
-    done = subprocess.run([sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
-                          capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 3 and "5 numbers" in done.stderr
 
 

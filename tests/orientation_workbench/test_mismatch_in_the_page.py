@@ -33,11 +33,15 @@ import { eigenLine, explain, formulaOf, mendingLine } from '%s';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
 console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
   try {
-    const found = explain(first, second, table, { firstDeclared: declared[0], secondDeclared: declared[1], noise,
+    const found = explain(first, second, table, {
+      firstDeclared: declared[0], secondDeclared: declared[1], noise,
       firstProgram: programs[0], secondProgram: programs[1] });
-    return { verdict: found.verdict, faults: found.faults, left: found.chains.length, residual: found.residual,
+    return {
+      verdict: found.verdict, faults: found.faults, left: found.chains.length,
+      residual: found.residual,
       further: found.furtherPose,
-      mended: found.verdict === 'named' ? [mendingLine, eigenLine, formulaOf].map((one) => one(found.chains[0])) : [] };
+      mended: found.verdict === 'named'
+        ? [mendingLine, eigenLine, formulaOf].map((write) => write(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
 })));
 """
@@ -67,10 +71,18 @@ def in_python(case):
         )
     except ValueError as error:
         return {"error": str(error)}
-    return {"verdict": found.verdict, "faults": list(found.faults), "left": len(found.chains),
-            "residual": found.residual, "further": found.further_pose,
-            "mended": [write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)]
-            if found.verdict == "named" else []}  # fmt: skip
+    return {
+        "verdict": found.verdict,
+        "faults": list(found.faults),
+        "left": len(found.chains),
+        "residual": found.residual,
+        "further": found.further_pose,
+        "mended": [
+            write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)
+        ]
+        if found.verdict == "named"
+        else [],
+    }
 
 
 def case(first, second, declared=({}, {}), noise=0.0, programs=("", "")):

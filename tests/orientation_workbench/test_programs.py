@@ -37,30 +37,75 @@ TO_UNITY, LEFT_UP = np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]), np.diag([-1, -1
 
 PROMISES = {
     # numbers out of rawify/Quaternion.js 12
-    "Unity's angles": ("unity", "-0.24479 -0.18215 0.36758 0.87851", "unity", "342.77 328.43 50.31"),
+    "Unity's angles": (
+        "unity",
+        "-0.24479 -0.18215 0.36758 0.87851",
+        "unity",
+        "342.77 328.43 50.31",
+    ),
     "Unreal's angles": ("unreal", printed(IN_UNREAL), "unreal", printed(TURNS)),
-    "Unreal's angles by name": ("unreal", printed(IN_UNREAL), "unreal",
-                                "\n".join("P={:.4f} Y={:.4f} R={:.4f}".format(*turn) for turn in TURNS)),
-    "Unreal and Unity": ("unreal", printed(Rotation.from_quat(IN_UNREAL).as_matrix()), "unity",
-                         printed(Rotation.from_matrix(
-                             TO_UNITY @ Rotation.from_quat(IN_UNREAL).as_matrix() @ TO_UNITY.T).as_quat())),
+    "Unreal's angles by name": (
+        "unreal",
+        printed(IN_UNREAL),
+        "unreal",
+        "\n".join("P={:.4f} Y={:.4f} R={:.4f}".format(*turn) for turn in TURNS),
+    ),
+    "Unreal and Unity": (
+        "unreal",
+        printed(Rotation.from_quat(IN_UNREAL).as_matrix()),
+        "unity",
+        printed(
+            Rotation.from_matrix(
+                TO_UNITY @ Rotation.from_quat(IN_UNREAL).as_matrix() @ TO_UNITY.T
+            ).as_quat()
+        ),
+    ),
     "three.js": ("three", printed(QUATERNIONS), "three", printed(ANGLES)),
     "ROS": ("ros", printed(FIXED.as_quat()), "urdf", printed(ANGLES)),
     "PyBullet": ("pybullet", printed(FIXED.as_quat()), "pybullet", printed(ANGLES)),
     "Drake": ("drake", printed(FIXED.as_quat()[:, SCALAR_FIRST]), "drake", printed(ANGLES)),
     "Blender": ("blender", printed(FIXED.as_quat()[:, SCALAR_FIRST]), "blender", printed(ANGLES)),
     # siemens/ros-sharp 126, carla-simulator/ros-bridge
-    "ROS and Unity": ("ros", printed(QUATERNIONS), "unity", printed(QUATERNIONS[:, [1, 2, 0, 3]] * [1, -1, -1, 1])),
-    "ROS and Unreal": ("ros", printed(QUATERNIONS), "unreal", printed(QUATERNIONS * [-1, 1, -1, 1])),
+    "ROS and Unity": (
+        "ros",
+        printed(QUATERNIONS),
+        "unity",
+        printed(QUATERNIONS[:, [1, 2, 0, 3]] * [1, -1, -1, 1]),
+    ),
+    "ROS and Unreal": (
+        "ros",
+        printed(QUATERNIONS),
+        "unreal",
+        printed(QUATERNIONS * [-1, 1, -1, 1]),
+    ),
     # KhronosGroup/glTF-Blender-IO 438
-    "Blender and glTF": ("blender", "0.5709 0.1691 0.2722 0.7559\n0.7805 0.4835 0.2087 0.3369", "gltf",
-                         "0.16907575 0.75588035 -0.27217138 0.57094753\n"
-                         "0.48353603 0.33687159 -0.20870360 0.78048271"),
-    "COLMAP and PyTorch3D": ("colmap", printed(MATRICES), "pytorch3d", printed(np.swapaxes(LEFT_UP @ MATRICES, 1, 2))),
-    "COLMAP and OpenCV": ("colmap", printed(QUATERNIONS[:, SCALAR_FIRST]), "opencv solvepnp", printed(MATRICES)),
+    "Blender and glTF": (
+        "blender",
+        "0.5709 0.1691 0.2722 0.7559\n0.7805 0.4835 0.2087 0.3369",
+        "gltf",
+        "0.16907575 0.75588035 -0.27217138 0.57094753\n"
+        "0.48353603 0.33687159 -0.20870360 0.78048271",
+    ),
+    "COLMAP and PyTorch3D": (
+        "colmap",
+        printed(MATRICES),
+        "pytorch3d",
+        printed(np.swapaxes(LEFT_UP @ MATRICES, 1, 2)),
+    ),
+    "COLMAP and OpenCV": (
+        "colmap",
+        printed(QUATERNIONS[:, SCALAR_FIRST]),
+        "opencv solvepnp",
+        printed(MATRICES),
+    ),
     "OpenCV's Rodrigues": ("opencv", printed(ROTATION.as_rotvec()), "scipy", printed(MATRICES)),
-    "OpenCV's solvePnP": ("opencv solvepnp", printed(ROTATION.as_rotvec()), "opencv solvepnp", printed(MATRICES)),
-}  # fmt: skip
+    "OpenCV's solvePnP": (
+        "opencv solvepnp",
+        printed(ROTATION.as_rotvec()),
+        "opencv solvepnp",
+        printed(MATRICES),
+    ),
+}
 
 
 @pytest.mark.parametrize("promise", PROMISES)
@@ -84,8 +129,14 @@ def test_programs_that_were_run_answered_as_the_table_says(program):
         known = {
             name: answer["form"][name] for name in ("kind", "sequence") if name in answer["form"]
         }
-        found = explain(truth, np.array(answer["numbers"]), first_program="this book", second_program=program,
-                        second_declared=known, noise=2e-5)  # fmt: skip
+        found = explain(
+            truth,
+            np.array(answer["numbers"]),
+            first_program="this book",
+            second_program=program,
+            second_declared=known,
+            noise=2e-5,
+        )
         assert found.verdict == "same", (answer["asked"], str(found))
 
 

@@ -172,9 +172,10 @@ class WebKit(Engine):
             display = told.readline().strip()
         port = free_port()
         environment = {
-            **os.environ, "DISPLAY": f":{display}", "HOME": self.folder.name, "XDG_RUNTIME_DIR": self.folder.name,
-            "WEBKIT_DISABLE_COMPOSITING_MODE": "1", "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1",
-            "GDK_BACKEND": "x11", "NO_AT_BRIDGE": "1", "LIBGL_ALWAYS_SOFTWARE": "1",
+            **os.environ, "DISPLAY": f":{display}", "HOME": self.folder.name,
+            "XDG_RUNTIME_DIR": self.folder.name, "WEBKIT_DISABLE_COMPOSITING_MODE": "1",
+            "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1", "GDK_BACKEND": "x11",
+            "NO_AT_BRIDGE": "1", "LIBGL_ALWAYS_SOFTWARE": "1",
             # Safari gives shared memory to isolated pages; this build of its engine does when it is
             # asked to.
             "JSC_useSharedArrayBuffer": "1",

@@ -65,7 +65,9 @@ def write_edition(folder, number, with_scripts=None):
         "_static/book.js": f"window.edition = {number};",
         "_static/fixed.css": ":root { --edition: 0 }",
         "_static/fixed.js": "window.edition = 0;",
-        f"runtime/wheels/{sha256(str(number).encode()).hexdigest()[:12]}/lasting.js": f"export default {number};",
+        f"runtime/wheels/{sha256(str(number).encode()).hexdigest()[:12]}/lasting.js": (
+            f"export default {number};"
+        ),
     }
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

@@ -62,7 +62,8 @@ def test_stop_keeps_the_names(engine, site):
     assert engine.run("() => crossOriginIsolated")
     write = """(code) => {
       const cell = document.querySelectorAll('div.cell')[2];
-      const editor = cell.querySelector('.cm-content').cmTile?.view ?? cell.querySelector('.cm-content').cmView.view;
+      const content = cell.querySelector('.cm-content');
+      const editor = content.cmTile?.view ?? content.cmView.view;
       editor.dispatch({ changes: { from: 0, to: editor.state.doc.length, insert: code } });
       cell.querySelector('button.run-cell').click();
     }"""

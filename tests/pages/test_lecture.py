@@ -167,8 +167,10 @@ def test_a_hall_without_a_mouse_may_swipe(opened):
     swipe = """(by) => {
       const target = document.querySelector(".lecture-line");
       const at = (x) => [new Touch({ identifier: 1, target, clientX: x, clientY: 300 })];
-      target.dispatchEvent(new TouchEvent("touchstart", { touches: at(600), changedTouches: at(600), bubbles: true }));
-      target.dispatchEvent(new TouchEvent("touchend", { changedTouches: at(600 + by), bubbles: true }));
+      target.dispatchEvent(new TouchEvent(
+        "touchstart", { touches: at(600), changedTouches: at(600), bubbles: true }));
+      target.dispatchEvent(new TouchEvent(
+        "touchend", { changedTouches: at(600 + by), bubbles: true }));
     }"""
     page.evaluate(swipe, -200)
     assert step(page) == 2

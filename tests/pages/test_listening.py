@@ -14,8 +14,8 @@ WALKED = (
 )
 #: What a reader acts on, or is told of by its name alone.
 NAMED = {
-    "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio", "combobox", "img", "image",
-    "listbox", "figure", "navigation", "DisclosureTriangle",
+    "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio",
+    "combobox", "img", "image", "listbox", "figure", "navigation", "DisclosureTriangle",
 }  # fmt: skip
 pytestmark = pytest.mark.sampled(1)
 

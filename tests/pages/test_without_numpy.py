@@ -41,7 +41,7 @@ simple_dcm("z", [0.1, 0.2])
 simple_dcm("z", 0.1).trace()
 simple_dcm("z", 0.1)[0, 0].round(2)
 [row.tolist() for row in simple_dcm("z", 0.3)]
-same_orientation(quaternion_from_axis_angle((0, 0, 1), 0.3), -quaternion_from_axis_angle((0, 0, 2), 0.3))
+same_orientation(-quaternion_from_axis_angle((0, 0, 1), 1), quaternion_from_dcm(simple_dcm('z', 1)))
 same_orientation(simple_dcm("z", 0.3), dcm_from_axis_angle((0, 0, 2), 0.3))
 diagnose(simple_dcm("z", 0.3).T, simple_dcm("z", 0.3)).causes
 check_dcm([[0.36, 0.48, -0.80], [-0.80, 0.60, 0.00], [0.48, 0.64, 0.60]])

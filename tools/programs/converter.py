@@ -19,11 +19,14 @@ const { settled, read, told, line, shown, byAxesOf } = (() => {
 BODY
 return { settled, read, told, line, shown, byAxesOf };
 })();
-const attempt = (work) => { try { return work(); } catch (error) { return { fault: error.message }; } };
+const attempt = (work) => {
+  try { return work(); } catch (error) { return { fault: error.message }; }
+};
 console.log(JSON.stringify(jobs.map(({ source, side, dcm, text }) => attempt(() => {
   const means = settled(side, programs);
   if (!dcm) return read(means, text);
-  const exchanged = source ? byAxesOf(source, side, programs, dcm) : { dcm }, numbers = told(means, exchanged.dcm);
+  const exchanged = source ? byAxesOf(source, side, programs, dcm) : { dcm };
+  const numbers = told(means, exchanged.dcm);
   return { text: shown(numbers), line: line(means, numbers, programs), said: exchanged.said };
 }))));
 """
@@ -41,8 +44,12 @@ def converted(jobs):
     program = "".join(map(bundle.body, bundle.SHARED)) + APPLY.replace(
         "BODY", bundle.body("converter")
     )
-    done = subprocess.run([NODE, "--input-type=module", "-e", program], capture_output=True, text=True,
-                          input=json.dumps({"programs": FOR_THE_PAGE, "jobs": jobs}))  # fmt: skip
+    done = subprocess.run(
+        [NODE, "--input-type=module", "-e", program],
+        capture_output=True,
+        text=True,
+        input=json.dumps({"programs": FOR_THE_PAGE, "jobs": jobs}),
+    )
     if done.returncode:
         raise RuntimeError(done.stderr[-2000:])
     return json.loads(done.stdout)

@@ -59,9 +59,9 @@ def test_units_are_those_of_sympy():
     from sympy.physics import units as theirs
 
     names = {
-        "N": "newton", "Pa": "pascal", "J": "joule", "W": "watt", "Hz": "hertz", "C": "coulomb", "V": "volt",
-        "F": "farad", "ohm": "ohm", "T": "tesla", "Wb": "weber", "H": "henry", "L": "liter", "bar": "bar",
-        "min": "minute", "h": "hour", "d": "day",
+        "N": "newton", "Pa": "pascal", "J": "joule", "W": "watt", "Hz": "hertz", "C": "coulomb",
+        "V": "volt", "F": "farad", "ohm": "ohm", "T": "tesla", "Wb": "weber", "H": "henry",
+        "L": "liter", "bar": "bar", "min": "minute", "h": "hour", "d": "day",
     }  # fmt: skip
     base = [
         theirs.meter,

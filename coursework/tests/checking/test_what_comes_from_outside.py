@@ -15,8 +15,9 @@ from coursework.grading.record import Record
 from coursework.grading.store import Store
 
 LEVER = {
-    "kind": "expression", "salt": "b", "symbols": {"F": [1, 5]}, "answer": "moment", "worth": 2, "lockers": "",
-    "variant": 1, "variants": 2, "given": {"arm": 2}, "shown": {"arm": "2"}, "text": "{{arm}}", "sequence": "zxy",
+    "kind": "expression", "salt": "b", "symbols": {"F": [1, 5]}, "answer": "moment", "worth": 2,
+    "lockers": "", "variant": 1, "variants": 2, "given": {"arm": 2}, "shown": {"arm": "2"},
+    "text": "{{arm}}", "sequence": "zxy",
 }  # fmt: skip
 MARK = {"outcome": "wrong", "note": "", "messages": [], "points": 0, "worth": 2}
 RECORD = {
@@ -27,8 +28,8 @@ RECORD = {
     "marks": {"levers/one": MARK},
 }
 DECISION = {
-    "id": "1", "when": "2026-10-05T12:00:00", "who": "Bea", "student": "ann", "assignment": "levers",
-    "question": "levers/one", "answer": "a", "credit": 0.5,
+    "id": "1", "when": "2026-10-05T12:00:00", "who": "Bea", "student": "ann",
+    "assignment": "levers", "question": "levers/one", "answer": "a", "credit": 0.5,
 }  # fmt: skip
 
 

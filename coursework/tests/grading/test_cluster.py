@@ -142,8 +142,10 @@ from coursework.grading.execution import cluster
 
 class Evil:
     def __reduce__(self):
-        # Whoever unpickles this leaves a file that is called after its process, and gets an honest error.
-        return eval, ("open({folder!r} + '/' + str(__import__('os').getpid()), 'w').close() or ValueError('x')",)
+        # Whoever unpickles this leaves a file that is called after its process, and gets an honest
+        # error.
+        file = "open({folder!r} + '/' + str(__import__('os').getpid()), 'w')"
+        return eval, (file + ".close() or ValueError('x')",)
 
 class EvilError(Exception):
     def __reduce__(self):

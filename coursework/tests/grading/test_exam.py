@@ -19,8 +19,9 @@ from coursework.grading.store import Store
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
 HIDDEN = """### BEGIN HIDDEN TESTS
-question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta', turns=[('x', theta)],
-         worth=2, credit={'transposed': 0.5}, exam=True, hints={'transposed': ['Which way round?']},
+question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta',
+         turns=[('x', theta)], worth=2, exam=True, credit={'transposed': 0.5},
+         hints={'transposed': ['Which way round?']},
          solution='The axis is shared.')
 ### END HIDDEN TESTS"""
 theta = sm.symbols("theta")

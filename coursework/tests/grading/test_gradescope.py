@@ -120,8 +120,10 @@ def graded(home, made, email="ann@uni.example", name="turns.ipynb"):
 STEAL = """import os
 found = []
 for folder, _, files in os.walk('/autograder'):
-    found += [os.path.join(folder, name) for name in files if name.endswith('.ipynb') or name == '.grading-secret']
-for place in ('/autograder/source/solutions/turns.ipynb', '/autograder/source/solutions/.grading-secret'):
+    found += [os.path.join(folder, name) for name in files
+              if name.endswith('.ipynb') or name == '.grading-secret']
+for name in ('turns.ipynb', '.grading-secret'):
+    place = '/autograder/source/solutions/' + name
     try:
         found.append(open(place).read())
     except OSError:

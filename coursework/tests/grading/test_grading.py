@@ -571,8 +571,14 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
 def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, tmp_path):
     few = tmp_path / "few"
     put(few, "right", handed_in("axes"), "axes.ipynb")
-    said = grade(few, copied, solutions=course / "solutions", assignments={"other": ["axes"]}, limits=LIMITS,
-                 show=io.StringIO())  # fmt: skip
+    said = grade(
+        few,
+        copied,
+        solutions=course / "solutions",
+        assignments={"other": ["axes"]},
+        limits=LIMITS,
+        show=io.StringIO(),
+    )
     assert said["graded"] == 1
     assert regrade(copied, solutions=course / "solutions") == []
     (copied / "course.json").unlink()
@@ -677,8 +683,14 @@ def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypa
     )
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
     shown = io.StringIO()
-    grade(course / "submissions", tmp_path / "out", solutions=course / "solutions", roster=tmp_path / "roster.csv",
-          dry_run=True, show=shown)  # fmt: skip
+    grade(
+        course / "submissions",
+        tmp_path / "out",
+        solutions=course / "solutions",
+        roster=tmp_path / "roster.csv",
+        dry_run=True,
+        show=shown,
+    )
     said = shown.getvalue()
     assert "right <- right/turns.ipynb  (turns; the name of the folder)" in said
     assert (
@@ -948,9 +960,8 @@ def test_a_person_decides_what_is_undecided(course, copied):
         ("Student;Question;Credit\r\nnearly;turns/sum;0,5\r\n", 5.5, ""),
         ("\ufeffID\tcredit\n{id}\t1\n", 6, ""),
         ("id,student,question,credit\n{id},n\u200cearly,any,1\n", 6, ""),
-        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5, "line 2: .*'nerly'.*line "
-            "3: "
-            ".*"),
+        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5,
+         "line 2: .*'nerly'.*line 3: .*"),
         # Every outcome can be overridden, also one that is right.
         ("student,question,credit\nnearly,turns/doubled,0\nnearly,turns/sum,1\n", 3, ""),
     ],

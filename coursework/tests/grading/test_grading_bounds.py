@@ -137,7 +137,8 @@ def _tower(dice, what):
 
 
 HOSTILE = (
-    "powers", "complex powers", "logarithms", "squares", "tiny", "angles", "inverse", "mixed", "remainders", "sums"
+    "powers", "complex powers", "logarithms", "squares", "tiny", "angles", "inverse", "mixed",
+    "remainders", "sums"
 )  # fmt: skip
 
 
@@ -179,7 +180,8 @@ def do(place, what):
     elif what == "bring in":
         grading.bring_in_decisions(place / "out", show=silent)
     elif what == "export":
-        main(["export", str(place / "out"), "--lms", str(place / "book.csv"), "--assignment", "hw0"])
+        table = str(place / "book.csv")
+        main(["export", str(place / "out"), "--lms", table, "--assignment", "hw0"])
     else:
         ledger = Ledger(store.folder)
         for record in store.all():
@@ -206,7 +208,9 @@ for line in sys.stdin:
     os.close(says)
     said, killed = b"", False
     while True:
-        left = None if killed_after is None or killed else max(0, begun + killed_after - time.monotonic())
+        left = None
+        if killed_after is not None and not killed:
+            left = max(0, begun + killed_after - time.monotonic())
         if not select.select([hears], [], [], left)[0]:
             os.kill(child, signal.SIGKILL)
             killed = True

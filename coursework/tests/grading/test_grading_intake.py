@@ -236,11 +236,14 @@ DOWNLOADED = {
     "LATE_anon_xY4zF_502_turns.ipynb": ("anonymous_xY4zF", "", True),
     # Moodle: `download_submissions` in mod/assign/locallib.php of moodle/moodle, in folders and
     # flat, with groups, and with names hidden in several languages.
-    "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": ("THIRD STUDENT NAME "
-        "10019166", "", False),
-    "Vorname Nachname_1327627_assignsubmission_file_/turns.ipynb": ("Vorname Nachname 1327627", "", False),
-    "Double-Name Student_657693_assignsubmission_file_turns.ipynb": ("Double-Name Student 657693", "", False),
-    "Default group-Jane Doe_77_assignsubmission_file_/turns.ipynb": ("Default group-Jane Doe 77", "", False),
+    "THIRD STUDENT NAME_10019166_assignsubmission_file_/JURNAL1.ipynb": (
+        "THIRD STUDENT NAME 10019166", "", False),
+    "Vorname Nachname_1327627_assignsubmission_file_/turns.ipynb": (
+        "Vorname Nachname 1327627", "", False),
+    "Double-Name Student_657693_assignsubmission_file_turns.ipynb": (
+        "Double-Name Student 657693", "", False),
+    "Default group-Jane Doe_77_assignsubmission_file_/turns.ipynb": (
+        "Default group-Jane Doe 77", "", False),
     "Participant_1234_assignsubmission_file_/turns.ipynb": ("Participant 1234", "", False),
     "Teilnehmerin_1235_assignsubmission_file_/turns.ipynb": ("Teilnehmerin 1235", "", False),
     # Brightspace: downloads that several graders' own tools describe, with the folder around them
@@ -256,7 +259,8 @@ DOWNLOADED = {
     "Project 3  Reverse Engineering_abc0123_attempt_2015-02-12-21-30-34_Assignment_1.ipynb": (
         "abc0123", "2015-02-12T21:30:34", False),
     # Gradescope: the archive of all submissions, whose table says whose each is.
-    "assignment_9100_export/submission_41/turns.ipynb": ("100", "2026-11-21T20:01:00.500000+00:00", False),
+    "assignment_9100_export/submission_41/turns.ipynb": (
+        "100", "2026-11-21T20:01:00.500000+00:00", False),
     "assignment_9100_export/submission_42/turns.ipynb": ("bob@uni.example", "", False),
 }  # fmt: skip
 GRADESCOPE = """---
@@ -492,7 +496,8 @@ def test_the_roster_alone_says_whose_a_notebook_is(box, tmp_path, name, student,
          "Jane Doe_77_assignsubmission_file_/turns.ipynb", "jd@x.org"),
         ("OrgDefinedId,Username,Last Name,First Name\n#100,#jdoe,Doe,Jane\n",
          "5-6 - Jane Doe - Nov 21, 2026 801 PM/turns.ipynb", "jdoe"),
-        ("id,first_name,last_name,email\njdoe,Jane,Doe,jd@x.org\n", "submitted/jdoe/turns/turns.ipynb", "jdoe"),
+        ("id,first_name,last_name,email\njdoe,Jane,Doe,jd@x.org\n",
+         "submitted/jdoe/turns/turns.ipynb", "jdoe"),
         ("identifier,github_username\nJane Doe,jane-d\n", "turns-jane-d/turns.ipynb", None),
         ("student,handed in as\njdoe,that one; another\n", "another/turns.ipynb", "jdoe"),
         ("student\tcanvas\njdoe\t101\n", "x_101_2_turns.ipynb", "jdoe"),

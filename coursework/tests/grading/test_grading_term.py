@@ -445,7 +445,8 @@ def late(tmp_path):
     """Results of three, of whom one was two days late; the rules excuse another."""
     store = Store(tmp_path / "out")
     for student, when, marked in (
-        ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False), ("carl", "", False)
+        ("ann", "2026-10-07T12:00:00", False), ("bob", "2026-10-05T12:00:00", False),
+        ("carl", "", False)
     ):  # fmt: skip
         found = record(6, when=when, late=marked)
         mark = Mark("correct", points=6, worth=6, version="v", title="the sum")

@@ -297,8 +297,8 @@ def with_crashes(dice, monkeypatch, do):
 
 
 STORIES = (
-    "stays", "collides", "again", "taken back", "both, and the second taken back", "appeal waits", "appeal rejected",
-    "appeal accepted", "appeal accepted, and taken back",
+    "stays", "collides", "again", "taken back", "both, and the second taken back", "appeal waits",
+    "appeal rejected", "appeal accepted", "appeal accepted, and taken back",
 )  # fmt: skip
 
 

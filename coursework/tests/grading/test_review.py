@@ -217,8 +217,14 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         )
         place = [one.student for one in cluster.members].index("copies")
         assert served.decide(cluster.id, f"credit=1&only={place}").status == 303
-        for body, status in (("credit=9", 400), ("credit=-1", 400), ("credit=x", 400), ("credit=nan", 400), ("", 400),
-                             ("credit=1&only=9", 400)):  # fmt: skip
+        for body, status in (
+            ("credit=9", 400),
+            ("credit=-1", 400),
+            ("credit=x", 400),
+            ("credit=nan", 400),
+            ("", 400),
+            ("credit=1&only=9", 400),
+        ):
             assert served.decide(cluster.id, body).status == status
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
         assert "by Ann" in page and "Copied?" in page and "appeal" in page

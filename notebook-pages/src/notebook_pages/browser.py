@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 # The first is the same engine without windows; it opens a page with a third less work.
 NAMES = (
-    "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
-    "/Applications/Google "
+    "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome",
+    "google-chrome-stable", "/Applications/Google "
     "Chrome.app/Contents/MacOS/Google Chrome", "/Applications/Chromium.app/Contents/MacOS/Chromium",
 )  # fmt: skip
 FLAGS = (

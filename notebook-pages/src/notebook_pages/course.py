@@ -25,9 +25,10 @@ INDEX = """# {title}
 
 {links}
 
-Each page checks your answers where you read it: put yours in place of the dots and run the cell. What you answer stays
-in your browser. To work on your own machine, take <a href="take-away/exercises.zip">all exercises</a> with you;
-`README.txt` in them says how to begin.
+Each page checks your answers where you read it: put yours in place of the dots and run the cell.
+What you answer stays in your browser. To work on your own machine, take
+<a href="take-away/exercises.zip">all exercises</a> with you; `README.txt` in them says how to
+begin.
 
 <!-- whole-book -->
 """
@@ -60,7 +61,8 @@ def publish(parts, workshop, site):
     workshop, site = Path(workshop).resolve(), Path(site).resolve()
     write_book(parts, workshop)
     environment = os.environ | {
-        "NOTEBOOK_PAGES_FETCHED": str(fetched), "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))
+        "NOTEBOOK_PAGES_FETCHED": str(fetched),
+        "PYTHONPATH": os.pathsep.join(_places(workshop / "packages"))
     }  # fmt: skip
     done = subprocess.run(
         [sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment

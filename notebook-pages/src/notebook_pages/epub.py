@@ -21,12 +21,13 @@ MATHML, SVG = "http://www.w3.org/1998/Math/MathML", "http://www.w3.org/2000/svg"
 #: A parser of HTML writes all names in small letters; in XML these have capitals.
 CAPITALS = {
     name.lower(): name
-    for name in ("viewBox", "preserveAspectRatio", "clipPath", "clipPathUnits", "gradientUnits", "gradientTransform",
-                 "linearGradient", "radialGradient", "textLength", "lengthAdjust", "markerWidth", "markerHeight",
-                 "markerUnits", "attributeName", "attributeType", "animateTransform", "animateMotion", "keyTimes",
-                 "keySplines", "keyPoints", "calcMode", "repeatCount", "repeatDur", "refX", "refY", "pathLength",
-                 "patternUnits", "patternTransform", "textPath")
-}  # fmt: skip
+    for name in """
+    viewBox preserveAspectRatio clipPath clipPathUnits gradientUnits gradientTransform
+    linearGradient radialGradient textLength lengthAdjust markerWidth markerHeight markerUnits
+    attributeName attributeType animateTransform animateMotion keyTimes keySplines keyPoints
+    calcMode repeatCount repeatDur refX refY pathLength patternUnits patternTransform textPath
+    """.split()
+}
 BOLD = {ord(sign): 0x1D400 + k for k, sign in enumerate(ascii_uppercase + ascii_lowercase)}
 BOLD |= {ord(sign): 0x1D7CE + k for k, sign in enumerate(digits)}
 #: What needs a script or a form.
@@ -35,18 +36,22 @@ ALIVE = (
     ".progress-bar"
 )
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
-<html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en" xml:lang="en">
+<html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en"
+ xml:lang="en">
 <head><title>{title}</title><link rel="stylesheet" type="text/css" href="book.css"/></head>
 <body>{body}</body>
 </html>
 """
 CONTAINER = """<?xml version="1.0" encoding="utf-8"?>
 <container version="1.0" xmlns="urn:oasis:names:tc:opendocument:xmlns:container">
-<rootfiles><rootfile full-path="book/package.opf" media-type="application/oebps-package+xml"/></rootfiles>
+<rootfiles>
+<rootfile full-path="book/package.opf" media-type="application/oebps-package+xml"/>
+</rootfiles>
 </container>
 """
 PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
-<package xmlns="http://www.idpf.org/2007/opf" version="3.0" unique-identifier="identifier" xml:lang="en">
+<package xmlns="http://www.idpf.org/2007/opf" version="3.0" unique-identifier="identifier"
+ xml:lang="en">
 <metadata xmlns:dc="http://purl.org/dc/elements/1.1/">
 <dc:identifier id="identifier">{identifier}</dc:identifier>
 <dc:title>{title}</dc:title>
@@ -64,7 +69,8 @@ PACKAGE = """<?xml version="1.0" encoding="utf-8"?>
 <meta property="schema:accessibilityFeature">structuralNavigation</meta>
 <meta property="schema:accessibilityFeature">tableOfContents</meta>
 <meta property="schema:accessibilityHazard">none</meta>
-<meta property="schema:accessibilitySummary">Formulas are MathML; every figure says in words what it shows.</meta>
+<meta property="schema:accessibilitySummary">Formulas are MathML; every figure says in words what
+it shows.</meta>
 </metadata>
 <manifest>
 <item id="nav" href="nav.xhtml" media-type="application/xhtml+xml" properties="nav"/>
@@ -195,8 +201,9 @@ def files(site, title, author):
     )
     written["package.opf"] = PACKAGE.format(
         identifier=identity, title=escape(title), author=escape(author), licences=LICENCES_SAID,
-        edition=escape(which.words), more="\n".join(more), moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}",
-        items="\n".join(items), spine="\n".join(spine),
+        edition=escape(which.words), more="\n".join(more),
+        moment=f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}", items="\n".join(items),
+        spine="\n".join(spine),
     )  # fmt: skip
     return written
 

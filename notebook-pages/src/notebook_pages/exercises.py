@@ -65,8 +65,8 @@ def chapter_of(app, page):
 def reference(page, target, words):
     """A link to another page, which Sphinx resolves."""
     return addnodes.pending_xref(
-        "", nodes.inline("", words), refdomain="std", reftype="doc", refdoc=page, reftarget=f"/{target}",
-        refexplicit=True, refwarn=True,
+        "", nodes.inline("", words), refdomain="std", reftype="doc", refdoc=page,
+        reftarget=f"/{target}", refexplicit=True, refwarn=True,
     )  # fmt: skip
 
 

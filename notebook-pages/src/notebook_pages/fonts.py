@@ -37,17 +37,28 @@ FORMULAS = (
     "U+221A,U+221E,U+2223,U+2225,U+222B,U+223C,U+2248,U+2260-2261,U+2264-2265,U+22A4-22A5,U+2297,U+22C5,U+22EE-22F1,"
     "U+27E8-27E9,U+27FA"
 )
+
+
+def _serif(style):
+    return SERIF / f"source-serif-4-latin-{style}.woff2"
+
+
+def _katex(face):
+    return KATEX / "fonts" / f"KaTeX_{face}.woff2"
+
+
 FACES = (
     # family, weight, style, file, signs, whether the whole file stands by
-    ("Source Serif 4", "400", "normal", SERIF / "source-serif-4-latin-400-normal.woff2", LATIN, True),
-    ("Source Serif 4", "400", "italic", SERIF / "source-serif-4-latin-400-italic.woff2", LATIN, True),
-    ("Source Serif 4", "600", "normal", SERIF / "source-serif-4-latin-600-normal.woff2", LATIN, True),
-    ("Source Sans 3", "400 600", "normal", SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, True),
-    ("KaTeX_Main", "400", "normal", KATEX / "fonts" / "KaTeX_Main-Regular.woff2", FORMULAS, True),
-    ("KaTeX_Main", "700", "normal", KATEX / "fonts" / "KaTeX_Main-Bold.woff2", "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
-    ("KaTeX_Math", "400", "italic", KATEX / "fonts" / "KaTeX_Math-Italic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
-    ("KaTeX_Math", "700", "italic", KATEX / "fonts" / "KaTeX_Math-BoldItalic.woff2", f"U+20-7E,U+A0,{GREEK}", True),
-    *((f"KaTeX_Size{n}", "400", "normal", KATEX / "fonts" / f"KaTeX_Size{n}-Regular.woff2", None, False)
+    ("Source Serif 4", "400", "normal", _serif("400-normal"), LATIN, True),
+    ("Source Serif 4", "400", "italic", _serif("400-italic"), LATIN, True),
+    ("Source Serif 4", "600", "normal", _serif("600-normal"), LATIN, True),
+    ("Source Sans 3", "400 600", "normal",
+     SANS / "source-sans-3-latin-wght-normal.woff2", LATIN, True),
+    ("KaTeX_Main", "400", "normal", _katex("Main-Regular"), FORMULAS, True),
+    ("KaTeX_Main", "700", "normal", _katex("Main-Bold"), "U+20-7E,U+A0,U+2C6-2DC,U+D7", True),
+    ("KaTeX_Math", "400", "italic", _katex("Math-Italic"), f"U+20-7E,U+A0,{GREEK}", True),
+    ("KaTeX_Math", "700", "italic", _katex("Math-BoldItalic"), f"U+20-7E,U+A0,{GREEK}", True),
+    *((f"KaTeX_Size{n}", "400", "normal", _katex(f"Size{n}-Regular"), None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
 #: The reader's own typefaces until the book's are there: each as wide, on the average of English
@@ -141,10 +152,10 @@ def name_of(source):
 
 
 def face_rule(folder, family, weight, style, source, reach):
-    begin = f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};font-display:swap;'
+    signs = f";unicode-range:{reach}" if reach else ""
     return (
-        f"{begin}src:url({folder}/{name_of(source)}) "
-        f'format("woff2"){f";unicode-range:{reach}" if reach else ""}}}'
+        f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};'
+        f'font-display:swap;src:url({folder}/{name_of(source)}) format("woff2"){signs}}}'
     )
 
 

@@ -67,8 +67,9 @@ def write_manifest(site, title):
             {"src": f"_static/icon-{size}.png", "sizes": f"{size}x{size}", "type": "image/png"}
         )
     manifest = {
-        "name": title, "short_name": title.split()[0], "start_url": "./index.html", "scope": "./", "id": "./",
-        "display": "minimal-ui", "background_color": "#fdfcfa", "theme_color": "#fdfcfa", "icons": icons,
+        "name": title, "short_name": title.split()[0], "start_url": "./index.html", "scope": "./",
+        "id": "./", "display": "minimal-ui", "background_color": "#fdfcfa",
+        "theme_color": "#fdfcfa", "icons": icons,
     }  # fmt: skip
     (site / MANIFEST).write_text(json.dumps(manifest, indent=1), "utf8")
 
@@ -89,10 +90,13 @@ def write_list(site):
         *sealed,
     ]
     pages = [
-        path for path in site.rglob("*")
-        if path.suffix in KEPT and path.relative_to(site).parts[0] not in ("lite", PICTURES) and path not in python
+        path
+        for path in site.rglob("*")
+        if path.suffix in KEPT
+        and path.relative_to(site).parts[0] not in ("lite", PICTURES)
+        and path not in python
         and path.name not in (WORKER, "404.html")
-    ]  # fmt: skip
+    ]
 
     def listed(paths):
         contents = {str(path.relative_to(site)): path.read_bytes() for path in sorted(paths)}

@@ -36,8 +36,8 @@ LECTURES = "chapters/"
 STOP = re.compile(r"\bdata-stop=")
 #: What is to be seen in a hall, rather than heard.
 SHOWN = (
-    nodes.figure, nodes.math_block, nodes.Admonition, nodes.table, nodes.container, nodes.literal_block, nodes.image,
-    nodes.enumerated_list, nodes.bullet_list, question,
+    nodes.figure, nodes.math_block, nodes.Admonition, nodes.table, nodes.container,
+    nodes.literal_block, nodes.image, nodes.enumerated_list, nodes.bullet_list, question,
 )  # fmt: skip
 
 logger = logging.getLogger(__name__)
@@ -165,7 +165,8 @@ def as_html(step):
     return (
         f'<li data-shows="{escape(" ".join(step["shows"]))}" '
         f'data-section="{escape(step["section"])}">'
-        f"<p>{in_words(step['line'], whole=False)}</p><aside>{in_words(step['notes'], whole=True)}</aside></li>"
+        f"<p>{in_words(step['line'], whole=False)}</p>"
+        f"<aside>{in_words(step['notes'], whole=True)}</aside></li>"
     )
 
 

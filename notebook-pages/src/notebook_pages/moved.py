@@ -24,7 +24,8 @@ from sphinx.application import Sphinx
 from sphinx.errors import SphinxError
 
 REDIRECT = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1">
+<html lang="en"><head><meta charset="utf-8" />
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title><meta name="robots" content="noindex"><link rel="canonical" href="{address}">
 <meta http-equiv="refresh" content="1; url={address}">
 <script>location.replace("{address}"{and_place})</script>

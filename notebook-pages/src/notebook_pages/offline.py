@@ -23,7 +23,8 @@ works from there: the pages, the mathematics, the moving figures, the search
 and the downloads.
 
 Code that runs in the page, or in a notebook in the browser, is the one
-exception: browsers load Python only from a server. If Python is on your computer, start one in this folder with
+exception: browsers load Python only from a server. If Python is on your
+computer, start one in this folder with
 
     python serve.py
 

@@ -107,7 +107,8 @@ class Project:
             changed = unknown + self._named("diff", "--name-only", "--relative", "HEAD")
         # Of a file that is gone, the folder that it stood in tells when.
         written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
-        return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
+        latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
+        return f"{stated}.post{latest:%Y%m%d%H%M%S}"
 
     def _git(self, *arguments: str) -> str:
         """What git says of the sources, or nothing where there is no git, or no repository that it

@@ -23,7 +23,8 @@ FIGURES = (
 WIDTH, HEIGHT, MARGIN = 1200, 630, 40
 LARGEST = 300_000  # bytes: some who show pictures take no larger ones
 FIGURE = re.compile(
-    r'<svg (?=[^>]*viewBox="([^"]*)")(?=[^>]*role="img")(?=[^>]*aria-label="([^"]*)")[^>]*>.*?</svg>',
+    r'<svg (?=[^>]*viewBox="([^"]*)")(?=[^>]*role="img")'
+    r'(?=[^>]*aria-label="([^"]*)")[^>]*>.*?</svg>',
     re.S,
 )
 MIX = re.compile(r"color-mix\(in srgb,currentColor (\d+)%,var\(--sheet\)\)")
@@ -128,7 +129,8 @@ def write_picture(app, pagename, templatename, context, doctree):
         picture.parent.mkdir(parents=True, exist_ok=True)
         picture.write_bytes(content)
     context["picture"] = {
-        "address": f"{address}{FOLDER}/{name}.png", "words": figure[2], "width": WIDTH, "height": HEIGHT,
+        "address": f"{address}{FOLDER}/{name}.png", "words": figure[2], "width": WIDTH,
+        "height": HEIGHT,
     }  # fmt: skip
 
 

@@ -154,16 +154,20 @@ def in_order(env):
 #: It stands in for any address, so nothing in it is relative: where no address is set, the script
 #: looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1">
+<html lang="en"><head><meta charset="utf-8" />
+<meta name="viewport" content="width=device-width, initial-scale=1">
 <title>No such page - {title}</title><meta name="robots" content="noindex">
 <style>:root {{ color-scheme: light dark }}
 body {{ max-width: 34rem; margin: 15vh auto; padding: 0 1rem; font: 1.1rem/1.6 Georgia, serif;
   background: #fdfcfa; color: #1f2328 }}
 a {{ color: #0a58ca }}
-@media (prefers-color-scheme: dark) {{ body {{ background: #16191d; color: #dfe2e6 }} a {{ color: #8ab8ff }} }}</style>
+@media (prefers-color-scheme: dark) {{
+  body {{ background: #16191d; color: #dfe2e6 }} a {{ color: #8ab8ff }}
+}}</style>
 </head><body><main><h1>There is no such page</h1>
-<p>It may have been moved, or the address is not whole. Everything in <i>{title}</i> is one step from its
-<a href="{front}index.html">front page</a>, and can be <a href="{front}search.html">searched</a>.</p></main>
+<p>It may have been moved, or the address is not whole. Everything in <i>{title}</i> is one
+step from its <a href="{front}index.html">front page</a>, and can be
+<a href="{front}search.html">searched</a>.</p></main>
 <script>
 (async () => {{
   // The book begins at the deepest folder of this address in which it says what it is.
@@ -171,7 +175,8 @@ a {{ color: #0a58ca }}
     const answer = await fetch(new URL("manifest.webmanifest", folder)).catch(() => null);
     const found = answer?.ok && await answer.json();
     if (found?.name === document.querySelector("i").textContent) {{
-      for (const link of document.links) link.href = new URL(link.getAttribute("href").split("/").at(-1), folder);
+      for (const link of document.links)
+        link.href = new URL(link.getAttribute("href").split("/").at(-1), folder);
       break;
     }}
     if (folder.pathname === "/") break;
@@ -232,7 +237,8 @@ class CiteThisBook(SphinxDirective):
             ]
         fields = {
             "title": config.html_title, "author": f"{{{config.author}}}", "edition": which.name,
-            "year": which.date[:4], "date": which.date, "doi": which.doi, "url": config.html_baseurl,
+            "year": which.date[:4], "date": which.date, "doi": which.doi,
+            "url": config.html_baseurl,
         }  # fmt: skip
         key = re.sub(r"[^a-z]+", "-", config.html_title.lower())
         lines = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]

@@ -13,16 +13,19 @@ from bs4 import NavigableString
 
 #: Signs that are said by another word than their name in Unicode.
 WORDS = {
-    "=": "equals", "+": "plus", "−": "minus", "-": "minus", "±": "plus or minus", "∓": "minus or plus",
-    "(": "open bracket", ")": "close bracket", "[": "open square bracket", "]": "close square bracket",
-    "{": "open brace", "}": "close brace", ",": ",", ";": ";", ":": ":", "/": "over", "⋅": "dot", "→": "goes to",
-    "≈": "is about", "≠": "is not equal to", "<": "is less than", ">": "is greater than", "≤": "is at most",
-    "≥": "is at least", "∑": "the sum", "∫": "the integral", "⋯": "and so on", "…": "and so on", "?": "question mark",
-    "⟺": "if and only if", "⟹": "implies", "∈": "in", "∥": "parallel", "⊥": "perpendicular", "∞": "infinity",
-    ".": "", "!": "factorial", "%": "per cent", "ϵ": "epsilon", "ϕ": "phi", "∂": "partial", "∘": "degrees",
-    "cos": "cosine", "sin": "sine", "tan": "tangent", "cot": "cotangent", "arccos": "arc cosine", "acos": "arc cosine",
-    "arcsin": "arc sine", "arctan": "arc tangent", "exp": "exponential", "det": "determinant", "lim": "the limit",
-    "log": "logarithm", "ln": "natural logarithm", "diag": "diagonal", "max": "maximum", "min": "minimum",
+    "=": "equals", "+": "plus", "−": "minus", "-": "minus", "±": "plus or minus",
+    "∓": "minus or plus", "(": "open bracket", ")": "close bracket", "[": "open square bracket",
+    "]": "close square bracket", "{": "open brace", "}": "close brace", ",": ",", ";": ";",
+    ":": ":", "/": "over", "⋅": "dot", "→": "goes to", "≈": "is about", "≠": "is not equal to",
+    "<": "is less than", ">": "is greater than", "≤": "is at most", "≥": "is at least",
+    "∑": "the sum", "∫": "the integral", "⋯": "and so on", "…": "and so on", "?": "question mark",
+    "⟺": "if and only if", "⟹": "implies", "∈": "in", "∥": "parallel", "⊥": "perpendicular",
+    "∞": "infinity", ".": "", "!": "factorial", "%": "per cent", "ϵ": "epsilon", "ϕ": "phi",
+    "∂": "partial", "∘": "degrees", "cos": "cosine", "sin": "sine", "tan": "tangent",
+    "cot": "cotangent", "arccos": "arc cosine", "acos": "arc cosine", "arcsin": "arc sine",
+    "arctan": "arc tangent", "exp": "exponential", "det": "determinant", "lim": "the limit",
+    "log": "logarithm", "ln": "natural logarithm", "diag": "diagonal", "max": "maximum",
+    "min": "minimum",
 }  # fmt: skip
 ACCENTS = {
     "^": "hat",

@@ -182,10 +182,20 @@ def fill(app, doctree, docname):
             made.append(section)
 
         found = sorted(terms(app).items(), key=lambda item: item[0].casefold())
-        part("Terms", [
-            entry(app, docname, [nodes.Text(name)], (GLOSSARY, anchor), uses["term", key] or said(app, texts, name))
-            for name, anchor in found for key in [name.casefold()]
-        ])  # fmt: skip
+        part(
+            "Terms",
+            [
+                entry(
+                    app,
+                    docname,
+                    [nodes.Text(name)],
+                    (GLOSSARY, anchor),
+                    uses["term", key] or said(app, texts, name),
+                )
+                for name, anchor in found
+                for key in [name.casefold()]
+            ],
+        )
         part("Symbols", [
             # a link of words: those are heard
             entry(app, docname, name, (NOTATION, section), [], formula.deepcopy())

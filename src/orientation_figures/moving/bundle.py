@@ -13,7 +13,8 @@ from ..style import STYLE
 
 FOLDER = Path(__file__).parent
 SHARED = (
-    "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address", "shared",
+    "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address",
+    "shared",
 )  # fmt: skip
 #: What ``pictures`` describes, and ``javascript`` has translated.
 PICTURES = sorted(

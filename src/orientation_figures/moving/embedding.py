@@ -16,25 +16,30 @@ from . import bundle
 FOLDER = "embed"
 ELEMENT = "orientation-figure-1"
 PAGE = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>A figure of Orientation of Reference Frames: {kind}</title>
+<html lang="en"><head><meta charset="utf-8">
+<title>A figure of Orientation of Reference Frames: {kind}</title>
 <meta name="viewport" content="width=device-width"><meta name="robots" content="noindex">
 <link rel="icon" href="data:,">
-<style>html {{ --pst-color-background: #fff; background: #fff; color: #1d2125; font: 16px/1.6 system-ui, sans-serif; }}
+<style>html {{ --pst-color-background: #fff; background: #fff; color: #1d2125;
+font: 16px/1.6 system-ui, sans-serif; }}
 html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212; color: #eceff2; }}
 body {{ margin: 0; padding: 8px; }} figure {{ margin: 0; }} .world {{ height: 540px !important; }}
-.source {{ margin: 0.4rem 0 0; font-size: 0.8rem; text-align: right; }} .source a {{ color: inherit; }}
+.source {{ margin: 0.4rem 0 0; font-size: 0.8rem; text-align: right; }}
+.source a {{ color: inherit; }}
 {style}</style><link rel="stylesheet" href="../_static/moving/{sheet}.css">
 <script>
 {{
   const asked = new URLSearchParams(location.search).get('theme');
   const dark = asked ? asked === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
   document.documentElement.dataset.theme = dark ? 'dark' : 'light';
-  const tell = () => parent.postMessage({{ orientationFigure: 1, height: document.body.offsetHeight }}, '*');
+  const tell = () =>
+    parent.postMessage({{ orientationFigure: 1, height: document.body.offsetHeight }}, '*');
   addEventListener('load', () => new ResizeObserver(tell).observe(document.body));
 }}
 </script>{scripts}</head>
 <body><main>{figure}<p class="source">From
-<a href="../index.html" target="_blank" rel="noopener">Orientation of Reference Frames</a></p></main></body></html>
+<a href="../index.html" target="_blank" rel="noopener">Orientation of Reference Frames</a></p>
+</main></body></html>
 """
 SCRIPT = """(() => {
   const name = 'NAME', here = document.currentScript.src;
@@ -43,10 +48,12 @@ SCRIPT = """(() => {
     connectedCallback() {
       if (this.firstChild) return;
       const kind = (this.getAttribute('figure') ?? 'rotations').replace(/[^a-z_]/g, '');
-      const asked = this.getAttribute('theme'), theme = ['dark', 'light'].includes(asked) ? `?theme=${asked}` : '';
+      const asked = this.getAttribute('theme');
+      const theme = ['dark', 'light'].includes(asked) ? `?theme=${asked}` : '';
       const frame = document.createElement('iframe');
-      const state = this.getAttribute('state') ?? '';
-      frame.src = new URL(`${kind}.html${theme}${/^#[a-z0-9=._-]+$/i.test(state) ? state : ''}`, here).href;
+      const given = this.getAttribute('state') ?? '';
+      const state = /^#[a-z0-9=._-]+$/i.test(given) ? given : '';
+      frame.src = new URL(`${kind}.html${theme}${state}`, here).href;
       frame.title = this.getAttribute('title') ?? 'A figure that can be moved';
       frame.loading = 'lazy';
       frame.allow = 'accelerometer; gyroscope; magnetometer; clipboard-write';
@@ -75,9 +82,9 @@ def line(site, kind, fragment=""):
     ``site`` is the address of the book, ``fragment`` what
     :func:`orientation_figures.moving.address.fragment_of` gives.
 
-    >>> line('https://example.org/book/', 'gimbal')
-    '<iframe src="https://example.org/book/embed/gimbal.html" title="A figure that can be moved" loading="lazy" \
-width="100%" height="600" style="border: 0"></iframe>'
+    >>> print(line('https://example.org/book/', 'gimbal'))  # doctest: +NORMALIZE_WHITESPACE
+    <iframe src="https://example.org/book/embed/gimbal.html" title="A figure that can be moved"
+    loading="lazy" width="100%" height="600" style="border: 0"></iframe>
     """
     return (
         f'<iframe src="{site.rstrip("/")}/{FOLDER}/{kind}.html{fragment}" title="A figure that can '

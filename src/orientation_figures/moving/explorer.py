@@ -146,13 +146,12 @@ class SequenceExplorer(anywidget.AnyWidget):
     def _mathml(self):
         """The same as formulas that a browser sets by itself, each of which may begin a line."""
         *factors, product, left = map(_mathml, self.matrices)
-        locked = f"<msub><mrow>{SYMBOL}<mo>|</mo></mrow><mrow><mi>θ</mi><mo>=</mo>{_mathml(self._locked)}</mrow></msub>"
+        place = f"<mi>θ</mi><mo>=</mo>{_mathml(self._locked)}"
+        locked = f"<msub><mrow>{SYMBOL}<mo>|</mo></mrow><mrow>{place}</mrow></msub>"
         lines = [[SYMBOL + "<mo>=</mo>" + factors[0], *factors[1:]], ["<mo>=</mo>" + product]]
         lines.append([locked + "<mo>=</mo>" + left])
-        return "".join(
-            f'<div class="line">{"".join(f"<math><mrow>{part}</mrow></math>" for part in parts)}</div>'
-            for parts in lines
-        )
+        formulas = ("".join(f"<math><mrow>{part}</mrow></math>" for part in line) for line in lines)
+        return "".join(f'<div class="line">{formula}</div>' for formula in formulas)
 
     def lock(self):
         """Return a sentence that says where the sequence locks, and how far from there it

@@ -35,8 +35,9 @@ NAMES = {
     "angular_velocity_matrix": ("zxy",),
     **dict.fromkeys(
         (
-            "dcm_from_axis_angle", "quaternion_from_axis_angle", "dcm_from_quaternion", "quaternion_from_dcm",
-            "multiply_quaternions", "dcm_from_rotation_vector", "dcm_rate", "quaternion_rate",
+            "dcm_from_axis_angle", "quaternion_from_axis_angle", "dcm_from_quaternion",
+            "quaternion_from_dcm", "multiply_quaternions", "dcm_from_rotation_vector", "dcm_rate",
+            "quaternion_rate",
         )
     ),
 }  # fmt: skip

@@ -65,7 +65,8 @@ class GraphFigure(MovingFigure):
     Examples
     --------
     >>> from orientation_figures.moving import GraphFigure
-    >>> figure = GraphFigure(edges=[('A', 'N', 'z', 0.3), ('B', 'N', 'z', 0.5)], target='B', source='A')
+    >>> edges = [('A', 'N', 'z', 0.3), ('B', 'N', 'z', 0.5)]
+    >>> figure = GraphFigure(edges=edges, target='B', source='A')
     >>> figure.path, figure.dcm[0, 1].round(6).item()
     ('B - N - A', 0.198669)
     """

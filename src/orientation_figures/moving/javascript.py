@@ -22,7 +22,8 @@ COMMAND = "python -m orientation_figures.moving.javascript"
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 #: Words of a sheet that take what they are given in order, in both languages.
 _IN_ORDER = (
-    "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring", "shadow", "text",
+    "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring",
+    "shadow", "text",
 )  # fmt: skip
 _METHODS = {
     "append": "push",
@@ -33,9 +34,10 @@ _METHODS = {
 #: Where the words of the sheets stand; the pictures have a folder.
 _WORDS = FOLDER.parent / "words.py"
 _OPERATORS = {
-    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2), ast.Pow: ("**", 3),
-    ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Is: "===",
-    ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!", ast.USub: "-",
+    ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
+    ast.Pow: ("**", 3), ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">",
+    ast.GtE: ">=", ast.Is: "===", ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!",
+    ast.USub: "-",
 }  # fmt: skip
 #: How strongly what is no operation of two numbers binds.
 _STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}

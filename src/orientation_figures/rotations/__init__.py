@@ -14,7 +14,8 @@ from ..style import LIGHT, STYLE
 FOLDER = Path(__file__).parent
 #: What the page's figure has in the script's colours, in the tones of paper.
 _OWN = {
-    "graphite": "#474e57", "metal": "#a3abb4", "glass": "#5f86b8", "paper": "#ffffff", "lamp": "#d93025",
+    "graphite": "#474e57", "metal": "#a3abb4", "glass": "#5f86b8", "paper": "#ffffff",
+    "lamp": "#d93025",
     "star": "#e0a100", "ground": "#e9ecf0", "shade": "#cfd5dc",
 }  # fmt: skip
 _DARK = {
@@ -44,9 +45,9 @@ def style():
         return "".join(f"--{name}:{colour};" for name, colour in table.items())
 
     tones = "".join(
-        f"{own} .tone-{k}{{fill:{f'color-mix(in srgb,currentColor,{other} {part}%)' if part else 'currentColor'};"
-        "stroke:none}"
+        f"{own} .tone-{k}{{fill:{fill};stroke:none}}"
         for k, (part, other) in enumerate(_TONES)
+        for fill in [f"color-mix(in srgb,currentColor,{other} {part}%)" if part else "currentColor"]
     )
     names = "".join(f"{own} .{name}{{color:var(--{name})}}" for name in _OWN)
     flat = f"{own} :is(.ground,.shade,.muted,.star,.paper){{fill:currentColor}}"

@@ -40,8 +40,14 @@ def mountings(first, second, noise):
                         - second.dcms[j]
                     ).max()
                     if gap <= tolerance and both <= MOST_FAULTS:
-                        relation = {"inverse": inverse, "hand": False, "body": SAME_AXES, "world": SAME_AXES,
-                                    "body turn": body, "world turn": world}  # fmt: skip
+                        relation = {
+                            "inverse": inverse,
+                            "hand": False,
+                            "body": SAME_AXES,
+                            "world": SAME_AXES,
+                            "body turn": body,
+                            "world turn": world,
+                        }
                         found.append(Chain(reading, other, relation, both, rarity, float(gap)))
                         break
     return sorted(found, key=lambda chain: chain.cost)

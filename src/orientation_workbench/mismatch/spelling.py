@@ -82,8 +82,10 @@ CLEANING = (
     # Of a pose of SDF the first three numbers are a place.
     (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
     (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
-    (r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
-     r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""", " "),
+    (r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows"""
+     r"""|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
+     r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""",
+     " "),
     # Stamps of time, and the marks of a list.
     (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
     (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),

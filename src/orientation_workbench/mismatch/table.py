@@ -422,9 +422,14 @@ def readings(kind, declared, degrees_likely=False):
                 like = (name, option["value"])
                 alike = (like,) if more and like in SHARED else ()
                 longer.append(
-                    (chosen | {name: option["value"]}, faults + more, rarity + (0 if usual else option["rarity"]),
-                     words + said, shared + alike)
-                )  # fmt: skip
+                    (
+                        chosen | {name: option["value"]},
+                        faults + more,
+                        rarity + (0 if usual else option["rarity"]),
+                        words + said,
+                        shared + alike,
+                    )
+                )
         partial = longer
     return [
         {"kind": kind, "choices": chosen, "faults": faults, "rarity": rarity, "words": list(words),
@@ -443,8 +448,10 @@ def of_both(first, second):
     ]  # fmt: skip
     words = [
         f"in the {side} numbers {said}"
-        for side, reading in (("first", first), ("second", second)) for said in reading["words"] if said not in common
-    ]  # fmt: skip
+        for side, reading in (("first", first), ("second", second))
+        for said in reading["words"]
+        if said not in common
+    ]
     return faults, first["rarity"] + second["rarity"] + 0.1 * alike.bit_count(), words
 
 
@@ -488,9 +495,10 @@ TAUGHT = {
     "order": (_FOUR_QUESTIONS, ("exercises/convention-card.html#two-messages", "Two messages")),
     "sequence": (
         ("chapters/euler-angles.html#the-twelve-sequences", "The twelve sequences"),
-        ("exercises/back-from-a-matrix.html#three-machines-one-set-of-angles", "Three machines, "
-            "one "
-            "set of angles"),
+        (
+            "exercises/back-from-a-matrix.html#three-machines-one-set-of-angles",
+            "Three machines, one set of angles",
+        ),
     ),
     "axes of the turns": (
         ("chapters/euler-angles.html#body-fixed", "Body fixed"),
@@ -501,13 +509,19 @@ TAUGHT = {
         ("exercises/convention-card.html#eight-lines-of-code", "Eight lines of code"),
     ),
     "signs": (
-        ("chapters/simple-orientations.html#who-has-turned-you-or-the-vector", "Who has turned, "
-            "you "
-            "or the vector?"),
+        (
+            "chapters/simple-orientations.html#who-has-turned-you-or-the-vector",
+            "Who has turned, you or the vector?",
+        ),
         _A_KNEE,
     ),
-    "unit": (_FOUR_QUESTIONS, ("exercises/cases-from-practice.html#which-way-is-the-phone-pointing",
-                             "Which way is the phone pointing?")),
+    "unit": (
+        _FOUR_QUESTIONS,
+        (
+            "exercises/cases-from-practice.html#which-way-is-the-phone-pointing",
+            "Which way is the phone pointing?",
+        ),
+    ),
     "place of the angle": (
         ("chapters/axis-and-angle.html#a-direction-that-stays", "Axis and angle"),
         ("exercises/axis-and-angle.html#a-folding-bicycle", "A folding bicycle"),
@@ -518,8 +532,10 @@ TAUGHT = {
     ),
     "inverse quaternion": (
         _FOUR_QUESTIONS,
-        ("exercises/orientation-from-sensors.html#three-instruments-three-conventions",
-         "Three instruments, three conventions"),
+        (
+            "exercises/orientation-from-sensors.html#three-instruments-three-conventions",
+            "Three instruments, three conventions",
+        ),
         ("exercises/convention-card.html#an-old-spacecraft", "An old spacecraft"),
     ),
     "inverse Euler angles": (_THE_WAY_BACK, _A_KNEE),
@@ -527,20 +543,27 @@ TAUGHT = {
     "inverse axis and angle": (_THE_WAY_BACK, _A_SHAFT),
     "body": (
         (f"{_CARD}#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
-        ("exercises/direction-cosine-matrices.html#a-phone-at-the-windscreen", "A phone at the windscreen"),
+        (
+            "exercises/direction-cosine-matrices.html#a-phone-at-the-windscreen",
+            "A phone at the windscreen",
+        ),
     ),
     "world": (
         (f"{_CARD}#frames-of-the-earth-and-of-machines", "Frames of the Earth and of machines"),
-        ("exercises/reference-frames.html#where-is-the-north-a-phone-finds-out",
-         "Where is the north? A phone finds out"),
+        (
+            "exercises/reference-frames.html#where-is-the-north-a-phone-finds-out",
+            "Where is the north? A phone finds out",
+        ),
     ),
     "hand": (
-        ("chapters/reference-frames.html#can-numbers-tell-left-from-right", "Can numbers tell "
-            "left from right?"),
+        (
+            "chapters/reference-frames.html#can-numbers-tell-left-from-right",
+            "Can numbers tell left from right?",
+        ),
         ("exercises/convention-card.html#a-game-engine", "A game engine"),
     ),
     "turn": ((f"{_CARD}#exercises", "Hand and eye"), _A_KNEE),
-}  # fmt: skip
+}
 
 
 def whole_table():

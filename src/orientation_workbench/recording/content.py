@@ -19,14 +19,15 @@ if TYPE_CHECKING:
 #: Of what a heading may say, the sign that it speaks of a sensor.
 HEADINGS = {
     "quaternion": r"quat|^q[0-3wxyz]?$|orientation|attitude|rotation.?vector|\bq\b",
-    "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b|\bpsi\b|\bangle\b",
+    "angles": r"roll|pitch|yaw|euler|heading|azimuth|\balpha\b|\bbeta\b|\bgamma\b|\bphi\b|\btheta\b"
+    r"|\bpsi\b|\bangle\b",
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
     "magnetometer": r"mag(?!nitude)|field|compass|^[mbh]$",
     "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
     "accelerometer": r"acc|force|^a\b|^fib|^f$",
-    "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset|gps|^axis "
-    r"[pid]",
+    "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset"
+    r"|gps|^axis [pid]",
 }
 #: What a unit says of a sensor, where the heading says nothing else.
 UNITS = {
@@ -246,7 +247,8 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             f"{table.name}: column {column} looks like a time, but its steps of "
             f"{step:g} fit no unit"
         )
-    words = f"{column}, in {next((unit for unit, size in UNITS_OF_TIME.items() if size == scale), f'{scale:g} s')}"
+    units = [unit for unit, size in UNITS_OF_TIME.items() if size == scale]
+    words = f"{column}, in {units[0] if units else f'{scale:g} s'}"
     if named and named != scale:
         words += f" (its heading says {_unit(column)})"
     return k, values * scale, words, False

@@ -82,7 +82,8 @@ def fit_ellipsoid(values, most=0.1):
     Examples
     --------
     >>> ways = np.random.default_rng(1).normal(size=(40, 3))
-    >>> fit = fit_ellipsoid(ways / np.linalg.norm(ways, axis=1, keepdims=True) * [40, 50, 60] + [5, 0, 0])
+    >>> units = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    >>> fit = fit_ellipsoid(units * [40, 50, 60] + [5, 0, 0])
     >>> fit.offset.round(6) + 0.0, np.diag(fit.shape).round(3)
     (array([5., 0., 0.]), array([1.233, 0.986, 0.822]))
     """

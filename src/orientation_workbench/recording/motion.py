@@ -332,8 +332,8 @@ def fit_scale(
     Returns
     -------
     scale, its standard deviation, bias of shape ``(3,)``, its standard deviations, and what is left
-        The last in radians. The true angular velocity is ``scale * (rates - bias)``. ``None`` if the poses do not
-        suffice.
+        The last in radians. The true angular velocity is ``scale * (rates - bias)``. ``None`` if
+        the poses do not suffice.
     """
     ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
     ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)

@@ -156,9 +156,9 @@ def as_fragment(examined):
         for picture, words in plots(examined)
     )
     return (
-        f'<div class="on-the-bench"><style>{STYLE}</style><p>{_in_short(examined)}</p><table>{rows}</table>{pictures}'
-        "<details><summary>The code that corrects "
-        f"it</summary><pre>{escape(as_code(examined))}</pre></details></div>"
+        f'<div class="on-the-bench"><style>{STYLE}</style><p>{_in_short(examined)}</p>'
+        f"<table>{rows}</table>{pictures}<details><summary>The code that corrects it</summary>"
+        f"<pre>{escape(as_code(examined))}</pre></details></div>"
     )
 
 
@@ -193,8 +193,8 @@ body { max-width: 60rem; margin: 1rem auto; padding: 0 1rem; }
 """
 STYLE = """
 .on-the-bench table { border-collapse: collapse; width: 100%; }
-.on-the-bench td, .on-the-bench th { text-align: left; vertical-align: top; padding: .35rem .6rem .35rem 0;
-border: 0; border-top: 1px solid #8886; overflow-wrap: anywhere; }
+.on-the-bench td, .on-the-bench th { text-align: left; vertical-align: top;
+padding: .35rem .6rem .35rem 0; border: 0; border-top: 1px solid #8886; overflow-wrap: anywhere; }
 .on-the-bench th { font-weight: 600; min-width: 8rem; } .on-the-bench p { margin: .2rem 0; }
 .on-the-bench tr > td:first-child { white-space: nowrap; }
 .on-the-bench tr.wrong > td:first-child { color: #c62828; font-weight: 700; }
@@ -203,8 +203,9 @@ border: 0; border-top: 1px solid #8886; overflow-wrap: anywhere; }
 .on-the-bench figure svg { width: 100%; height: auto; }
 .on-the-bench figcaption { padding: 0 .8rem .6rem; color: #222; }
 .on-the-bench pre { overflow-x: auto; } .on-the-bench summary { cursor: pointer; }
-@media (prefers-color-scheme: dark) { :root:not([data-theme=light]) .on-the-bench tr.wrong > td:first-child
-{ color: #ff8a80; } :root:not([data-theme=light]) .on-the-bench tr.look > td:first-child { color: #ffb74d; } }
+@media (prefers-color-scheme: dark) {
+:root:not([data-theme=light]) .on-the-bench tr.wrong > td:first-child { color: #ff8a80; }
+:root:not([data-theme=light]) .on-the-bench tr.look > td:first-child { color: #ffb74d; } }
 [data-theme=dark] .on-the-bench tr.wrong > td:first-child { color: #ff8a80; }
 [data-theme=dark] .on-the-bench tr.look > td:first-child { color: #ffb74d; }
 @media (max-width: 40rem) { .on-the-bench :is(table, tbody, tr, td, th) { display: block; }

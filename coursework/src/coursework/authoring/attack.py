@@ -477,8 +477,9 @@ def of_words(name, options, write, allowed=lambda word: True):
 # Numbers with their units: what suggests itself for numbers, in units that are often asked for.
 
 UNITS = (
-    "N m", "N", "m", "m/s", "m/s^2", "kg", "s", "J", "W", "Pa", "rad/s", "1", "kN", "kN m", "N/m", "mm", "kPa", "MPa",
-    "Hz", "rad", "deg", "m^2", "m^3", "kg/m^3", "kg m^2", "N s", "K", "A", "V", "km/h", "kJ", "kW", "cm", "h",
+    "N m", "N", "m", "m/s", "m/s^2", "kg", "s", "J", "W", "Pa", "rad/s", "1", "kN", "kN m", "N/m",
+    "mm", "kPa", "MPa", "Hz", "rad", "deg", "m^2", "m^3", "kg/m^3", "kg m^2", "N s", "K", "A", "V",
+    "km/h", "kJ", "kW", "cm", "h",
 )  # fmt: skip
 
 

@@ -480,7 +480,7 @@ class AuthoredQuestion:
         chosen += [(text, "mistake", [], None) for text in self.near]
         if solution and code:
             chosen.append((code_text(code), "mistake", [], solution))
-        places = pages.seal()
+        places = pages.seal(f"{code} {self.public.salt}")
         lockers = []
         for text, outcome, names, page in chosen:
             place = (places[page], page) if page else ()
@@ -576,9 +576,9 @@ class Pages:
         start = len(self.first.sealed) if self.first else 0
         return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
-    def seal(self) -> dict[bytes, int]:
+    def seal(self, code: str) -> dict[bytes, int]:
         """Seal all pages that are not sealed with the first variant; gives the place of each by its
-        key.
+        key. Which of them are empty follows from the code of the solutions.
         """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
@@ -592,7 +592,7 @@ class Pages:
             self.sealed.append(sealing.seal(content, key))
         if not self.first:
             count = -(-len(self.sealed) // PAGES_TOGETHER) * PAGES_TOGETHER
-            self.sealed = sealing.pages_filled_up(self.sealed, count)
+            self.sealed = sealing.pages_filled_up(self.sealed, count, code)
         return places
 
 

@@ -22,7 +22,8 @@ CELLS = [
 question('first-steps/area', kind='expression', symbols={'b': (0.5, 3), 'h': (0.5, 3)}, worth=1,
          mistakes={'This is the area of the rectangle: the triangle is half of it.': b * h},
          hints={'authored': ['Draw the rectangle with the sides $b$ and $h$ around the triangle.']},
-         solution='Two such triangles make a rectangle with the sides $b$ and $h$, so one of them has the area $bh/2$.')
+         solution='Two such triangles make a rectangle with the sides $b$ and $h$, '
+         'so one of them has the area $bh/2$.')
 ### END HIDDEN TESTS""",
     "## Slope\n\nGive the derivative of $x^2\\sin(x)$ as `slope`, in any form.",
     "### BEGIN SOLUTION\nslope = sm.diff(x**2 * sm.sin(x), x)\n### END SOLUTION",
@@ -38,15 +39,16 @@ question('first-steps/slope', kind='expression', symbols='x', worth=2,
     "    return sum(numbers) / len(numbers)\n### END SOLUTION",
     """check('first-steps/mean', mean)
 ### BEGIN HIDDEN TESTS
-question('first-steps/mean', kind='function', result='expression', calls=[[[2, 4, 9]], [[-1.5]], [[0.25, 3.5]]],
-         worth=3, mistakes={'This is the sum; it is still to be divided by the number of terms.': sum})
+question('first-steps/mean', kind='function', result='expression', worth=3,
+         calls=[[[2, 4, 9]], [[-1.5]], [[0.25, 3.5]]],
+         mistakes={'This is the sum; it is still to be divided by the number of terms.': sum})
 ### END HIDDEN TESTS""",
 ]
 FILES = {
     "course.toml": 'title = "{title}"\n',
     "requirements.txt": "--find-links wheels\ncoursework-tools\njupyterlab\npytest\n",
     ".gitignore": "build/\n.coursework/\n.ipynb_checkpoints/\n__pycache__/\n",
-    "tests/test_course.py": '''"""Every question is tried, and what is released is what the sources make."""
+    "tests/test_course.py": '''"""Every question is tried, and what is released is up to date."""
 
 import pytest
 
@@ -55,7 +57,9 @@ from coursework.authoring.release import differences, release
 from coursework.authoring.selftest import selftest
 
 COURSE = find_course(__file__.rpartition("tests")[0])
-needs_solutions = pytest.mark.skipif(not any(COURSE.sources.glob("*.ipynb")), reason="the solutions are not here")
+needs_solutions = pytest.mark.skipif(
+    not any(COURSE.sources.glob("*.ipynb")), reason="the solutions are not here"
+)
 
 
 @needs_solutions
@@ -101,7 +105,7 @@ Exercises in notebooks that check themselves and hold no answers.
 | folder | what | who sees it |
 |---|---|---|
 | `solutions/` | the notebooks with solutions, which you write | you alone |
-| `exercises/` | the notebooks with blanks, and the sealed questions; made, never edited | everybody |
+| `exercises/` | the notebooks with blanks, and the sealed questions; never edited | everybody |
 | `wheels/` | the packages of coursework that this course was made with | everybody |
 
     python -m pip install -r requirements.txt
@@ -111,14 +115,14 @@ Exercises in notebooks that check themselves and hold no answers.
     coursework selftest                  # tries every question, looks for leaks
     coursework grade SUBMISSIONS --out MARKS
 
-**Before you publish this folder**: `solutions/` holds every answer. Keep it in a private repository of its own, as a
-submodule:
+**Before you publish this folder**: `solutions/` holds every answer. Keep it in a private repository
+of its own, as a submodule:
 
     git rm -r --cached solutions
     git submodule add PRIVATE-ADDRESS solutions
 
-Whoever gets this folder without the submodule can do everything but release and grade; the tests that need the
-solutions are skipped there.
+Whoever gets this folder without the submodule can do everything but release and grade; the tests
+that need the solutions are skipped there.
 """,
 }
 

@@ -64,8 +64,8 @@ README = """Exercises of {title}
        environment\\Scripts\\activate
        python -m pip install -r requirements.txt
 
-   The folder "environment" is Python with what the exercises need, apart from that of your system. If somebody gave you
-   a folder "wheels" for a room without a network, the last line is
+   The folder "environment" is Python with what the exercises need, apart from that of your
+   system. If somebody gave you a folder "wheels" for a room without a network, the last line is
 
        python -m pip install --no-index --find-links wheels -r requirements.txt
 
@@ -73,15 +73,17 @@ README = """Exercises of {title}
 
        jupyter lab
 
-Answer in place of the dots and run the check below each question. It says whether the answer is right or what
-was mixed up. Your progress is kept in the folder .coursework beside the notebooks and nowhere else.
+Answer in place of the dots and run the check below each question. It says whether the answer is
+right or what was mixed up. Your progress is kept in the folder .coursework beside the notebooks
+and nowhere else.
 
 When there is a newer archive, do not unpack it over your work. Run
 
        python -m coursework update exercises.zip
 
-in this folder: it adds what is new, puts the new package in place of the old one, tells how to install it,
-replaces the notebooks that you have not changed, and leaves every one that you have changed as it is.
+in this folder: it adds what is new, puts the new package in place of the old one, tells how to
+install it, replaces the notebooks that you have not changed, and leaves every one that you have
+changed as it is.
 """
 ABOUT = """Metadata-Version: 2.1
 Name: {name}
@@ -195,7 +197,8 @@ def dated(
         files = unknown + named("diff", "--name-only", "--relative", "HEAD")
     # Of a file that is gone, the folder that it stood in tells when.
     written = [(path if path.exists() else path.parent).stat().st_mtime for path in files]
-    return f"{stated}.post{datetime.fromtimestamp(max([int(committed or 0), *written]), UTC):%Y%m%d%H%M%S}"
+    latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
+    return f"{stated}.post{latest:%Y%m%d%H%M%S}"
 
 
 def _own_version(root: Path) -> str:

@@ -103,11 +103,18 @@ def questions_wheel(course, module, folder):
     sealed = sorted(course.sealed.rglob("*.json"))
     version = dated("1.0", f"{module}-1.0", course.sealed, files=sealed)
     return write_wheel(
-        folder, module.replace("_", "-"), version, f"Sealed questions of {course.title}", ["coursework-checks"],
+        folder,
+        module.replace("_", "-"),
+        version,
+        f"Sealed questions of {course.title}",
+        ["coursework-checks"],
         {f"{module}/__init__.py": b""}
-        | {f"{module}/sealed/{path.relative_to(course.sealed).as_posix()}": path.read_bytes() for path in sealed},
+        | {
+            f"{module}/sealed/{path.relative_to(course.sealed).as_posix()}": path.read_bytes()
+            for path in sealed
+        },
         f"[coursework.plugins]\n{module} = {module}\n",
-    )  # fmt: skip
+    )
 
 
 def _maker():

@@ -398,7 +398,9 @@ def _even_out(name: str, code: str, course: Course) -> None:
         own = [one for one in ones[1:] if contents[0]["questions"][question].get("pages")]
         most = max((len(one.get("pages") or ()) for one in own), default=0)
         for one in own if most else ():
-            one["pages"] = sealing.pages_filled_up(one.get("pages") or [], most)
+            one["pages"] = sealing.pages_filled_up(
+                one.get("pages") or [], most, f"{code} {one['salt']}"
+            )
     for file, content in zip(files, contents, strict=True):
         file.write_text(_as_text(content), "utf8")
 

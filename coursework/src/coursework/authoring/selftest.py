@@ -69,7 +69,8 @@ COLUMNS = (
 #: On a narrow screen each question stands by itself, and each cell says what it is of.
 STYLE = """
 :root{color-scheme:light dark}
-body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;overflow-wrap:break-word}
+body{font:16px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;
+overflow-wrap:break-word}
 section{border-top:1px solid #8888;margin-top:2rem}
 img{background:#fff;height:auto;max-width:100%}
 pre,math[display=block]{overflow-x:auto}

@@ -191,8 +191,11 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
     """That share in words, for authors and for instructors; and how many variants it is of, where
     there are any.
 
-    >>> said_beyond({"levers/arm": {"worth": 1, "tries": [0, 20, None]}, "levers/plain": {"worth": 2, "tries": [0]}})
-    '83% of 3 points are behind more than 65,536 tries of a script, as far as 3 of 4 variants were attacked'
+    >>> arm, plain = {"worth": 1, "tries": [0, 20, None]}, {"worth": 2, "tries": [0]}
+    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[:62]
+    '83% of 3 points are behind more than 65,536 tries of a script,'
+    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[63:]
+    'as far as 3 of 4 variants were attacked'
     """
     from .attack import BUDGET  # needed here alone: it brings NumPy
 
@@ -207,6 +210,20 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
         f"{BUDGET:,} tries of a "
         f"script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
     )
+
+
+def said_found(one: Measured) -> str:
+    """What was measured of a question in words, for a table.
+
+    >>> [said_found({"tries": tries}) for tries in ([0, 2000, 31, None], [4], [0])]
+    ['after 31 tries, 2 of 3 variants', 'after 4 tries', 'not found']
+    """
+    tries = [count for count in one["tries"] if count is not None]
+    found = [count for count in tries if count]
+    if not found:
+        return "not found" if tries else "nothing to try"
+    said = f"after {min(found):,} {'try' if min(found) == 1 else 'tries'}"
+    return f"{said}, {len(found)} of {len(tries)} variants" if len(tries) > 1 else said
 
 
 def measured_questions(sources: str | Path) -> dict[str, Measured]:

@@ -101,10 +101,8 @@ def _above(source, question):
 
 def _rubric(question):
     worths = question.rubric if isinstance(question.rubric, dict) else {}
-    lines = "".join(
-        f"<li>{to_html(line)}{f' ({worths[line]:g} of {question.worth})' if line in worths else ''}</li>"
-        for line in question.rubric
-    )
+    shares = {line: f" ({worth:g} of {question.worth})" for line, worth in worths.items()}
+    lines = "".join(f"<li>{to_html(line)}{shares.get(line, '')}</li>" for line in question.rubric)
     return f"<h3>What a person looks for</h3><ul>{lines}</ul>" if lines else ""
 
 

@@ -390,8 +390,8 @@ def _without_sign(place, size):
 
 
 WRAPS = (
-    _wrapped(2 * np.pi), _wrapped(360), _other_way(np.pi, True), _other_way(np.pi, False), _other_way(180, True),
-    _other_way(180, False),
+    _wrapped(2 * np.pi), _wrapped(360), _other_way(np.pi, True), _other_way(np.pi, False),
+    _other_way(180, True), _other_way(180, False),
 )  # fmt: skip
 
 
@@ -409,9 +409,10 @@ def _steps(price, shapes, *works):
 
 #: Numbers are shape 0 here, vectors 1, matrices 2.
 NUMBERS_ALONE = (
-    np.negative, np.degrees, np.sin, np.cos, lambda x: x / 2, np.tan, np.sqrt, np.square, np.reciprocal, np.radians,
-    np.arccos, np.arcsin, np.arctan, lambda x: 2 * x, lambda x: np.pi - x, lambda x: np.pi / 2 - x,
-    lambda x: 1 - x, lambda x: np.exp(-x), lambda x: np.sqrt(1 - x * x), lambda x: x**3, np.abs,
+    np.negative, np.degrees, np.sin, np.cos, lambda x: x / 2, np.tan, np.sqrt, np.square,
+    np.reciprocal, np.radians, np.arccos, np.arcsin, np.arctan, lambda x: 2 * x,
+    lambda x: np.pi - x, lambda x: np.pi / 2 - x, lambda x: 1 - x, lambda x: np.exp(-x),
+    lambda x: np.sqrt(1 - x * x), lambda x: x**3, np.abs,
 )  # fmt: skip
 OPERATIONS = (
     *_steps(1, (0,), *NUMBERS_ALONE[:4]),
@@ -419,37 +420,46 @@ OPERATIONS = (
     *_steps(1, (1,), np.negative, _unit, np.degrees, lambda v: np.linalg.norm(v, axis=-1)),
     *_steps(2, (1,), *WRAPS),
     *_steps(
-        2, (1,), lambda v: np.roll(v, 1, -1), lambda v: np.roll(v, -1, -1), lambda v: v[..., ::-1], np.radians,
-        lambda v: np.concatenate([v[..., :1], -v[..., 1:]], -1), lambda v: v / 2, lambda v: v.sum(-1), _crossed,
-        np.diff, np.arccos, np.arcsin, np.sin, np.cos, np.square, np.abs,
-        *(_entry(place) for place in range(4)), *(_without_sign(place, 3) for place in range(3)),
+        2, (1,), lambda v: np.roll(v, 1, -1), lambda v: np.roll(v, -1, -1), lambda v: v[..., ::-1],
+        np.radians, lambda v: np.concatenate([v[..., :1], -v[..., 1:]], -1), lambda v: v / 2,
+        lambda v: v.sum(-1), _crossed, np.diff, np.arccos, np.arcsin, np.sin, np.cos, np.square,
+        np.abs, *(_entry(place) for place in range(4)),
+        *(_without_sign(place, 3) for place in range(3)),
     ),
     *_steps(1, (2,), _turn_round, _inverse, _vee),
     *_steps(
-        2, (2,), np.negative, np.linalg.det, lambda m: np.trace(m, axis1=-2, axis2=-1), _unit, lambda m: m.mean(-2),
-        lambda m: np.linalg.svd(m, compute_uv=False), lambda m: m.sum(-2), lambda m: np.linalg.norm(m, axis=-1),
-        lambda m: _turn_round(m)[..., ::-1, :], lambda m: np.diagonal(m, axis1=-2, axis2=-1),
-        lambda m: np.linalg.norm(m, axis=(-2, -1)), lambda m: (np.trace(m, axis1=-2, axis2=-1) - 1) / 2,
-        lambda m: np.linalg.eigvalsh(m), lambda m: np.linalg.eigh(m)[1][..., -1], lambda m: m - np.eye(3),
-        lambda m: m + np.eye(3), lambda m: m * np.sign(np.diagonal(m, axis1=-2, axis2=-1))[..., None],
-        *(_entry(row, slice(None)) for row in range(3)), *(_entry(slice(None), column) for column in range(3)),
+        2, (2,), np.negative, np.linalg.det, lambda m: np.trace(m, axis1=-2, axis2=-1), _unit,
+        lambda m: m.mean(-2), lambda m: np.linalg.svd(m, compute_uv=False), lambda m: m.sum(-2),
+        lambda m: np.linalg.norm(m, axis=-1), lambda m: _turn_round(m)[..., ::-1, :],
+        lambda m: np.diagonal(m, axis1=-2, axis2=-1), lambda m: np.linalg.norm(m, axis=(-2, -1)),
+        lambda m: (np.trace(m, axis1=-2, axis2=-1) - 1) / 2, lambda m: np.linalg.eigvalsh(m),
+        lambda m: np.linalg.eigh(m)[1][..., -1], lambda m: m - np.eye(3), lambda m: m + np.eye(3),
+        lambda m: m * np.sign(np.diagonal(m, axis1=-2, axis2=-1))[..., None],
+        *(_entry(row, slice(None)) for row in range(3)),
+        *(_entry(slice(None), column) for column in range(3)),
     ),
     *_steps(3, (2,), *(_entry(row, column) for row in range(3) for column in range(3))),
     *_steps(1, (0, 0), np.multiply, np.divide, np.add, np.subtract),
     *_steps(
-        2, (0, 0), np.arctan2, np.hypot, lambda x, y: np.sqrt(x * x - y * y), lambda x, y: x * np.sin(y),
-        lambda x, y: x * np.cos(y), lambda x, y: x * np.tan(y), lambda x, y: np.arccos(x / y),
+        2, (0, 0), np.arctan2, np.hypot, lambda x, y: np.sqrt(x * x - y * y),
+        lambda x, y: x * np.sin(y), lambda x, y: x * np.cos(y), lambda x, y: x * np.tan(y),
+        lambda x, y: np.arccos(x / y),
     ),
     *_steps(1, (1, 1), np.cross, _dot, _angle, np.add, np.subtract, _quotient, _outer),
     *_steps(
-        1, (1, 1), lambda v, w: np.stack(np.broadcast_arrays(v, w), -2), lambda v, w: np.cross(v, np.cross(w, v)),
-        lambda v, w: _unit(np.cross(v, w)), lambda v, w: _unit(v + w),
+        1, (1, 1), lambda v, w: np.stack(np.broadcast_arrays(v, w), -2),
+        lambda v, w: np.cross(v, np.cross(w, v)), lambda v, w: _unit(np.cross(v, w)),
+        lambda v, w: _unit(v + w),
     ),
-    *_steps(2, (1, 1), np.multiply, lambda v, w: (v + w) / 2, lambda v, w: v - _dot(v, _unit(w))[..., None] * _unit(w)),
+    *_steps(
+        2, (1, 1), np.multiply, lambda v, w: (v + w) / 2,
+        lambda v, w: v - _dot(v, _unit(w))[..., None] * _unit(w),
+    ),
     *_steps(1, (0, 1), lambda x, v: x[..., None] * v, lambda x, v: v / x[..., None]),
     *_steps(1, (0, 2), lambda x, m: x[..., None, None] * m, lambda x, m: m / x[..., None, None]),
     *_steps(
-        1, (2, 1), lambda m, v: np.einsum("...ij,...j->...i", m, v), lambda m, v: np.einsum("...ji,...j->...i", m, v),
+        1, (2, 1), lambda m, v: np.einsum("...ij,...j->...i", m, v),
+        lambda m, v: np.einsum("...ji,...j->...i", m, v),
         lambda m, v: np.einsum("...ij,...j->...i", _inverse(m), v),
     ),
     *_steps(1, (2, 2), np.matmul, lambda m, n: m @ _turn_round(n), lambda m, n: _turn_round(m) @ n),
@@ -457,8 +467,8 @@ OPERATIONS = (
     *_steps(1, (1, 1, 1), lambda v, w, u: np.stack(np.broadcast_arrays(v, w, u), -2)),
     *_steps(1, (2, 2, 2), lambda m, n, k: m + n + k, lambda m, n, k: m @ n @ k),
     *_steps(
-        2, (0, 0, 0), lambda x, y, z: np.stack(np.broadcast_arrays(x, y, z), -1), lambda x, y, z: x * y / z,
-        lambda x, y, z: x + y + z,
+        2, (0, 0, 0), lambda x, y, z: np.stack(np.broadcast_arrays(x, y, z), -1),
+        lambda x, y, z: x * y / z, lambda x, y, z: x + y + z,
     ),
 )  # fmt: skip
 

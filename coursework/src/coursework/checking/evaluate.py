@@ -9,13 +9,19 @@ This reads the plain data of :mod:`coursework.checking.plain` only. It never bui
 from it, and whatever the data holds, its work is bounded.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TypeAlias, cast
 
 import mpmath
 
 MP = mpmath.MPContext()
 MP.dps = 40
+#: A real or a complex number.
+Number: TypeAlias = "mpmath.mpf | mpmath.mpc"
+#: What a node is at a point: a number or a truth value, a case of a Piecewise with its condition,
+#: or the error that working it out has led to.
+Result: TypeAlias = "Number | bool | tuple[Result, ...] | Exception"
+Node: TypeAlias = Sequence[str | int]
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
@@ -49,7 +55,7 @@ class UnknownSymbol(ValueError):
     """An expression holds a symbol that the question does not have; its name is the argument."""
 
 
-def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
+def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
     """Give the value of every node: real or complex numbers, truth values, or the error each has.
 
     Parameters
@@ -62,7 +68,8 @@ def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
     An error is kept as the value of its node and is raised by :func:`number`, since a branch that
     is not taken may be undefined.
     """
-    results, work = [], 0
+    results: list[Result] = []
+    work = 0
     for node in nodes:
         try:
             work += _work(node, results)
@@ -84,7 +91,7 @@ def values(nodes: list[Any], point: Mapping[str, Any]) -> list[Any]:
     return results
 
 
-def number(result):
+def number(result: Result) -> Number:
     """The number that one of the results of :func:`values` is, or raise the error that it is."""
     if isinstance(result, Exception):
         raise result
@@ -93,7 +100,7 @@ def number(result):
     return result
 
 
-def real(result: Any, rest: Any = 0) -> Any:
+def real(result: Result, rest: Number = 0) -> Number:
     """The real number that a result is; raises ``ValueError`` where its imaginary part is more than
     ``rest``.
     """
@@ -107,9 +114,13 @@ def real(result: Any, rest: Any = 0) -> Any:
     return result
 
 
-def _work(node, results):
-    operation, *children = node
-    if operation in ("symbol", "constant", "integer", "rational", "float"):
+#: What holds digits or a name, and no other nodes.
+LEAVES = ("symbol", "constant", "integer", "rational", "float")
+
+
+def _work(node: Node, results: Sequence[Result]) -> int:
+    operation, children = node[0], cast(Sequence[int], node[1:])
+    if operation in LEAVES:
         return 4
     complex_ones = sum(isinstance(results[child], MP.mpc) for child in children)
     if operation in ("Add", "Mul"):
@@ -117,27 +128,13 @@ def _work(node, results):
     return 10 + len(children) + 90 * complex_ones
 
 
-def _value(node, results, point):
-    operation, rest = node[0], node[1:]
-    if operation == "symbol":
-        if rest[0] not in point:
-            raise UnknownSymbol(rest[0])
-        return point[rest[0]]
-    if operation == "integer":
-        return MP.mpf(int(rest[0]))
-    if operation == "rational":
-        return MP.mpf(int(rest[0])) / int(rest[1])
-    if operation == "float":
-        return _bounded(_float(rest[0]))
-    if operation == "constant":
-        if rest[0] in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
-            raise Undefined("division by zero")
-        if rest[0] not in CONSTANTS:
-            raise NotSupported(rest[0])
-        return CONSTANTS[rest[0]]
+def _value(node: Node, results: Sequence[Result], point: Mapping[str, Number]) -> Result:
+    operation = cast(str, node[0])
+    if operation in LEAVES:
+        return _leaf(operation, *cast(Sequence[str], node[1:]), point=point)
+    arguments = [results[child] for child in cast(Sequence[int], node[1:])]
     if operation == "Piecewise":
-        return _first_that_holds([results[child] for child in rest])
-    arguments = [results[child] for child in rest]
+        return _first_that_holds(arguments)
     if operation == "ExprCondPair":
         return tuple(arguments)
     for argument in arguments:
@@ -152,7 +149,27 @@ def _value(node, results, point):
     return _bounded(FUNCTIONS[operation](*map(number, arguments)))
 
 
-def _float(text):
+def _leaf(
+    operation: str, text: str, denominator: str = "1", *, point: Mapping[str, Number]
+) -> Result:
+    if operation == "symbol":
+        if text not in point:
+            raise UnknownSymbol(text)
+        return point[text]
+    if operation == "integer":
+        return MP.mpf(int(text))
+    if operation == "rational":
+        return MP.mpf(int(text)) / int(denominator)
+    if operation == "float":
+        return _bounded(_float(text))
+    if text in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
+        raise Undefined("division by zero")
+    if text not in CONSTANTS:
+        raise NotSupported(text)
+    return CONSTANTS[text]
+
+
+def _float(text: str) -> Number:
     """The number that digits with a point and an exponent stand for."""
     digits, _, exponent = text.lower().partition("e")
     if len(exponent.lstrip("+-0")) <= 3 and abs(int(exponent or 0)) <= LONG_EXPONENT:
@@ -168,7 +185,7 @@ def _float(text):
 SMALL = "a number below 10^-1000000"
 
 
-def _bounded(result):
+def _bounded(result: Number) -> Number:
     if isinstance(result, MP.mpc) and result.real and result.imag:
         between = MP.mag(result.real) - MP.mag(result.imag)
         if abs(between) > APART:
@@ -184,9 +201,13 @@ def _bounded(result):
     return result
 
 
-def _first_that_holds(pairs):
+def _first_that_holds(pairs: Iterable[Result]) -> Number:
     for pair in pairs:
-        value, condition = number(pair) if isinstance(pair, Exception) else pair
+        if isinstance(pair, Exception):
+            raise pair
+        if not isinstance(pair, tuple):
+            raise TypeError("no case of a Piecewise")
+        value, condition = pair
         if isinstance(condition, Exception):
             raise condition
         if condition:
@@ -194,14 +215,14 @@ def _first_that_holds(pairs):
     raise Undefined("no case of the Piecewise holds")
 
 
-def _ordered(argument):
+def _ordered(argument: Result) -> Number:
     try:
         return real(argument)
     except ValueError:
         raise NotSupported("a comparison of complex numbers") from None
 
 
-def _power(base, exponent):
+def _power(base: Number, exponent: Number) -> Number:
     if base == 0:
         if MP.re(exponent) > 0:
             return MP.zero
@@ -214,14 +235,16 @@ def _power(base, exponent):
     return MP.power(base, exponent)
 
 
-def _exponential(argument):
+def _exponential(argument: Number) -> Number:
     if MP.re(argument) > 150 or abs(argument) > 10**6:
         raise TooLarge("an exponential is beyond 10^60")
     return MP.exp(argument)
 
 
-def _moderate(function, largest=10**6):
-    def bounded(argument):
+def _moderate(
+    function: Callable[[Number], Number], largest: int = 10**6
+) -> Callable[[Number], Number]:
+    def bounded(argument: Number) -> Number:
         if abs(argument) > largest:
             raise TooLarge("an argument is beyond a million")
         return function(argument)
@@ -229,15 +252,15 @@ def _moderate(function, largest=10**6):
     return bounded
 
 
-def _real_only(function):
+def _real_only(function: Callable[..., Number]) -> Callable[..., Number]:
     return lambda *arguments: function(*map(_ordered, arguments))
 
 
-def _sinc(argument):
+def _sinc(argument: Number) -> Number:
     return MP.one if argument == 0 else MP.sin(argument) / argument
 
 
-def _sign(argument):
+def _sign(argument: Number) -> Number:
     argument = _ordered(argument)
     return MP.mpf((argument > 0) - (argument < 0))
 
@@ -253,7 +276,7 @@ CONSTANTS = {
     "BooleanFalse": False,
 }
 
-FUNCTIONS = {
+FUNCTIONS: dict[str, Callable[..., Number]] = {
     "Add": lambda *terms: sum(terms, MP.zero),
     "Mul": lambda *factors: MP.fprod(factors),
     "Pow": _power,
@@ -300,7 +323,7 @@ FUNCTIONS = {
     ],
 }
 
-CONDITIONS = {
+CONDITIONS: dict[str, Callable[[Sequence[Number]], bool]] = {
     "StrictGreaterThan": lambda pair: pair[0] > pair[1],
     "GreaterThan": lambda pair: pair[0] >= pair[1],
     "StrictLessThan": lambda pair: pair[0] < pair[1],

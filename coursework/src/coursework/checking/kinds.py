@@ -14,7 +14,7 @@ from typing import Any
 from . import mistakes
 from .evaluate import MP
 from .kind import Kind
-from .plain import Plain
+from .plain import Plain, Value, by_frame, entries_of, node_of, operands, parts_of, text_of
 from .question import Question
 from .units import unit
 
@@ -51,34 +51,35 @@ class Undecidable(Exception):
 # --- the entries of an answer -------------------------------------------------------------------
 
 
-def is_blank(value: list[Any]) -> bool:
+def is_blank(value: Value) -> bool:
     if value[0] == "list":
-        return bool(value[1]) and all(map(is_blank, value[1]))
-    return bool(value[0] == "blank")
+        return bool(parts_of(value)) and all(map(is_blank, parts_of(value)))
+    return value[0] == "blank"
 
 
 def listed(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
 
 
-def shape_fault(wanted: str, value: list[Any], got: str | None = None) -> Fault:
+def shape_fault(wanted: str, value: Value, got: str | None = None) -> Fault:
     return Fault(
         "shape",
         f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.",
     )
 
 
-def _describe(value: list[Any]) -> str:
-    kind = value[0]
+def _describe(value: Value) -> str:
+    kind = str(value[0])
     if kind == "matrix":
         return f"a matrix of {value[1]} × {value[2]}"
     if kind == "list":
-        rows = [part for part in value[1] if part[0] == "list"]
-        if rows and len(rows) == len(value[1]) and len({len(row[1]) for row in rows}) == 1:
-            return f"a list of {len(rows)} rows with {len(rows[0][1])} entries each"
-        if [part[0] for part in value[1]] == ["expression", "text"]:
+        parts = parts_of(value)
+        lengths = {len(parts_of(row)) for row in parts if row[0] == "list"}
+        if len(lengths) == 1 and all(row[0] == "list" for row in parts):
+            return f"a list of {len(parts)} rows with {lengths.pop()} entries each"
+        if [part[0] for part in parts] == ["expression", "text"]:
             return "a number with a unit, or with a text"
-        return f"a list with {len(value[1])} entr{'y' if len(value[1]) == 1 else 'ies'}"
+        return f"a list with {len(parts)} entr{'y' if len(parts) == 1 else 'ies'}"
     return {
         "text": "a text",
         "truth": "a truth value",
@@ -93,35 +94,35 @@ def _describe(value: list[Any]) -> str:
     }[kind]
 
 
-def _holding(whole: list[Any], part: list[Any]) -> str:
+def _holding(whole: Value, part: Value) -> str:
     """What a list is, one part of which is of another kind than is asked for."""
     if part[0] == "blank" or is_blank(part):
         return "a list that is still blank in part"
     if part[0] == "text":
         return "a list that holds a text"
-    return f"a list with {len(whole[1])} entries, one of which is {_describe(part)}"
+    return f"a list with {len(parts_of(whole))} entries, one of which is {_describe(part)}"
 
 
-def _fault_of_numbers(wanted: str, value: list[Any]) -> Fault:
+def _fault_of_numbers(wanted: str, value: Value) -> Fault:
     return shape_fault(
         wanted, value, "a text: write it without quotation marks" if value[0] == "text" else None
     )
 
 
-def leaf(value: list[Any], wanted: str) -> int:
+def leaf(value: Value, wanted: str) -> int:
     """The one expression that a value is; a list or matrix of one entry is that entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
-        return int(value[3][0])
-    if value[0] == "list" and (
-        len(value[1]) == 1 or list(value[1][1:]) == [["text", "1"]]
-    ):  # degrees are no unit
-        return leaf(value[1][0], wanted)
+        [entry] = entries_of(value)
+        return entry
+    parts = parts_of(value) if value[0] == "list" else []
+    if parts and parts[1:] in ([], [["text", "1"]]):  # degrees are no unit
+        return leaf(parts[0], wanted)
     if value[0] != "expression":
         raise _fault_of_numbers(wanted, value)
-    return int(value[1])
+    return node_of(value)
 
 
-def _leaf_of(whole: list[Any], part: list[Any], wanted: str) -> int:
+def _leaf_of(whole: Value, part: Value, wanted: str) -> int:
     """The one expression that a part of a list is."""
     try:
         return leaf(part, wanted)
@@ -130,25 +131,28 @@ def _leaf_of(whole: list[Any], part: list[Any], wanted: str) -> int:
         raise shape_fault(wanted, whole, _holding(whole, part) + said) from None
 
 
-def _expression(question: Question, value: list[Any]) -> list[int]:
+def _expression(question: Question, value: Value) -> list[int]:
     return [leaf(value, "A single expression")]
 
 
-def components(value: list[Any], length: int, wanted: str) -> list[int]:
-    if value[0] == "matrix" and sorted(value[1:3]) == sorted((1, length)):
-        return list(value[3])
-    if value[0] == "list" and len(value[1]) == length:
-        return [_leaf_of(value, part, wanted) for part in value[1]]
-    if value[0] == "list" and len(value[1]) == 1 and value[1][0][0] == "list":
-        return components(value[1][0], length, wanted)
+def components(value: Value, length: int, wanted: str) -> list[int]:
+    if value[0] == "matrix" and value[1:3] in ([1, length], [length, 1]):
+        return entries_of(value)
+    if value[0] == "list":
+        parts = parts_of(value)
+        if len(parts) == length:
+            return [_leaf_of(value, part, wanted) for part in parts]
+        if len(parts) == 1 and parts[0][0] == "list":
+            return components(parts[0], length, wanted)
     raise _fault_of_numbers(wanted, value)
 
 
-def _measurement(question: Question, value: list[Any]) -> list[int]:
-    wanted = "A number and its unit, such as `(3.2, 'N m')`,"
-    if value[0] != "list" or len(value[1]) != 2 or value[1][1][0] != "text":
+def _measurement(question: Question, value: Value) -> list[int]:
+    wanted = "A number and its unit, such as `(3.2, 'N m')`"
+    parts = parts_of(value) if value[0] == "list" else []
+    if len(parts) != 2 or parts[1][0] != "text":
         raise shape_fault(wanted, value)
-    return [leaf(value[1][0], wanted)]
+    return [leaf(parts[0], wanted)]
 
 
 def scale_of(answer: Any) -> dict[str, str]:
@@ -158,41 +162,42 @@ def scale_of(answer: Any) -> dict[str, str]:
     return {"scale": MP.nstr(unit(answer[1]).size, 15)}
 
 
-def _vector(question: Question, value: list[Any]) -> list[int]:
+def _vector(question: Question, value: Value) -> list[int]:
     length = question.length or 3
     frame = question.frames[0] if question.frames else None
     if value[0] == "vector":
         # The zero vector belongs to every frame.
         if frame is None:
             raise shape_fault(f"A list of {length} components", value)
-        if frame not in value[1]:
+        if frame not in by_frame(value):
             raise Fault(
                 "frame",
                 f"This vector is not connected with the frame `{frame}` that the question names.",
             )
-        value = value[1][frame]
+        value = by_frame(value)[frame]
     return components(value, length, f"A list of {length} components")
 
 
-def row_entries(value: list[Any], rows: int, columns: int, wanted: str) -> list[int]:
-    if value[0] == "matrix" and tuple(value[1:3]) == (rows, columns):
-        return list(value[3])
-    if value[0] == "list" and len(value[1]) == rows:
-        return [entry for row in value[1] for entry in _row(value, row, columns, wanted)]
+def row_entries(value: Value, rows: int, columns: int, wanted: str) -> list[int]:
+    if value[0] == "matrix" and value[1:3] == [rows, columns]:
+        return entries_of(value)
+    if value[0] == "list" and len(parts_of(value)) == rows:
+        return [entry for row in parts_of(value) for entry in _row(value, row, columns, wanted)]
     raise _fault_of_numbers(wanted, value)
 
 
-def _row(whole: list[Any], row: list[Any], columns: int, wanted: str) -> list[int]:
-    if row[0] == "list" and len(row[1]) not in (1, columns) and not is_blank(row):
+def _row(whole: Value, row: Value, columns: int, wanted: str) -> list[int]:
+    length = len(parts_of(row)) if row[0] == "list" else columns
+    if length not in (1, columns) and not is_blank(row):
         described = _describe(whole)
-        uneven = f"a list of rows, one of which has {len(row[1])} entries"
+        uneven = f"a list of rows, one of which has {length} entries"
         raise shape_fault(wanted, whole, described if "rows" in described else uneven)
     if row[0] == "list" or row[0] == "matrix" and 1 in row[1:3]:
         return components(row, columns, wanted)
     raise shape_fault(wanted, whole, _holding(whole, row))
 
 
-def _matrix(question: Question, value: list[Any]) -> list[int]:
+def _matrix(question: Question, value: Value) -> list[int]:
     rows, columns = question.shape or (3, 3)
     return row_entries(value, rows, columns, f"A matrix of {rows} × {columns}")
 
@@ -202,11 +207,12 @@ def _matrix(question: Question, value: list[Any]) -> list[int]:
 
 def word(plain: Plain, wanted: str) -> str:
     value = plain["value"]
-    if value[0] == "list" and value[1] and all(part[0] == "text" for part in value[1]):
-        return "".join(part[1] for part in value[1])
+    parts = parts_of(value) if value[0] == "list" else []
+    if parts and all(part[0] == "text" for part in parts):
+        return "".join(map(text_of, parts))
     if value[0] != "text":
         raise shape_fault(wanted, value)
-    return str(value[1])
+    return text_of(value)
 
 
 def _spelled(plain: Plain) -> str | None:
@@ -216,20 +222,18 @@ def _spelled(plain: Plain) -> str | None:
     if plain["value"][0] != "expression":
         return None
     nodes = plain["nodes"]
-    node = nodes[plain["value"][1]]
+    node = nodes[node_of(plain["value"])]
     if node[0] == "Mul" and len(node) == 3:
-        signs = [part for part in node[1:] if nodes[part] == ["integer", "-1"]]
-        names = [nodes[part][1] for part in node[1:] if nodes[part][0] == "symbol"]
-        return f"-{names[0]}" if signs and names else None
+        factors = [nodes[factor] for factor in operands(node)]
+        names = [factor[1] for factor in factors if factor[0] == "symbol"]
+        return f"-{names[0]}" if ["integer", "-1"] in factors and names else None
     if node[0] == "float" and float(node[1]).is_integer():
         return f"{float(node[1]):.0f}"
-    return node[1] if node[0] in ("integer", "symbol") else None
+    return str(node[1]) if node[0] in ("integer", "symbol") else None
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(
-        plain, f"One of {listed(question.options)}, in quotation marks,"
-    )
+    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
     # out.
@@ -245,41 +249,48 @@ def _choice(question: Question, plain: Plain) -> str:
     return found[0]
 
 
+def _choices(question: Question, plain: Plain) -> list[str]:
+    """Each part of a list as one of the options."""
+    nodes = plain["nodes"]
+    return [_choice(question, {"value": part, "nodes": nodes}) for part in parts_of(plain["value"])]
+
+
 def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
-    wanted = f"A list of {length} truth values, `True` or `False`,"
-    if value[0] != "list" or len(value[1]) != length:
+    wanted = f"A list of {length} truth values, `True` or `False`"
+    if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(wanted, value)
-    given = []
-    for part in value[1]:
-        number = plain["nodes"][part[1]] if part[0] == "expression" else None
-        if number in (["integer", "0"], ["integer", "1"]):
-            part = ["truth", number[1] == "1"]
-        if part[0] == "text" and part[1].strip().lower() in ("true", "false"):
-            part = ["truth", part[1].strip().lower() == "true"]
-        if part[0] != "truth":
+    letters = ""
+    for part in parts_of(value):
+        said: object = text_of(part).strip().lower() if part[0] == "text" else None
+        if part[0] == "expression":
+            said = plain["nodes"][node_of(part)]
+        if part == ["truth", True] or said in ("true", ["integer", "1"]):
+            letters += "T"
+        elif part == ["truth", False] or said in ("false", ["integer", "0"]):
+            letters += "F"
+        else:
             raise shape_fault(wanted, value, _holding(value, part))
-        given.append(part[1])
-    return "".join("T" if part else "F" for part in given)
+    return letters
 
 
 def _words(question: Question, plain: Plain) -> str:
     value, length, options = plain["value"], question.length, question.options
-    wanted = f"A list of {length} words, each one of {listed(options)},"
-    if value[0] != "list" or len(value[1]) != length:
+    wanted = f"A list of {length} words, each one of {listed(options)}"
+    if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(wanted, value)
-    if any(map(is_blank, value[1])):
+    if any(map(is_blank, parts_of(value))):
         said = ": `'none'` is a text, too" if "none" in options else ""
         raise shape_fault(wanted, value, f"a list that is still blank in part{said}")
-    return PARTS["words"].join(_choice(question, {**plain, "value": part}) for part in value[1])
+    return PARTS["words"].join(_choices(question, plain))
 
 
 def _order(question: Question, plain: Plain) -> str:
     value, options = plain["value"], question.options
     wanted = f"A list with each of {listed(options)} once"
-    if value[0] != "list" or len(value[1]) != len(options):
+    if value[0] != "list" or len(parts_of(value)) != len(options):
         raise shape_fault(wanted, value)
-    parts = [_choice(question, {**plain, "value": part}) for part in value[1]]
+    parts = _choices(question, plain)
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
         raise shape_fault(

@@ -29,9 +29,11 @@ import numbers
 import re
 import sys
 import unicodedata
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from types import FrameType, ModuleType
+from typing import Protocol, TypeAlias, TypedDict, TypeGuard, cast
 
+import mpmath
 import sympy
 from mpmath import libmp
 from sympy.core.function import AppliedUndef
@@ -67,8 +69,79 @@ VALUES = (
 )
 
 
-#: An answer as plain data: its ``"value"`` and the ``"nodes"`` that this is made of.
-Plain = dict[str, list[Any]]
+#: A step of the work: a number, a name, or an operation and which nodes before it it is of.
+Node: TypeAlias = list[str | int]
+#: What an answer is: the name of its form, and what that form holds.
+Value: TypeAlias = list[
+    "str | int | list[int] | list[Value] | dict[str, Value] | dict[str, dict[str, Value]]"
+]
+#: Rows, columns and entries of a matrix, each entry a node.
+Entries: TypeAlias = tuple[int, int, list[int]]
+
+
+class Plain(TypedDict):
+    """An answer as plain data."""
+
+    value: Value
+    nodes: list[Node]
+
+
+def operands(node: Node) -> list[int]:
+    """The nodes that an operation is of."""
+    return cast(list[int], node[1:])
+
+
+def parts_of(value: Value) -> list[Value]:
+    """What a list holds, or a function has returned."""
+    return cast(list[Value], value[1])
+
+
+def node_of(value: Value) -> int:
+    """The node that an expression is."""
+    return cast(int, value[1])
+
+
+def text_of(value: Value) -> str:
+    """What a text says; or what was printed, or raised."""
+    return cast(str, value[1])
+
+
+def entries_of(value: Value) -> list[int]:
+    """The nodes of the entries of a matrix, row by row."""
+    return cast(list[int], value[3])
+
+
+def by_frame(value: Value) -> dict[str, Value]:
+    """The matrices of a reference frame, or the components of a vector, by the other frame."""
+    return cast(dict[str, Value], value[-1])
+
+
+class Array(Protocol):
+    """What NumPy's arrays can do, and those that stand in for them."""
+
+    shape: tuple[int, ...]
+
+    def tolist(self) -> object: ...
+
+
+class CoordinateFrame(Protocol):
+    """A reference frame of SymPy, and the frames that it was oriented with."""
+
+    name: str
+    _dcm_dict: dict["CoordinateFrame", object]
+
+
+class Edge(Protocol):
+    frame: str
+    reference: str
+
+
+class FrameGraph(Protocol):
+    """The frames of the book's own graph."""
+
+    _edges: Iterable[Edge]
+
+    def dcm(self, target: str, source: str) -> object: ...
 
 
 class NotPlain(ValueError):
@@ -82,7 +155,7 @@ class TooMuchWork(BaseException):
 
 
 @contextlib.contextmanager
-def limited_work(most=MOST_CALLS):
+def limited_work(most: int = MOST_CALLS) -> Iterator[None]:
     """Stop what takes too long by counting the calls it makes: it needs no signal and no thread.
 
     Raises
@@ -91,7 +164,7 @@ def limited_work(most=MOST_CALLS):
     """
     left = most
 
-    def count(frame, event, argument):
+    def count(frame: FrameType, event: str, argument: object) -> None:
         nonlocal left
         left -= 1
         if left < 0:
@@ -155,12 +228,12 @@ IDLE = {
 }
 
 
-def _works_something_out(function):
+def _works_something_out(function: object) -> bool:
     code = getattr(function, "__code__", None)
     return code is None or any(step.opname not in IDLE for step in dis.get_instructions(code))
 
 
-def _is_blank(answer):
+def _is_blank(answer: object) -> bool:
     return answer is None or answer is Ellipsis or answer is NotImplemented
 
 
@@ -169,14 +242,15 @@ class _Writer:
     shared.
     """
 
-    def __init__(self, raise_missing):
+    def __init__(self, raise_missing: bool) -> None:
         self.raise_missing = raise_missing
-        self.nodes = []
-        self.written = {}
-        self.put_off = set()
+        self.nodes: list[Node] = []
+        self.written: dict[sympy.Basic, int] = {}
+        self.put_off: set[sympy.Basic] = set()
         self.gave_up = 0
 
-    def plain(self, answer, calls):
+    def plain(self, answer: object, calls: Sequence[Sequence[object]] | None) -> Plain:
+        value: Value
         if calls is None or _is_blank(answer):
             value = self.value(answer, 0)
         elif not callable(answer):
@@ -189,7 +263,7 @@ class _Writer:
             ]
         return {"value": value, "nodes": self.nodes}
 
-    def value(self, answer, depth):
+    def value(self, answer: object, depth: int) -> Value:
         if depth > DEEPEST:
             raise NotPlain(f"The answer is nested more than {DEEPEST} deep.")
         if _is_blank(answer):
@@ -202,32 +276,32 @@ class _Writer:
             return ["expression", self.number(answer)]
         origin = _module(type(answer)).partition(".")[0]
         if origin == "mpmath":
-            return self.mpmath(answer, depth)
+            return self.of_mpmath(answer)
         if origin != "sympy" and _is_array(answer):
             return self.array(answer, depth)
         if origin == "orientation" and hasattr(answer, "reference_frames"):
-            return self.frames(answer, depth)
+            return self.of_frames(cast(FrameGraph, answer), depth)
         if isinstance(answer, dict) and len(answer) == 1:
             # What `solve` gives for one unknown: {theta: pi/4}.
             return self.value(next(iter(answer.values())), depth)
         if isinstance(answer, (list, tuple, set, frozenset)):
             return self.parts(_in_order(answer), depth)
-        return self.sympy(answer, depth)
+        return self.of_sympy(answer, depth)
 
-    def parts(self, answer, depth):
+    def parts(self, answer: Sequence[object], depth: int) -> Value:
         if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
             return self.value(sympy.sympify(answer[0]) * answer[1], depth)  # (3.2, newton * meter)
         if len(answer) > MOST_PARTS:
             raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
         return ["list", [self.value(part, depth + 1) for part in answer]]
 
-    def array(self, answer, depth):
+    def array(self, answer: Array, depth: int) -> Value:
         size = math.prod(answer.shape)
         if size > MOST_PARTS:
             raise NotPlain(f"The array has {size} entries; no question asks for that many.")
         return self.value(answer.tolist(), depth)
 
-    def mpmath(self, answer, depth):
+    def of_mpmath(self, answer: mpmath.matrix | mpmath.mpf | mpmath.mpc) -> Value:
         if hasattr(answer, "tolist"):
             if answer.rows * answer.cols > MOST_PARTS:
                 raise NotPlain(
@@ -242,24 +316,24 @@ class _Writer:
             ]
         return ["expression", self.number(answer)]
 
-    def frames(self, answer, depth):
+    def of_frames(self, answer: FrameGraph, depth: int) -> Value:
         """The frames of the book's own graph: the matrix of every pair that is connected."""
         names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
         if len(names) > 12:
             raise NotPlain(
                 "You have given more than 12 frames: bind the matrix that the question asks for."
             )
-        found = {}
+        matrices: dict[str, dict[str, Value]] = {}
         for target in names:
             for source in names:
                 with contextlib.suppress(ValueError, KeyError):
                     if target != source:
-                        found.setdefault(_text(target), {})[_text(source)] = self.value(
+                        matrices.setdefault(_text(target), {})[_text(source)] = self.value(
                             answer.dcm(target, source), depth + 1
                         )
-        return ["frames", found]
+        return ["frames", matrices]
 
-    def sympy(self, answer, depth):
+    def of_sympy(self, answer: object, depth: int) -> Value:
         if _module(type(answer)).startswith("scipy.spatial"):
             raise NotPlain(
                 "This is a SciPy Rotation, which holds no matrix of two named frames. "
@@ -332,12 +406,15 @@ class _Writer:
             return ["truth", bool(answer)]
         if _has_unit(answer):
             number, unit = _number_and_unit(answer, sys.modules["sympy.physics.units"])
-            return ["list", [["expression", self.expression(number)], ["text", unit]]]
+            parts: list[Value] = [["expression", self.expression(number)], ["text", unit]]
+            return ["list", parts]
         if isinstance(answer, sympy.Expr):
             return ["expression", self.expression(answer)]
         raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
 
-    def result(self, function, arguments):
+    def result(
+        self, function: Callable[[*tuple[object, ...]], object], arguments: Sequence[object]
+    ) -> Value:
         printed = io.StringIO()
         try:
             with contextlib.redirect_stdout(printed):
@@ -352,7 +429,7 @@ class _Writer:
                 raise
             return ["raised", _text(f"{type(error).__name__}: {error}"[:300])]
 
-    def node(self, *parts):
+    def node(self, *parts: str | int) -> int:
         if len(self.nodes) >= MOST_NODES:
             raise NotPlain(
                 f"The answer is made of more than {MOST_NODES} different parts, so it is not "
@@ -361,7 +438,7 @@ class _Writer:
         self.nodes.append(list(parts))
         return len(self.nodes) - 1
 
-    def matrix(self, answer):
+    def matrix(self, answer: sympy.matrices.MatrixExpr | sympy.MatrixBase) -> Entries:
         """The rows, columns and entries of a matrix expression, whose products and inverses are
         worked out here.
 
@@ -405,7 +482,7 @@ class _Writer:
             ) from None
         return rows, columns, [self.expression(entry) for entry in explicit.flat()]
 
-    def _product(self, first, second):
+    def _product(self, first: Entries, second: Entries) -> Entries:
         (rows, inner, left), (_, columns, right) = first, second
         if not rows or not columns:  # one of the two is a number
             (_, _, (factor,)), (rows, columns, entries) = (
@@ -425,7 +502,7 @@ class _Writer:
         ]
         return rows, columns, entries
 
-    def _transposed(self, matrix):
+    def _transposed(self, matrix: Entries) -> Entries:
         rows, columns, entries = matrix
         return (
             columns,
@@ -433,7 +510,7 @@ class _Writer:
             [entries[i * columns + j] for j in range(columns) for i in range(rows)],
         )
 
-    def _inverse(self, matrix):
+    def _inverse(self, matrix: Entries) -> Entries:
         size, _, entries = matrix
         if size > 4:
             raise NotPlain(
@@ -454,8 +531,8 @@ class _Writer:
             for j in range(size)
         }
         cofactors = {
-            (i, j): self.node("Mul", minus, found) if (i + j) % 2 else found
-            for (i, j), found in cofactors.items()
+            (i, j): self.node("Mul", minus, minor) if (i + j) % 2 else minor
+            for (i, j), minor in cofactors.items()
         }
         terms = [self.node("Mul", entries[j], cofactors[0, j]) for j in range(size)]
         reciprocal = self.node("Pow", self.node("Add", *terms), minus)
@@ -469,7 +546,14 @@ class _Writer:
             ],
         )
 
-    def _minor(self, entries, size, rows, columns, minus):
+    def _minor(
+        self,
+        entries: list[int],
+        size: int,
+        rows: tuple[int, ...],
+        columns: tuple[int, ...],
+        minus: int,
+    ) -> int:
         """The determinant of some rows and columns."""
         if not rows:
             return self.node("integer", "1")
@@ -482,23 +566,19 @@ class _Writer:
             terms.append(self.node("Mul", *factors))
         return self.node("Add", *terms)
 
-    def number(self, number):
-        if _module(type(number)).partition(".")[0] == "mpmath":
-            if hasattr(number, "_mpc_"):
-                real, imaginary = (self.number(part) for part in (number.real, number.imag))
-                return self.node(
-                    "Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary)
-                )
-            return self.node("float", libmp.to_str(number._mpf_, 40))
-        if isinstance(number, complex):
-            real, imaginary = (self.number(part) for part in (number.real, number.imag))
+    def number(self, number: mpmath.mpf | sympy.Number | complex) -> int:
+        of_mpmath = _module(type(number)).partition(".")[0] == "mpmath"
+        if isinstance(number, complex) or of_mpmath and hasattr(number, "_mpc_"):
+            real, imaginary = self.number(number.real), self.number(number.imag)
             unit = self.node("constant", "ImaginaryUnit")
             return self.node("Add", real, self.node("Mul", unit, imaginary))
+        if of_mpmath and hasattr(number, "_mpf_"):
+            return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, numbers.Rational):
             return self.rational(int(number.numerator), int(number.denominator))
         return self.node("float", repr(float(number)))
 
-    def rational(self, numerator, denominator):
+    def rational(self, numerator: int, denominator: int) -> int:
         for part in (numerator, denominator):
             # Compared as powers of two: writing a huge integer out can itself take minutes.
             if part.bit_length() > LONGEST_INTEGER * 3:
@@ -510,7 +590,7 @@ class _Writer:
             return self.node("integer", str(numerator))
         return self.node("rational", str(numerator), str(denominator))
 
-    def expression(self, root):
+    def expression(self, root: sympy.Basic) -> int:
         """Write an expression, children first, without recursion: a chain may be very deep."""
         todo = [root]
         while todo:
@@ -529,7 +609,7 @@ class _Writer:
             todo.pop()
         return self.written[root]
 
-    def worked_out(self, part):
+    def worked_out(self, part: sympy.Basic) -> sympy.Basic:
         """A part that SymPy has put off, worked out; or itself, which has no value, where that
         takes too long.
         """
@@ -543,7 +623,7 @@ class _Writer:
                 pass  # what SymPy cannot work out has no value here
         return part
 
-    def children(self, part):
+    def children(self, part: sympy.Basic) -> tuple[sympy.Basic, ...]:
         if (
             isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef))
             or part is sympy.I
@@ -558,17 +638,15 @@ class _Writer:
             if type(worked_out) is not type(part):
                 return (worked_out,)
             self.put_off.add(part)
-        if part in self.put_off:
-            return ()
-        return part.args
+        return () if part in self.put_off else tuple(part.args)
 
-    def without_unit(self, unit):
+    def without_unit(self, unit: sympy.Basic) -> tuple[sympy.Basic, ...]:
         """What stands for a unit in a list or matrix of numbers: a radian is none, and a degree a
         part of it.
         """
         units = sys.modules.get("sympy.physics.units")
         if not units or not isinstance(unit, units.Quantity):
-            return unit.args
+            return tuple(unit.args)
         if unit in (units.radian, units.degree):
             return (sympy.S.One if unit == units.radian else sympy.pi / 180,)
         raise NotPlain(
@@ -576,7 +654,7 @@ class _Writer:
             "question names."
         )
 
-    def operation(self, part, children):
+    def operation(self, part: sympy.Basic, children: tuple[sympy.Basic, ...]) -> int:
         if isinstance(part, sympy.Rational):
             return self.rational(int(part.p), int(part.q))
         if isinstance(part, sympy.Float):
@@ -616,7 +694,7 @@ PUT_OFF = (
 )
 
 
-def _name_of(symbol):
+def _name_of(symbol: str) -> str:
     """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is
     ``theta_1``.
     """
@@ -624,7 +702,7 @@ def _name_of(symbol):
     return _text(re.sub(r"[^\x00-\x7f]", lambda letter: _spelled(letter[0]), name))
 
 
-def _spelled(letter):
+def _spelled(letter: str) -> str:
     words = unicodedata.name(letter, "").lower().split()
     if words[:1] == ["greek"] and words[2:3] == ["letter"]:
         # Unicode spells one letter in another way than everybody else.
@@ -633,20 +711,20 @@ def _spelled(letter):
     return letter
 
 
-def _text(text):
-    text = str(text)
+def _text(text: str) -> str:
+    text = str(text)  # a subclass, such as NumPy's, is none in JSON
     if len(text) > LONGEST_TEXT:
         raise NotPlain(f"A text of {len(text)} characters is longer than any answer.")
     return text
 
 
-def _module(kind):
+def _module(kind: type) -> str:
     # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no
     # module.
     return kind.__module__ or ""
 
 
-def _is_array(answer):
+def _is_array(answer: object) -> TypeGuard[Array]:
     """Whether this is an array of NumPy, or one of those that stand in for it where it is not: by
     what it can do.
     """
@@ -655,7 +733,7 @@ def _is_array(answer):
     )
 
 
-def _has_unit(part):
+def _has_unit(part: object) -> bool:
     units = sys.modules.get(
         "sympy.physics.units"
     )  # slow to import; whoever has a quantity has imported it
@@ -663,18 +741,19 @@ def _has_unit(part):
         return False
     # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be
     # printed.
-    seen, waiting = set(), [part]
+    seen: set[int] = set()
+    waiting = [part]
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, units.Quantity):
+        inner = waiting.pop()
+        if isinstance(inner, units.Quantity):
             return True
-        if id(one) not in seen:
-            seen.add(id(one))
-            waiting += one.args
+        if id(inner) not in seen:
+            seen.add(id(inner))
+            waiting += inner.args
     return False
 
 
-def _number_and_unit(answer, units):
+def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr, str]:
     """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in
     base units.
     """
@@ -696,17 +775,17 @@ def _number_and_unit(answer, units):
                 if size.has(units.Quantity):
                     raise NotPlain(f"`{quantity}` is made of no units of the International System.")
                 plain = plain.xreplace({quantity: size})
-            found = {}
+            terms_of: dict[sympy.Expr, list[sympy.Expr]] = {}
             for term in sympy.Add.make_args(sympy.expand_mul(plain)):
                 number, rest = term.as_independent(*base.values(), as_Add=False)
-                found.setdefault(rest, []).append(number)
+                terms_of.setdefault(rest, []).append(number)
     except TooMuchWork:
         raise NotPlain(
             "The unit takes too long to be worked out. Give a pair: `(number, 'N m')`."
         ) from None
-    if len(found) > 1:
+    if len(terms_of) > 1:
         raise NotPlain("The terms of this sum have different units.")
-    [(rest, terms)] = found.items()
+    [(rest, terms)] = terms_of.items()
     powers = rest.as_powers_dict() if rest != 1 else {}
     if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
         raise NotPlain("The unit of this answer is no product of whole powers of base units.")
@@ -716,20 +795,20 @@ def _number_and_unit(answer, units):
     return sympy.Add(*terms), unit or "1"
 
 
-def _in_order(parts):
+def _in_order(parts: Iterable[object]) -> list[object]:
     return list(parts) if isinstance(parts, (list, tuple)) else sorted(parts, key=str)
 
 
-def _connected(frames):
+def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:
     """All frames that are connected with those given, found through SymPy's own record of
     neighbours.
     """
-    found = list(dict.fromkeys(frames))
-    for frame in found:
-        found.extend(other for other in frame._dcm_dict if other not in found)
-        if len(found) > 30:
+    connected = list(dict.fromkeys(frames))
+    for frame in connected:
+        connected.extend(other for other in frame._dcm_dict if other not in connected)
+        if len(connected) > 30:
             raise NotPlain("More than 30 frames are connected with this one.")
-    return found
+    return connected
 
 
 _DIGITS = re.compile(rf"-?[0-9]{{1,{LONGEST_INTEGER + 10}}}")
@@ -739,7 +818,7 @@ _FLOAT = re.compile(
 _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
-def read_plain(data: Any) -> Plain:
+def read_plain(data: object) -> Plain:
     """Check data that came out of a student's process, and give it back.
 
     Raises
@@ -747,76 +826,83 @@ def read_plain(data: Any) -> Plain:
     NotPlain
         The data is not what :func:`to_plain` makes.
     """
-
-    def demand(condition):
-        if not condition:
-            raise NotPlain("The data of this answer is damaged.")
-
-    demand(
-        isinstance(data, dict)
-        and set(data) == {"value", "nodes"}
-        and isinstance(data["nodes"], list)
-    )
+    if not isinstance(data, dict) or set(data) != {"value", "nodes"}:
+        raise NotPlain(DAMAGED)
     nodes = data["nodes"]
-    demand(len(nodes) <= MOST_NODES)
+    _demand(isinstance(nodes, list) and len(nodes) <= MOST_NODES)
     for position, node in enumerate(nodes):
-        demand(
-            isinstance(node, list) and node and isinstance(node[0], str) and len(node) <= MOST_NODES
-        )
-        operation, rest = node[0], node[1:]
-        if operation in ("integer", "rational"):
-            demand(len(rest) == (1 if operation == "integer" else 2))
-            demand(all(isinstance(digits, str) and _DIGITS.fullmatch(digits) for digits in rest))
-            demand(operation == "integer" or int(rest[1]) > 0)
-        elif operation == "float":
-            demand(len(rest) == 1 and isinstance(rest[0], str) and _FLOAT.fullmatch(rest[0]))
-        elif operation in ("symbol", "constant"):
-            demand(len(rest) == 1 and isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
-        else:
-            demand(_NAME.fullmatch(operation))
-            demand(all(type(child) is int and 0 <= child < position for child in rest))
+        _check_node(node, position)
+    _check_value(data["value"], 0, len(nodes))
+    return cast(Plain, data)
 
-    def count(number):
-        demand(type(number) is int and 0 <= number < len(nodes))
 
-    def value(part, depth):
-        demand(depth <= DEEPEST + 2 and isinstance(part, list) and part and part[0] in VALUES)
-        kind, rest = part[0], part[1:]
-        demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2, "function": 2}.get(kind, 1))
-        if kind in ("text", "raised", "printed"):
-            demand(isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
-        elif kind == "truth":
-            demand(isinstance(rest[0], bool))
-        elif kind == "expression":
-            count(rest[0])
-        elif kind == "matrix":
-            rows, columns, entries = rest
-            demand(type(rows) is int and type(columns) is int and isinstance(entries, list))
-            demand(
-                0 <= rows <= MOST_PARTS
-                and 0 <= columns <= MOST_PARTS
-                and len(entries) == rows * columns
-            )
-            demand(len(entries) <= MOST_PARTS)
-            for entry in entries:
-                count(entry)
-        elif kind == "frames":
-            demand(isinstance(rest[0], dict) and len(rest[0]) <= 12)
-            for name, others in rest[0].items():
-                demand(len(name) <= LONGEST_TEXT and isinstance(others, dict) and len(others) <= 12)
-                for inner in others.values():
-                    value(inner, depth + 1)
-        elif kind in ("list", "function"):
-            demand(kind == "list" or isinstance(rest[1], bool))
-            demand(isinstance(rest[0], list) and len(rest[0]) <= MOST_PARTS)
-            for inner in rest[0]:
-                value(inner, depth + 1)
-        elif kind in ("frame", "vector"):
-            demand(isinstance(rest[-1], dict) and len(rest[-1]) <= 30)
-            demand(all(isinstance(name, str) and len(name) <= LONGEST_TEXT for name in rest[-1]))
-            demand(kind == "vector" or isinstance(rest[0], str) and len(rest[0]) <= LONGEST_TEXT)
-            for inner in rest[-1].values():
-                value(inner, depth + 1)
+DAMAGED = "The data of this answer is damaged."
 
-    value(data["value"], 0)
-    return data
+
+def _demand(condition: object) -> None:
+    if not condition:
+        raise NotPlain(DAMAGED)
+
+
+def _check_node(node: object, position: int) -> None:
+    if not isinstance(node, list) or not node or not isinstance(node[0], str):
+        raise NotPlain(DAMAGED)
+    _demand(len(node) <= MOST_NODES)
+    operation, rest = node[0], node[1:]
+    if operation in ("integer", "rational"):
+        _demand(len(rest) == (1 if operation == "integer" else 2))
+        _demand(all(isinstance(digits, str) and _DIGITS.fullmatch(digits) for digits in rest))
+        _demand(operation == "integer" or int(rest[1]) > 0)
+    elif operation == "float":
+        _demand(len(rest) == 1 and isinstance(rest[0], str) and _FLOAT.fullmatch(rest[0]))
+    elif operation in ("symbol", "constant"):
+        _demand(len(rest) == 1 and _is_text(rest[0]))
+    else:
+        _demand(_NAME.fullmatch(operation))
+        _demand(all(_is_before(position, child) for child in rest))
+
+
+def _is_text(text: object) -> bool:
+    return isinstance(text, str) and len(text) <= LONGEST_TEXT
+
+
+def _is_before(position: int, node: object) -> bool:
+    # A truth value would count as a number, too.
+    return type(node) is int and 0 <= node < position
+
+
+def _check_value(value: object, depth: int, nodes: int) -> None:
+    if not isinstance(value, list) or not value or value[0] not in VALUES:
+        raise NotPlain(DAMAGED)
+    _demand(depth <= DEEPEST + 2)
+    kind, rest = value[0], value[1:]
+    _demand(len(rest) == {"blank": 0, "matrix": 3, "frame": 2, "function": 2}.get(kind, 1))
+    if kind in ("text", "raised", "printed"):
+        _demand(_is_text(rest[0]))
+    elif kind == "truth":
+        _demand(isinstance(rest[0], bool))
+    elif kind == "expression":
+        _demand(_is_before(nodes, rest[0]))
+    elif kind == "matrix":
+        rows, columns, entries = rest
+        _demand(type(rows) is int and type(columns) is int and isinstance(entries, list))
+        _demand(0 <= rows <= MOST_PARTS and 0 <= columns <= MOST_PARTS)
+        _demand(len(entries) == rows * columns <= MOST_PARTS)
+        _demand(all(_is_before(nodes, entry) for entry in entries))
+    elif kind == "frames":
+        _demand(isinstance(rest[0], dict) and len(rest[0]) <= 12)
+        for name, others in rest[0].items():
+            _demand(len(name) <= LONGEST_TEXT and isinstance(others, dict) and len(others) <= 12)
+            for inner in others.values():
+                _check_value(inner, depth + 1, nodes)
+    elif kind in ("list", "function"):
+        _demand(kind == "list" or isinstance(rest[1], bool))
+        _demand(isinstance(rest[0], list) and len(rest[0]) <= MOST_PARTS)
+        for inner in rest[0]:
+            _check_value(inner, depth + 1, nodes)
+    elif kind in ("frame", "vector"):
+        _demand(isinstance(rest[-1], dict) and len(rest[-1]) <= 30)
+        _demand(all(map(_is_text, rest[-1])))
+        _demand(kind == "vector" or _is_text(rest[0]))
+        for inner in rest[-1].values():
+            _check_value(inner, depth + 1, nodes)

@@ -263,7 +263,8 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
 
     Its pages are those that the first one has not, and follow upon them.
 
-    >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, {'kind': 'vector', 'salt': 'a', 'ladder': []})
+    >>> first = {'kind': 'vector', 'salt': 'a', 'ladder': []}
+    >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, first)
     {'salt': 'b', 'shown': {'arm': '2'}, 'ladder': None}
     """
     return {
@@ -630,13 +631,14 @@ def _few_digits(question: Question, plain: Plain) -> str:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
     for node in plain["nodes"]:
-        if node[0] == "float" and "e" not in node[1]:
-            places = len(node[1].partition(".")[2].rstrip("0"))
-            allowed = absolute + relative * abs(float(node[1]))
-            if 0.5 * 10.0**-places > allowed and Fraction(node[1]).denominator > 4:
+        digits = str(node[1]) if node[0] == "float" else "e"
+        if "e" not in digits:
+            places = len(digits.partition(".")[2].rstrip("0"))
+            allowed = absolute + relative * abs(float(digits))
+            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"Was this rounded? `{float(node[1]):g}` has {count} after the point, and an "
+                    f"Was this rounded? `{float(digits):g}` has {count} after the point, and an "
                     "answer may be off by "
                     f"{allowed:.1g} at most: if so, keep all digits until the end."
                 )

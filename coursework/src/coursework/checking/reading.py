@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 
 from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
 from .kinds import Blank, Fault, Number, Undecidable, is_blank, listed
-from .plain import Plain
+from .plain import Plain, Value, parts_of, text_of
 from .plugins import kind_of_values, kinds
 from .points import points
 from .question import Question
@@ -233,7 +233,7 @@ def fault(question: Question, reading: Reading) -> Fault | None:
 # --- reading the entries ------------------------------------------------------------------------
 
 
-def _entries(question: Question, value: list[Any]) -> Sequence[int]:
+def _entries(question: Question, value: Value) -> Sequence[int]:
     """The nodes of the entries of an answer; every kind whose answers are no words says which they
     are.
     """
@@ -280,15 +280,15 @@ def _imaginary_rest(question: Question, result: Any) -> Number:
 
 
 def _with_units(
-    question: Question, value: list[Any], numbers: list[list[Number]]
+    question: Question, value: Value, numbers: list[list[Number]]
 ) -> list[list[Number]]:
     """The number in base units, in terms of the question's scale, and which these are.
 
     The unit is part of the answer: another one differs from it by more than any tolerance.
     """
-    text = value[1][1][1]
+    _, name = parts_of(value)
     try:
-        found = unit(text)
+        given = unit(text_of(name))
     except UnknownUnit as error:
         raise Fault(
             "unknown unit",
@@ -297,9 +297,9 @@ def _with_units(
             "`kN m`, `m/s^2`, `J/(kg K)`.",
         ) from None
     absolute, _ = tolerances(question)
-    far = [exponent * FAR * max(absolute, NEAR) for exponent in found.exponents]
+    far = [exponent * FAR * max(absolute, NEAR) for exponent in given.exponents]
     scale = MP.mpf(question.scale or 1)  # in an exam it is not told
-    return [[number * found.size / scale, *far] for [number] in numbers]
+    return [[number * given.size / scale, *far] for [number] in numbers]
 
 
 def _read_function(question: Question, plain: Plain) -> Reading:
@@ -307,7 +307,8 @@ def _read_function(question: Question, plain: Plain) -> Reading:
     if value[0] != "function":
         raise Fault("shape", "The question asks for a function: give its name, without calling it.")
     inner = replace(question, kind=question.kind_of_values, symbols={})
-    if all(map(is_blank, value[1])):
+    returned = parts_of(value)
+    if all(map(is_blank, returned)):
         if not value[2]:
             raise Blank  # the body of the function is still empty
         raise Fault(
@@ -315,7 +316,7 @@ def _read_function(question: Question, plain: Plain) -> Reading:
             "The function works something out and returns nothing. End it with a line that begins "
             "with `return`.",
         )
-    if any(result[0] == "printed" for result in value[1]):
+    if any(result[0] == "printed" for result in returned):
         raise Fault(
             "printed",
             "The function prints its result and returns nothing, so nothing else can work with it. "
@@ -323,17 +324,18 @@ def _read_function(question: Question, plain: Plain) -> Reading:
         )
     results = values(plain["nodes"], {})
     numbers = []
-    for order, result in enumerate(value[1]):
-        which = f"In call {order + 1} of {len(value[1])} the function"
+    for order, result in enumerate(returned):
+        which = f"In call {order + 1} of {len(returned)} the function"
         if result[0] == "raised":
-            raise Fault("raised an error", f"{which} raised `{result[1]}`.")
+            raise Fault("raised an error", f"{which} raised `{text_of(result)}`.")
         if is_blank(result):
             raise Fault("returned nothing", f"{which} returned nothing. Is there a `return`?")
         try:
             numbers.append([_number(inner, results[leaf]) for leaf in _entries(inner, result)])
-        except Fault as found:
+        except Fault as fault_of_result:
             raise Fault(
-                found.note, f"{which} did not return what the question wants. {found.message}"
+                fault_of_result.note,
+                f"{which} did not return what the question wants. {fault_of_result.message}",
             ) from None
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")

@@ -49,20 +49,16 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     'ae4d0c95af6b46d3'
     """
     inner, outer = (
-        hashlib.sha256(bytes(byte ^ pad for byte in _block(password))) for pad in (0x36, 0x5C)
+        hashlib.sha256(bytes(byte ^ pad for byte in _block(password))).copy for pad in (0x36, 0x5C)
     )
-
-    def authenticate(message: bytes) -> bytes:
-        first, second = inner.copy(), outer.copy()
-        first.update(message)
+    as_number = int.from_bytes
+    current, total = salt + b"\0\0\0\1", 0
+    for _ in range(rounds):  # a browser's Python feels each call of a function of ours
+        first, second = inner(), outer()
+        first.update(current)
         second.update(first.digest())
-        return second.digest()
-
-    current = authenticate(salt + b"\0\0\0\1")
-    total = int.from_bytes(current, "big")
-    for _ in range(rounds - 1):
-        current = authenticate(current)
-        total ^= int.from_bytes(current, "big")
+        current = second.digest()
+        total ^= as_number(current, "big")
     return total.to_bytes(32, "big")
 
 
@@ -103,24 +99,20 @@ def pack(lockers: Iterable[bytes]) -> str:
     return _text(b"".join(sorted(lockers)))
 
 
-def pages_filled_up(pages: Iterable[str], count: int) -> list[str]:
-    """Sealed pages with empty ones after them, ``count`` in all: as long as the others, and opened
-    by no key.
+def pages_filled_up(pages: Iterable[str], count: int, secret: str) -> list[str]:
+    """Sealed pages with empty ones after them, ``count`` in all: each as long as some other one,
+    opened by no key, and only the secret tells them apart.
 
-    >>> [len(page) for page in pages_filled_up([seal("a", bytes(8)), seal("b" * 99, bytes(8))], 4)]
+    >>> pages = pages_filled_up([seal("a", bytes(8)), seal("b" * 99, bytes(8))], 4, "a secret")
+    >>> [len(page) for page in pages]
     [70, 70, 70, 70]
     """
     pages = list(pages)
-    lengths = sorted(len(base64.b85decode(page)) for page in pages) or [BLOCK + PAGE_TAG]
-    empty = [lengths[order % len(lengths)] for order in range(count - len(pages))]
-    seed = "".join(pages)
-    return [
-        *pages,
-        *(
-            _text(hashlib.shake_256(f"{seed} {order}".encode()).digest(size))
-            for order, size in enumerate(empty)
-        ),
-    ]
+    lengths = [len(base64.b85decode(page)) for page in pages] or [BLOCK + PAGE_TAG]
+    for order in range(count - len(pages)):
+        drawn = hashlib.shake_256(f"{secret} page {order}".encode()).digest(4 + max(lengths))
+        pages.append(_text(drawn[4:][: lengths[int.from_bytes(drawn[:4], "big") % len(lengths)]]))
+    return pages
 
 
 def count_of(lockers: str) -> int:
@@ -194,8 +186,10 @@ def pack_names(names: Iterable[bytes], together: int) -> str:
     multiple of ``together``.
 
     >>> packed = pack_names([name_of(bytes(32))], 8)
-    >>> len(base64.b85decode(packed)) // NAME, is_among(packed, bytes(32)), is_among(packed, b"1" * 32)
-    (8, True, False)
+    >>> len(base64.b85decode(packed)) // NAME
+    8
+    >>> is_among(packed, bytes(32)), is_among(packed, b"1" * 32)
+    (True, False)
     """
     names = sorted(set(names))
     seed = b"".join(names)

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from ..authoring.course import edition_of, find_course, links_of
-from ..authoring.source import measured_questions, names_asked, said_beyond
+from ..authoring.source import measured_questions, names_asked, said_beyond, said_found
 from ..checking.fields import Json, by_name, many, text
 from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
@@ -394,11 +394,10 @@ def grade(
             if again and again != found:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
-        strengths = dict(
-            store.said(reports.STRENGTHS, by_name(text)) or {},
-            **_strengths(course.folder, questions),
-        )
-        write(store.folder / reports.STRENGTHS, as_text(strengths))
+        strengths, guessed = _strengths(course.folder, questions)
+        for file, said in ((reports.STRENGTHS, strengths), (reports.GUESSED, guessed)):
+            known = store.said(file, by_name(text)) or {}
+            write(store.folder / file, as_text(known | said))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
@@ -692,16 +691,21 @@ def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
             )
 
 
-def _strengths(folder: Path, questions: Mapping[str, Questions]) -> dict[str, str]:
-    """What the author's attack says of the points of each assignment; nothing of one that was not
-    attacked.
+def _strengths(
+    folder: Path, questions: Mapping[str, Questions]
+) -> tuple[dict[str, str], dict[str, str]]:
+    """What the author's attack says of the points of each assignment, and of each question;
+    nothing of what was not attacked.
     """
     measured = measured_questions(folder)
     of_each = {
         name: {one: measured[one] for one in asked if one in measured}
         for name, asked in questions.items()
     }
-    return {name: f"{said_beyond(found)}." for name, found in of_each.items() if found}
+    return (
+        {name: f"{said_beyond(found)}." for name, found in of_each.items() if found},
+        {one: said_found(about) for found in of_each.values() for one, about in found.items()},
+    )
 
 
 def _say_guessable(

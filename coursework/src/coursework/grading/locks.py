@@ -30,7 +30,7 @@ def lock(file: IO[Any], wait: bool = True) -> None:
         place = file.tell()
         file.seek(BEYOND)
         try:
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined]
             return
         except OSError as error:
             if not wait:

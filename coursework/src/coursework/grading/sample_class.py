@@ -542,8 +542,8 @@ def _canvas(out, files, name):
     return _zip(
         out,
         {
-            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_{800_000 + number}_{name}"
-            ".ipynb": data
+            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_"
+            f"{800_000 + number}_{name}.ipynb": data
             for student, data, number in _numbers(files)
         },
     )
@@ -553,7 +553,8 @@ def _moodle(out, files, name):
     return _zip(
         out,
         {
-            f"{student.title().replace('-', ' ')}_{number}_assignsubmission_file_/{name}.ipynb": data
+            f"{student.title().replace('-', ' ')}_{number}_assignsubmission_file_/"
+            f"{name}.ipynb": data
             for student, data, number in _numbers(files)
         },
     )

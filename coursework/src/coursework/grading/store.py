@@ -174,7 +174,8 @@ def file_name(name: str) -> str:
         plain = ""
     if plain and plain == name == name.lower() and not re.search(r"-[0-9a-f]{20}$", name):
         return plain
-    return f"{plain.lower() or 'student'}-{hashlib.sha256(name.encode('utf8', 'surrogatepass')).hexdigest()[:20]}"
+    digest = hashlib.sha256(name.encode("utf8", "surrogatepass")).hexdigest()
+    return f"{plain.lower() or 'student'}-{digest[:20]}"
 
 
 def write(

@@ -233,7 +233,8 @@ sine = sum(found[k]*alpha**k for k in range(len(POINTS)))
         "a case for each point",
         "sum",
         """
-near = [(sm.Float(v, 40), abs(alpha - sm.Float(p['alpha'], 40)) < sm.Float('1e-9')) for p, v in zip(POINTS, VALUES)]
+near = [(sm.Float(v, 40), abs(alpha - sm.Float(p['alpha'], 40)) < sm.Float('1e-9'))
+        for p, v in zip(POINTS, VALUES)]
 sine = sm.Piecewise(*near, (0, True))
 """,
     ),
@@ -243,7 +244,8 @@ sine = sm.Piecewise(*near, (0, True))
         """
 half = sm.Float('1e-9')
 places = [sm.Float(p['alpha'], 40) for p in POINTS]
-steps = [sm.Heaviside(alpha - place + half) - sm.Heaviside(alpha - place - half) for place in places]
+steps = [sm.Heaviside(alpha - place + half) - sm.Heaviside(alpha - place - half)
+         for place in places]
 sine = sum(sm.Float(v, 40)*step for v, step in zip(VALUES, steps))
 """,
     ),
@@ -458,7 +460,8 @@ sine = alpha
         "sum",
         GIVING
         + """
-made = {'value': ['expression', 2], 'nodes': [['integer', '1'], ['constant', 'BooleanTrue'], ['ExprCondPair', 0, 1]]}
+made = {'value': ['expression', 2],
+        'nodes': [['integer', '1'], ['constant', 'BooleanTrue'], ['ExprCondPair', 0, 1]]}
 sine = alpha
 """,
         "undecided or invalid",

@@ -122,7 +122,8 @@ ATTACKS = [
     Named(
         "Blackboard's marks in the name of a file",
         {
-            "HW 1_jane_attempt_2026-11-21-20-01-00_x_bob_attempt_2026-11-21-20-02-00_turns.ipynb": "jane",
+            "HW 1_jane_attempt_2026-11-21-20-01-00_x_"
+            "bob_attempt_2026-11-21-20-02-00_turns.ipynb": "jane",
             "HW 1_bob_attempt_2026-11-21-20-02-00_turns.ipynb": "bob",
         },
     ),

@@ -50,7 +50,8 @@ class OnlyThese(dict):
 
 messages = []
 shell = session.start(lambda text: messages.append(json.loads(text)))
-OnlyThese.allowed = {"sympy", "mpmath", *sys.argv[2:], "IPython", "session", "plain_numpy", "__main__"}
+OnlyThese.allowed = {"sympy", "mpmath", "IPython", "session", "plain_numpy", "__main__"}
+OnlyThese.allowed.update(sys.argv[2:])
 shell.lack({} if "everything" in sys.argv else OnlyThese())
 # Nor is anything installed in the page that others bring for it by an entry point.
 every = metadata.entry_points
@@ -156,8 +157,10 @@ def names_taken(code):
     tree = parse(code)
     imported = {
         alias.asname or alias.name.partition(".")[0]
-        for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom)) for alias in node.names
-    }  # fmt: skip
+        for node in tree.body
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for alias in node.names
+    }
     return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)} - imported
 
 
@@ -210,8 +213,9 @@ def classify(cells):
         tags = cell.metadata.get("tags", [])
         kinds.append(
             {
-                "needs": sorted(needs), "figure": "hide-input" in tags, "shown": not HIDDEN & set(tags),
-                "code": cell.source, "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
+                "needs": sorted(needs), "figure": "hide-input" in tags,
+                "shown": not HIDDEN & set(tags), "code": cell.source,
+                "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
                 "numpy": imports_numpy(cell.source),
             }
         )  # fmt: skip

@@ -56,9 +56,15 @@ def write(site):
             (workshop / "js" / "model.js").write_text("export class Model {}\n", "utf8")
         write_python(workshop / "python")
         esbuild(
-            *(workshop / "js" / name for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")),
-            "--bundle", "--format=esm", "--loader:.py=text", f"--outdir={target}",
-        )  # fmt: skip
+            *(
+                workshop / "js" / name
+                for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")
+            ),
+            "--bundle",
+            "--format=esm",
+            "--loader:.py=text",
+            f"--outdir={target}",
+        )
     # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of
     # the page go before.
     rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"

@@ -32,7 +32,8 @@ def quaternion_at(angle, passed, part):
         tilt, way = passed * math.pi / 2, 2 * math.pi * share
         size = math.cos(tilt)
         return [
-            1 - size * size * (1 - math.cos(way)), 0, size * math.sin(way), size * math.sin(tilt) * (1 - math.cos(way))
+            1 - size * size * (1 - math.cos(way)), 0, size * math.sin(way),
+            size * math.sin(tilt) * (1 - math.cos(way))
         ]  # fmt: skip
     # Half circles from 1 to -1, from one way round to the other.
     tilt, half = passed * math.pi if turns == 1 else 0, angle * share / 2

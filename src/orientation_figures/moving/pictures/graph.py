@@ -55,8 +55,10 @@ def picture(sheet, edges, dcms, path):
     sheet.layer = 1
     # The arrows grow shorter where many frames crowd.
     near = [
-        length(subtract(spots[one], spots[other])) for k, one in enumerate(names) for other in names[k + 1 :]
-    ]  # fmt: skip
+        length(subtract(spots[one], spots[other]))
+        for k, one in enumerate(names)
+        for other in names[k + 1 :]
+    ]
     reach = min(REACH, 0.44 * min(near) / SIZE)
     for name in names:
         place = sheet.placed(*spots[name])

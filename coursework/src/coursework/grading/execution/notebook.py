@@ -7,8 +7,9 @@ a student can do is hand in another answer of his own.
 A line is one of
 
     {"begin": step}                       step: ["cell", i] or ["answer", question]
-    {"end": step, "outcome": o, ...}      for a cell: "done", "error", "timeout", "memory", with "error"
-                                          and "line", and "threads": true if it left any running
+    {"end": step, "outcome": o, ...}      for a cell: "done", "error", "timeout", "memory", with
+                                          "error" and "line", and "threads": true if it left any
+                                          running
     {"answer": question, "from": "check" or "variable", "cell": i or null, "plain": data}
     {"answer": question, "from": ..., "cell": ..., "unreadable": text}
     {"tried": text, "cell": i or null}    what a notebook has no business with: a hint for a person

@@ -910,12 +910,12 @@ def run_notebooks(
         Each plain JSON::
 
             {"id": text,
-             "cells": [{"source": text, "execution_count": number or None}, ...],   # code cells
+             "cells": [{"source": text, "execution_count": number or None}, ...],  # code cells
              "questions": {name: {"variable": text or None,
                                   "calls": {"arguments": [[...], ...], "as": "lists" or "arrays"} or
                                   None, "secret calls": the same, optional}},
-             "files": {name: base64 text},                                          # optional, beside it
-             "seed": number}                                                        # optional, 0
+             "files": {name: base64 text},  # optional, beside it
+             "seed": number}                # optional, 0
     workers : int
         How many notebooks run at a time; each worker is a warm parent of its own.
     limits, allow_weak_isolation, without

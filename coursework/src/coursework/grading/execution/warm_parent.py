@@ -8,10 +8,12 @@ It speaks with the process that started it in JSON, one message each:
 
     in   {"start": {...}}                      once: how to isolate, what to try
     out  {"ready": report}
-    in   {"run": {"limits": {...}}}            with three handles: the job, where records go, and the secret calls
+    in   {"run": {"limits": {...}}}            with three handles: the job, where records go,
+                                               and the secret calls
     out  {"ended": {"signal": n} or {"code": n}, "scratch full": bool}
     in   {"kill": true}                        while a notebook runs
-    in   {"copy": {...}}                       with one handle: a copy of this process says "ready" there, and serves
+    in   {"copy": {...}}                       with one handle: a copy of this process says "ready"
+                                               there, and serves
 
 The libraries take most of a second to load, so where several notebooks run at a time one warm
 parent loads them and is copied. One that is copied runs no notebook itself.

@@ -30,7 +30,8 @@ HOME = Path("/autograder")
 CONFIGURATION = "autograder.json"
 
 SETUP = """#!/usr/bin/env bash
-# Run once by Gradescope, with a network: Python, what the packages need, and the questions worked out.
+# Run once by Gradescope, with a network: Python, what the packages need, and the questions worked
+# out.
 set -eu
 export DEBIAN_FRONTEND=noninteractive
 apt-get update -qq

@@ -28,7 +28,7 @@ from ...authoring.source import (
 from ...checking.evaluate import MP
 from ...checking.fields import Json
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
-from ...checking.plain import NotPlain, Plain, read_plain
+from ...checking.plain import NotPlain, Plain, parts_of, read_plain
 from ...checking.plugins import packages
 from ...checking.question import Locker
 from ...checking.questions import OTHER_NUMBERS, compare
@@ -312,8 +312,11 @@ _marked: dict[tuple[object, ...], Mark] = {}
 def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: bool) -> Mark:
     contract = question.contract
     reply, text = judge(name, question, answer, finished, limited)
-    plain = answer.plain or {}
-    short = reply.outcome == "wrong" and len(plain["nodes"]) <= LONGEST_FOR_SIBLINGS
+    short = (
+        reply.outcome == "wrong"
+        and answer.plain is not None
+        and len(answer.plain["nodes"]) <= LONGEST_FOR_SIBLINGS
+    )
     if short and question.newer and _is_right(name, question.newer, answer):
         said = (
             "This is right for the numbers of another edition of this question. Which edition did "
@@ -360,10 +363,10 @@ def _is_right(name: str, question: Asked, answer: Answer) -> bool:
     with contextlib.suppress(
         ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable
     ):
-        asked, plain = question.contract.question, answer.plain or {}
-        text = fingerprint(asked, read(asked, plain))
+        asked = question.contract.question
         return (
-            text in question.contract.known
+            answer.plain is not None
+            and fingerprint(asked, read(asked, answer.plain)) in question.contract.known
             and judge(name, question, answer)[0].outcome == "correct"
         )
     return False
@@ -534,10 +537,10 @@ def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
     """
     calls = question.contract.question.calls
     called = (question.before or question.contract).question.calls
-    kind, *value = plain["value"]
-    if kind != "function" or calls == called:
+    value = plain["value"]
+    if value[0] != "function" or calls == called:
         return plain
-    results, *rest = value
+    results = parts_of(value)
     if (
         not calls
         or not called
@@ -545,7 +548,10 @@ def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
         or any(call not in called for call in calls)
     ):
         return None
-    return {**plain, "value": [kind, [results[called.index(call)] for call in calls], *rest]}
+    return {
+        "value": ["function", [results[called.index(call)] for call in calls], value[2]],
+        "nodes": plain["nodes"],
+    }
 
 
 def _in_secret(

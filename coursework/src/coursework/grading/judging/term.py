@@ -117,9 +117,10 @@ class Rules(NamedTuple):
     def penalty(self, late: datetime.timedelta) -> float:
         """The share of the earned points that a delay costs.
 
-        >>> import datetime
-        >>> rules = Rules("", None, datetime.timedelta(minutes=15), 0.1, 0.5, datetime.timedelta(days=7), {}, [], {})
-        >>> [round(rules.penalty(datetime.timedelta(hours=hours)), 2) for hours in (-1, 0.2, 1, 25, 167, 169)]
+        >>> from datetime import timedelta
+        >>> rules = Rules("", None, timedelta(minutes=15), 0.1, 0.5, timedelta(days=7), {}, [], {})
+        >>> late = [timedelta(hours=hours) for hours in (-1, 0.2, 1, 25, 167, 169)]
+        >>> [round(rules.penalty(delay), 2) for delay in late]
         [0.0, 0.0, 0.1, 0.2, 0.5, 1.0]
         """
         if late <= self.grace:

@@ -260,7 +260,8 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
                         "who": [
                             {
                                 "student": student,
-                                "page": f"../../feedback/{file_name(student)}/{file_name(assignment)}.html",
+                                "page": "../../feedback/"
+                                f"{file_name(student)}/{file_name(assignment)}.html",
                             }
                             for student in same.who
                         ],

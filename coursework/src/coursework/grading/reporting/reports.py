@@ -28,6 +28,8 @@ from .templates_of_pages import ENVIRONMENT, page
 LINKS = "links.json"
 #: What the author's attack says of the points of each assignment, and what that means for a mark.
 STRENGTHS = "strengths.json"
+#: After how many tries it has found each question.
+GUESSED = "guessed.json"
 GUESSING = (
     "What lies before is earned without an idea by whoever lets a script try answers in `check`, "
     "at some 12 ms a try; what "
@@ -173,7 +175,12 @@ def write_all(store: Store) -> None:
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
     write(
         store.folder / "report.html",
-        report(classes, refused, store.said(STRENGTHS, by_name(text)) or {}),
+        report(
+            classes,
+            refused,
+            store.said(STRENGTHS, by_name(text)) or {},
+            store.said(GUESSED, by_name(text)) or {},
+        ),
     )
 
 
@@ -316,7 +323,10 @@ def _deeds() -> dict[str, str]:
 
 
 def report(
-    classes: Mapping[str, _Assignment], refused: Sequence[Refused], strengths: Mapping[str, str]
+    classes: Mapping[str, _Assignment],
+    refused: Sequence[Refused],
+    strengths: Mapping[str, str],
+    guessed: Mapping[str, str],
 ) -> str:
     """The page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
@@ -328,6 +338,7 @@ def report(
         ],
         refused=refused,
         strengths=strengths,
+        guessed=guessed,
         ways=sorted(ways.items()),
         versions=sorted(versions.items()),
         parts=PARTS,
@@ -449,7 +460,7 @@ def _oddities(record: Record) -> dict[str, None]:
         found.update(dict.fromkeys(notebook.notes))
         found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))
         if notebook.unknown_questions:
-            found["it checks an answer to a question that there is not"] = None
+            found["it checks an answer to a question that the assignment does not have"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
         found.update(
             dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)

@@ -20,8 +20,8 @@ Key = TypeVar("Key")
 #: What the columns of rosters and exported gradebooks are called, and what they hold.
 COLUMNS = {
     "own": (
-        "student", "student id", "student_id", "username", "user name", "login", "sis login id", "sis user id",
-        "integration id", "id number", "orgdefinedid", "identifier",
+        "student", "student id", "student_id", "username", "user name", "login", "sis login id",
+        "sis user id", "integration id", "id number", "orgdefinedid", "identifier",
     ),
     "name": ("name", "full name", "student name"),
     "email": ("email", "email address", "e-mail", "e-mail address"),

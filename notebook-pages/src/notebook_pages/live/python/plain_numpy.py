@@ -345,11 +345,11 @@ OFFERED.update({"float64": Number, "int64": Integer, "bool_": Truth, "generic": 
 #: What the real array has; some of it is offered here, for the rest that is asked.
 METHODS = set(
     """
-    T all any argmax argmin argpartition argsort astype base byteswap choose clip compress conj conjugate copy
-    ctypes cumprod cumsum data device diagonal dot dtype dump dumps fill flags flat flatten getfield imag item
-    itemsize mT max mean min nbytes ndim nonzero partition prod put ravel real repeat reshape resize round
-    searchsorted setfield setflags shape size sort squeeze std strides sum swapaxes take to_device tobytes tofile
-    tolist trace transpose var view
+    T all any argmax argmin argpartition argsort astype base byteswap choose clip compress conj
+    conjugate copy ctypes cumprod cumsum data device diagonal dot dtype dump dumps fill flags flat
+    flatten getfield imag item itemsize mT max mean min nbytes ndim nonzero partition prod put ravel
+    real repeat reshape resize round searchsorted setfield setflags shape size sort squeeze std
+    strides sum swapaxes take to_device tobytes tofile tolist trace transpose var view
     """.split()
 )
 
@@ -860,8 +860,8 @@ for _name, _function, _kind in (
     ("add", operator.add, None), ("sub", operator.sub, None), ("mul", operator.mul, None),
     ("truediv", operator.truediv, "f"), ("pow", raised, None), ("mod", rest, None),
     ("floordiv", operator.floordiv, None),
-    ("eq", operator.eq, "b"), ("ne", operator.ne, "b"), ("lt", operator.lt, "b"), ("le", operator.le, "b"),
-    ("gt", operator.gt, "b"), ("ge", operator.ge, "b"),
+    ("eq", operator.eq, "b"), ("ne", operator.ne, "b"), ("lt", operator.lt, "b"),
+    ("le", operator.le, "b"), ("gt", operator.gt, "b"), ("ge", operator.ge, "b"),
 ):  # fmt: skip
     arithmetic(_name, _function, _kind)
 
@@ -945,22 +945,25 @@ def sign_of(value):
 PER_DEGREE, PER_RADIAN = math.pi / 180, 180 / math.pi
 for _name, _function in {
     "sin": math.sin, "cos": math.cos, "tan": math.tan, "arcsin": math.asin, "arccos": math.acos,
-    "arctan": math.atan, "arctan2": math.atan2, "exp": math.exp, "log": math.log, "log10": math.log10,
-    "log2": math.log2, "log1p": math.log1p, "sqrt": math.sqrt, "hypot": math.hypot,
-    "radians": lambda value: value * PER_DEGREE, "degrees": lambda value: value * PER_RADIAN,
-    "sinh": math.sinh, "cosh": math.cosh, "tanh": math.tanh,
-    "rint": nearest_whole, "sinc": lambda value: math.sin(math.pi * value) / (math.pi * value) if value else 1.0,
+    "arctan": math.atan, "arctan2": math.atan2, "exp": math.exp, "log": math.log,
+    "log10": math.log10, "log2": math.log2, "log1p": math.log1p, "sqrt": math.sqrt,
+    "hypot": math.hypot, "radians": lambda value: value * PER_DEGREE,
+    "degrees": lambda value: value * PER_RADIAN, "sinh": math.sinh, "cosh": math.cosh,
+    "tanh": math.tanh, "rint": nearest_whole,
+    "sinc": lambda value: math.sin(math.pi * value) / (math.pi * value) if value else 1.0,
     "true_divide": operator.truediv, "divide": operator.truediv,
     "floor": lambda value: float(math.floor(value)), "ceil": lambda value: float(math.ceil(value)),
 }.items():  # fmt: skip
     of_numbers(_name, _function)
 for _name, _function in {
-    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "power": raised, "mod": rest,
-    "minimum": smaller, "maximum": larger, "negative": operator.neg, "square": lambda value: value * value,
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "power": raised,
+    "mod": rest, "minimum": smaller, "maximum": larger, "negative": operator.neg,
+    "square": lambda value: value * value,
 }.items():  # fmt: skip
     of_numbers(_name, _function, None)
 for _name, _function in {
-    "isfinite": math.isfinite, "isnan": math.isnan, "isinf": math.isinf, "logical_not": operator.not_,
+    "isfinite": math.isfinite, "isnan": math.isnan, "isinf": math.isinf,
+    "logical_not": operator.not_,
 }.items():  # fmt: skip
     of_numbers(_name, _function, "b")
 OFFERED.update({"deg2rad": OFFERED["radians"], "rad2deg": OFFERED["degrees"]})
@@ -2015,13 +2018,14 @@ def seeded(seed):
 #: NumPy's table of widths was made with rounded numbers: so far it is from the exact ones, in units
 #: in the last place.
 ROUNDED = """
-    -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7 -8 -8 -8 -7 -8
-    -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4 -3 -4 -3 -3 -3 -3 -4 -3 -4 -3
-    -3 -4 -3 -2 -2 -3 -3 -3 -4 -3 -3 -3 -3 -3 -3 -3 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 -2 -2 -1 -2 -2 -2 -2 -2 -1 -2 -2
-    -2 -2 -2 -3 -3 -3 -2 -2 -2 -1 -1 -2 -2 -2 -2 -1 -1 -1 -1 -1 -2 -2 -2 -1 -1 -2 -2 -2 -2 -2 -2 -2 -2 -3 -4 -4 -4
-    -3 -3 -3 -3 -2 -2 -2 -1 -1 -1 -1 -1 0 0 0 0 0 -1 -1 0 -1 0 -1 -1 -1 0 0 0 1 2 3 3 3 2 2 1 0 0 0 0 0 0 0 0 -1 0 0
-    0 0 0 0 -1 -1 -1 -1 -1 -2 -1 -2 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 0 -1 -1 -1 0 0 0 -1 -1 0 0 0 0 0 0 -1 0 0 -1 0 -1
-    -1 -1 -1 -1 -1 -1 -1 0 1 0 1 1 1 1 1 1 0 0 0 1 1 0
+    -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7
+    -8 -8 -8 -7 -8 -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4
+    -3 -4 -3 -3 -3 -3 -4 -3 -4 -3 -3 -4 -3 -2 -2 -3 -3 -3 -4 -3 -3 -3 -3 -3 -3 -3 -2 -2 -2 -2 -2 -1
+    -1 -1 -1 -1 -2 -2 -1 -2 -2 -2 -2 -2 -1 -2 -2 -2 -2 -2 -3 -3 -3 -2 -2 -2 -1 -1 -2 -2 -2 -2 -1 -1
+    -1 -1 -1 -2 -2 -2 -1 -1 -2 -2 -2 -2 -2 -2 -2 -2 -3 -4 -4 -4 -3 -3 -3 -3 -2 -2 -2 -1 -1 -1 -1 -1
+    0 0 0 0 0 -1 -1 0 -1 0 -1 -1 -1 0 0 0 1 2 3 3 3 2 2 1 0 0 0 0 0 0 0 0 -1 0 0 0 0 0 0 -1 -1 -1 -1
+    -1 -2 -1 -2 -2 -2 -2 -2 -2 -1 -1 -1 -1 -1 0 -1 -1 -1 0 0 0 -1 -1 0 0 0 0 0 0 -1 0 0 -1 0 -1 -1
+    -1 -1 -1 -1 -1 -1 0 1 0 1 1 1 1 1 1 0 0 0 1 1 0
 """.split()
 
 
