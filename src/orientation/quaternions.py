@@ -307,12 +307,12 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
     def excess(f: NumberFunctions[Number], *components: Number) -> Number:
         return f.largest(
             _length_excess(f, *components[:4]),
-            _length_excess(f, *components[4:8]),
-            f.where(abs(_dot(components[:4], components[4:8])) > 1e-12, 0, 1),
+            _length_excess(f, *components[4:]),
+            f.where(abs(_dot(components[:4], components[4:])) > 1e-12, 0, 1),
         )
 
     def explain(components: Sequence[float], where: str) -> None:
-        for name, part in (("first", components[:4]), ("second", components[4:8])):
+        for name, part in (("first", components[:4]), ("second", components[4:])):
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(

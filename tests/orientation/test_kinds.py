@@ -1,5 +1,6 @@
 """One call for symbols, numbers and batches, and what bad input is told."""
 
+import inspect
 import subprocess
 import sys
 from fractions import Fraction
@@ -84,7 +85,7 @@ NUMBERS_ONLY = {
     "modified_rodrigues_from_dcm": (modified_rodrigues_from_dcm, DCMS),
     "angle_between": (angle_between, DCMS, DCMS[::-1]),
     "interpolate_quaternions": (interpolate_quaternions, QUATERNIONS, OTHERS, SHARE),
-    "nearest_dcm": (lambda dcm: nearest_dcm(dcm).dcm, DCMS),
+    "nearest_dcm": (lambda matrix: nearest_dcm(matrix).dcm, DCMS),
     "distance of nearest_dcm": (lambda matrix: nearest_dcm(matrix).distance, DCMS + 0.01),
 }
 ALL = CONVERSIONS | NUMBERS_ONLY
@@ -92,6 +93,11 @@ every = pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.va
 symbolic = pytest.mark.parametrize(
     "function, batches", [(f, b) for f, *b in CONVERSIONS.values()], ids=CONVERSIONS
 )
+
+
+def name_of(function, place):
+    """What a function calls one of its arguments, and so must its errors."""
+    return list(inspect.signature(function).parameters)[place]
 
 
 def test_no_conversion_is_forgotten():
@@ -367,17 +373,47 @@ def test_what_needs_numbers_says_so(function, batches):
 @every
 def test_missing_numbers_are_found(function, batches):
     for place in range(len(batches)):
+        name = name_of(function, place)
         for bad in (np.nan, np.inf, -np.inf):
             spoilt = [batch.copy() for batch in batches]
             spoilt[place].reshape(COUNT, -1)[7, -1] = bad
             with pytest.raises(
-                ValueError, match=r"\[7.*\] is (nan|inf|-inf): a number is missing or a division"
+                ValueError,
+                match=rf"^{name}\[7.*\] is (nan|inf|-inf): a number is missing or a division",
             ):
                 function(*spoilt)
             with pytest.raises(
-                ValueError, match=r"is (nan|inf|-inf): a number is missing or a division"
+                ValueError,
+                match=rf"^{name}(\[.*\])? is (nan|inf|-inf): a number is missing or a division",
             ):
                 function(*(batch[7] for batch in spoilt))
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        (check_dcm, DCMS[:1]),
+        (orientation.same_orientation, DCMS[:2]),
+        (orientation.diagnose, DCMS[:2]),
+        (orientation.scipy_rotation_from_dcm, DCMS[:1]),
+        (orientation.mean_orientation, (DCMS, ANGLE**2)),
+        (orientation.dcms_after_turns, (DCMS[0], RATES)),
+        (orientation.dcm_from_two_directions, (AXES[:2], RATES[:2])),
+        (orientation.dcm_from_directions, (AXES, AXES, ANGLE**2)),
+        (orientation.directions_covariance, (AXES, ANGLE**2)),
+    ],
+)
+def test_whoever_takes_numbers_says_which_are_none(function, arguments):
+    function(*arguments)
+    for place, argument in enumerate(arguments):
+        name, bad = name_of(function, place), argument.copy()
+        bad.reshape(-1)[-1] = np.nan
+        for wrong, error, said in (
+            (bad, ValueError, r"\[.*\] is nan: a number is missing"),
+            ({"angle": 1}, TypeError, " must hold real numbers"),
+        ):
+            with pytest.raises(error, match=f"^{name}{said}"):
+                function(*arguments[:place], wrong, *arguments[place + 1 :])
 
 
 @every
@@ -397,7 +433,9 @@ def test_wrong_shapes_are_told(function, batches):
         ):
             bad = [wrong if k == place else batch[0] for k, batch in enumerate(batches)]
             with pytest.raises(
-                ValueError, match=rf"has shape \(.*\), where \({item[0]}.*\) or \(\.\.\., "
+                ValueError,
+                match=rf"^{name_of(function, place)} has shape \(.*\), "
+                rf"where \({item[0]}.*\) or \(\.\.\., ",
             ):
                 function(*bad)
 
@@ -545,6 +583,22 @@ def test_matrices_that_are_no_orientation(function):
             function(np.concatenate([np.stack(9000 * [dcm]), [bad]]))
         with pytest.raises(ValueError, match=r"dcm \(item \[1, 2\]\) " + said):
             function(np.stack([*5 * [dcm], bad]).reshape(2, 3, 3, 3))
+
+
+@pytest.mark.parametrize(
+    ("function", "good", "said"),
+    [
+        (angle_between, DCMS[:3], "is not orthogonal: row x has length 2"),
+        (lambda *two: interpolate_quaternions(*two, 0.5), QUATERNIONS[:3], "has length 2, not 1"),
+    ],
+)
+def test_which_of_two_is_no_orientation_is_told(function, good, said):
+    twice = [2 * good[1] if k == 1 else one for k, one in enumerate(good)]
+    for name, pair in (("first", (twice, good)), ("second", (good, twice))):
+        with pytest.raises(ValueError, match=rf"^{name} \(item \[1\]\) {said}"):
+            function(*pair)
+        with pytest.raises(ValueError, match=f"^{name} {said}"):
+            function(*(one[1] for one in pair))
 
 
 def test_single_precision_is_rounding_and_is_told_as_such():

@@ -201,7 +201,10 @@ def test_lengths_multiply_and_are_not_restored():
     "quaternion, said",
     [
         ((0, 0, 0, 0), "has length 0, not 1: the zero quaternion is no orientation"),
-        ((0.7071, 0.7071, 0, 0), "has length 0.99999.*, not 1: were its components rounded"),
+        ((0.7071, 0.7071, 0, 0), "has length 0.99999.*, not 1: were its components rounded when"),
+        ((0.97, 0, 0, 0), "has length 0.97, not 1: were its components rounded, or integrated"),
+        ((0, 1.04, 0, 0), "has length 1.04, not 1: were its components rounded, or integrated"),
+        ((1.06, 0, 0, 0), "has length 1.06, not 1: is the angle halved"),
         ((1, 1, 0, 0), r"has length 1\.41421.*, not 1: is the angle halved"),
         (np.array([ONE, I, 2 * J]), r"quaternion \(item \[2\]\) has length 2, not 1"),
         ((sm.Rational(1, 2), sm.Rational(1, 2), 0, 0), "has length 0.7071"),
