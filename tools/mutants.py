@@ -18,7 +18,6 @@ import argparse
 import ast
 import contextlib
 import difflib
-import gc
 import importlib
 import os
 import pickle
@@ -170,8 +169,6 @@ class Run:
         if failed:
             say("These fail without any change, and are left out:", *sorted(failed), sep="\n  ")
         say(f"{len(self.seconds)} tests, {sum(self.seconds.values()):.0f} s of the processor")
-        gc.collect()
-        gc.freeze()  # or each copy of the process would copy all objects as it looks at them
         paths = {path.stem: path for path in sorted(self.folder.glob("*.py"))}
         for path in [paths[name] for name in self.wanted or paths]:
             module = self.package + ("" if path.stem == "__init__" else f".{path.stem}")

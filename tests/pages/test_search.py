@@ -162,6 +162,7 @@ def test_names_slips_and_words_of_programs_are_understood():
         "__proto__ toString": None,
         "QuaternionToEuler": "chapters/back-from-a-matrix#reading-off-and-turning-back",
         "eular angels": "chapters/euler-angles",
+        "eulre angles": "chapters/euler-angles",  # letters exchanged
         # no rotation vector
         "rotate a vector by a quaternion": "chapters/quaternions-in-full#turning-a-vector",
         "slerp() takes the long way": "chapters/quaternions-in-full#half-way",  # no formula

@@ -162,11 +162,10 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
           .find((parts) => parts.every((part) => part.length > 2 && forms.has(part)));
         if (cut) return cut;
-        for (const most of [1, 2]) { // two in short words only where letters are exchanged
-          const like = [...forms.fuzzyGet(one, most).keys()]
-            .filter((form) => most === 1 || one.length > 6 || sorted(form) === sorted(one));
-          if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
-        }
+        const near = [...forms.fuzzyGet(one, 2)];
+        const close = near.filter(([form, [, slips]]) => slips === 1 || sorted(form) === sorted(one));
+        const like = (close.length ? close : one.length > 6 ? near : []).map(([form]) => form);
+        if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
         return [one];
       };
       found.push(...put());
