@@ -49,7 +49,7 @@ def printed(browser):
     page = browser.new_context().new_page()
     page.set_content(PAGE)
     page.evaluate("document.fonts.ready")
-    made = page.pdf(**pdf.PAPER, outline=True, tagged=True)
+    made = page.pdf(**pdf.PAPER)
     page.context.close()
     return made
 

@@ -176,17 +176,18 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
         guess = nearest_dcm(guess).dcm
         return guess, numpy.asarray(angle_between(dcms, guess))
 
+    begun = []
     try:
         guess, angles = settled(nearest_dcm(average).dcm)
         if angles[weights > 0].max() < numpy.pi / 2:
             return guess  # the only one there is, by the theorem
-        found = [(weights @ angles**2, guess)]
+        begun = [(guess, angles)]
     except ValueError:
-        found = []  # no one place to begin
+        pass  # no one place to begin
     # From places between them too: from one that is half a turn from another, rounding would choose
     # the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
-    found += [(weights @ angles**2, guess) for guess, angles in map(settled, starts)]
+    found = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
     least = min(cost for cost, _ in found)
     best = [guess for cost, guess in found if cost <= least + 1e-9 * (1 + least)]
     apart = max(angle_between(best[0], guess) for guess in best)

@@ -513,6 +513,27 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
         assert "crank = 1" in old and "boom = 2" in old
 
 
+def test_what_was_written_for_a_question_that_is_gone_stands_in_no_other_cell(context, site):
+    """The next edition asks one question less: its answer is shown, named, and put into no cell."""
+    tab = Tab(context, site)
+    gone = {"code": "gone = 1", "number": OTHER, "original": "of code that is gone", "at": 1}
+    tab.page.evaluate(
+        "([page, entry]) => bookStore.put(`answer ${page} simple-orientations-gone`, entry)",
+        [EXERCISE, gone],
+    )
+    tab.reload()
+    box = tab.page.locator(".live-choice", has_text="simple-orientations-gone")
+    box.wait_for()
+    assert "gone = 1" in box.inner_text() and "has changed" not in box.inner_text()
+    assert tab.page.locator("div.cell .live-choice", has_text="gone = 1").count() == 0
+    box.get_by_role("button").click()
+    assert "gone = 1" not in tab.shown()
+    tab.reload()
+    tab.edit()
+    assert "gone = 1" not in tab.shown() and "gone = 1" in json.dumps(tab.page.evaluate(KEPT))
+    assert tab.errors == []
+
+
 def test_copies_of_one_minute_stand_beside_each_other(context, site):
     """What the name of a copy says, the minute, does not tell it from another one."""
     tab = Tab(context, site)
@@ -700,15 +721,16 @@ def test_stored_number_does_not_stand_under_other_code(context, site):
     """Where NumPy is absent, the book's result is folded away from below the reader's changed
     code.
     """
-    page = "chapters/back-from-a-matrix"
+    page = "chapters/measured-matrices"
     tab = Tab(context, site, page)
-    covered = tab.page.evaluate(
-        "[...document.querySelectorAll('div.cell')].map((cell) => !!cell.closest('[inert]'))"
+    with_results = tab.page.evaluate(
+        "[...document.querySelectorAll('div.cell')].map((cell) => "
+        "!cell.closest('[inert]') && !!cell.querySelector('.cell_output'))"
     )
     number = next(
         place
         for place, cell in enumerate(kinds_of_cells()[page], 1)
-        if "numpy" in cell["needs"] and not covered[place - 1]
+        if "numpy" in cell["needs"] and with_results[place - 1]
     )
     tab.page.click(f"button.run-cell >> nth={number - 1}")
     cell = tab.page.locator("div.cell").nth(number - 1)

@@ -2,8 +2,8 @@
 the keyboard.
 
 The queries in ``queries`` were written down, with the places that answer, before the search was
-first run on them; those in the files called held-out were never looked at while it was tuned, and
-asked-held-out was gathered after that.
+first run on them; those in the files called held-out were never looked at while it was tuned,
+asked-held-out was gathered after that, and asked-last when all phrases and shares had been fixed.
 """
 
 import json
@@ -29,7 +29,8 @@ REACHED = {
     "held-out": (0.8, 0.96),
     "held-out-too": (0.9, 0.98),
     "forums-held-out": (0.7, 0.8),
-    "asked-held-out": (0.65, 0.85),
+    "asked-held-out": (0.7, 0.86),
+    "asked-last": (0.72, 0.88),
 }
 FIRST_ANSWER = 150_000  # bytes before it
 CHAPTER = "chapters/gimbal-lock.html"
@@ -93,10 +94,15 @@ def test_what_engineers_call_it_is_found():
         )
 
 
+def written(script):
+    """The data with which a script of the built book begins."""
+    text = (HTML / script).read_text("utf8")
+    return json.loads(text.partition("=")[2].partition(";\n")[0].rstrip(";"))
+
+
 def known():
     """The places of the index, by page and anchor."""
-    index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
-    later = json.loads((HTML / WORDS).read_text("utf8").partition("=")[2].rstrip(";"))
+    index, later = written(SCRIPT), written(WORDS)
     return {
         (index["pages"][row[1] or 0][0], (row + ["", ""])[2])
         for row in index["entries"] + later["entries"]
@@ -156,6 +162,7 @@ def test_names_slips_and_words_of_programs_are_understood():
         "__proto__ toString": None,
         "QuaternionToEuler": "chapters/back-from-a-matrix#reading-off-and-turning-back",
         "eular angels": "chapters/euler-angles",
+        "eulre angles": "chapters/euler-angles",  # letters exchanged
         # no rotation vector
         "rotate a vector by a quaternion": "chapters/quaternions-in-full#turning-a-vector",
         "slerp() takes the long way": "chapters/quaternions-in-full#half-way",  # no formula
@@ -167,8 +174,9 @@ def test_names_slips_and_words_of_programs_are_understood():
 
 def test_first_sentences_are_those_of_the_text():
     """No line that only leads elsewhere; degrees as readers know them."""
-    index = json.loads((HTML / SCRIPT).read_text("utf8").partition("=")[2].partition(";\n")[0])
+    index, later = written(SCRIPT), written(WORDS)
     about = [row[index["fields"].index("about")] for row in index["entries"] if len(row) > 5]
+    about += [words for _, words in later["about"]]
     assert not [
         words
         for words in about

@@ -85,7 +85,7 @@ FILL_IN = """numbers => {
 }"""
 HEADINGS = """() => [...document.querySelectorAll("h1, h2, h3, h4, h5, h6")].map(
   heading => heading.textContent.replace(/\\s+/g, " ").trim())"""
-PAPER = {"prefer_css_page_size": True, "print_background": True}
+PAPER = {"prefer_css_page_size": True, "print_background": True, "outline": True, "tagged": True}
 
 
 def place(page, fragment=""):
@@ -199,7 +199,10 @@ def article(site, page, set_formula=as_picture):
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
-        if paragraph.get_text().rstrip().endswith((":", ",")):
+        # A sentence that goes on below it, and a remark in italics right under a heading.
+        words, before = paragraph.get_text().strip(), paragraph.find_previous_sibling()
+        remark = paragraph.em and paragraph.em.get_text() == words
+        if words.endswith((":", ",")) or (remark and before and before.name in ("h1", "h2", "h3")):
             paragraph["class"] = [*paragraph.get("class", []), "leads-on"]
     for code in text.select("div.cell_input, .cell_output .output"):
         if len(code.get_text().strip().splitlines()) > LONG:
@@ -411,27 +414,39 @@ def finish(printed, headings, title, author):
     return file.getvalue()
 
 
+def print_document(browser, file, numbers):
+    """Print the document ``file``, its list of contents filled in with page ``numbers`` if there
+    are any; return the PDF and the headings, which become its bookmarks.
+
+    The document is opened anew for each print: of one that it has printed before, Chromium breaks
+    some pages elsewhere.
+    """
+    page = browser.new_page(viewport={"width": WIDTH, "height": 900})
+    page.emulate_media(media="print", color_scheme="light")
+    page.goto(file.resolve().as_uri(), timeout=0)  # as long as a slow machine needs
+    page.evaluate("document.fonts.ready.then(() => true)")
+    if faults := page.evaluate(FIT, SMALLEST):
+        raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
+    if numbers:
+        page.evaluate(FILL_IN, numbers)
+    headings = page.evaluate(HEADINGS)
+    printed = page.pdf(**PAPER)
+    page.close()
+    return printed, headings
+
+
 def make(site, file, title, author):
     """The PDF of the built book in ``site``, printed from the document ``file``."""
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(document(site, title), "utf8")
+    # The list of contents needs the page numbers: print, read them, print again, until they are
+    # true.
     with open_browser() as browser:
-        file.parent.mkdir(exist_ok=True)
-        file.write_text(document(site, title), "utf8")
-        page = browser.new_page(viewport={"width": WIDTH, "height": 900})
-        page.emulate_media(media="print", color_scheme="light")
-        page.goto(file.resolve().as_uri(), timeout=0)  # as long as a slow machine needs
-        page.evaluate("document.fonts.ready")
-        if faults := page.evaluate(FIT, SMALLEST):
-            raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
-        # The list of contents needs the page numbers: print, read them, print again, until they are
-        # true. On a busy machine the first print may come before a typeface that only paper shows.
-        numbers, printed = None, page.pdf(**PAPER)
-        for _ in range(3):
-            if page_numbers(printed) == numbers:
-                break
-            numbers = page_numbers(printed)
-            page.evaluate(FILL_IN, numbers)
-            headings = page.evaluate(HEADINGS)
-            printed = page.pdf(**PAPER, outline=True, tagged=True)
-    if page_numbers(printed) != numbers:
-        raise RuntimeError("the page numbers in the list of contents moved the pages they name")
-    return finish(printed, headings, title, author)
+        numbers = None
+        for _ in range(4):
+            printed, headings = print_document(browser, file, numbers)
+            found = page_numbers(printed)
+            if found == numbers:
+                return finish(printed, headings, title, author)
+            numbers = found
+    raise RuntimeError("the page numbers in the list of contents moved the pages they name")

@@ -29,6 +29,7 @@ KINDS = ("page", "section", "term", "function", "exercise", "example", "equation
 SYNONYMS = Path("synonyms.yml")
 LONGEST_SENTENCE = 76
 LATER = ("equation", "figure")
+SAID_LATER = ("function", "exercise", "example")  # their first sentences
 LITTLE = 0.5  # what counts no more than this, is found by its title alone
 #: Sections of every chapter: nobody looks for them by their name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
@@ -252,8 +253,14 @@ def index(site):
     for entry in first:
         if entry["weight"] <= LITTLE and not entry["asked"]:
             entry["about"] = ""
+    about = [
+        [k, entry.pop("about")]
+        for k, entry in enumerate(first)
+        if entry["kind"] in SAID_LATER and entry.get("about")
+    ]
     later = {
         "words": words,
+        "about": about,
         "entries": [row(one) for one in last],
         "tex": [[k, one["tex"]] for k, one in enumerate(last, len(first)) if "tex" in one],
     }

@@ -3,6 +3,7 @@
 // A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare
 // it is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and
 // of itself that was asked for. The shares below were fitted to titles of forums (``tests/pages/queries``).
+import SearchableMap from "minisearch/SearchableMap";
 import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
 // The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
@@ -22,20 +23,6 @@ function overlap(one, other) {
   let common = 0;
   for (const sign of one) if (left.get(sign) > 0) common += 1, left.set(sign, left.get(sign) - 1);
   return common;
-}
-
-// How many letters must be changed, added or left out, or two neighbours exchanged, to make one word of the other.
-function slips(one, other) {
-  let [before, row] = [[], [...Array(other.length + 1).keys()]];
-  for (let i = 1; i <= one.length; i += 1) {
-    const next = [i];
-    for (let j = 1; j <= other.length; j += 1) {
-      next[j] = Math.min(row[j] + 1, next[j - 1] + 1, row[j - 1] + (one[i - 1] === other[j - 1] ? 0 : 1));
-      if (one[i - 1] === other[j - 2] && one[i - 2] === other[j - 1]) next[j] = Math.min(next[j], before[j - 2] + 1);
-    }
-    [before, row] = [row, next];
-  }
-  return row[other.length];
 }
 
 // What a reader looks for is rather one than another of these, where both answer as well.
@@ -63,10 +50,12 @@ const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles",
   "rotations", "orientation"]);
 const isWay = (sign) => sign.term.includes(">");
 
-// ``more`` holds the words of each entry's text, the TeX of the equations, these and the figures, once they are there.
+// ``more`` holds the words of each entry's text, further first sentences, the TeX of the equations, these and the figures,
+// once they are there.
 export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, more = {}) {
   const entries = [...rows, ...more.entries ?? []].map((row) => (
     Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined]))));
+  for (const [id, about] of more.about ?? []) entries[id].about = about;
   for (const entry of entries) entry.kind = kinds[entry.kind ?? 0], entry.page ??= 0;
 
   // Concepts have several names, of one word or more; so have the things that can be converted into one another.
@@ -116,11 +105,11 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   }
 
   // Each title and each phrase is a document, and so is each text.
-  const documents = [], having = new Map(), spread = new Map(), forms = new Set();
+  const documents = [], having = new SearchableMap(), spread = new Map(), forms = new SearchableMap();
   const add = (entry, text, { within, ...more }) => {
     const read = within === "text" ? { list: words(text), signs: [] } : understood(text);
     const one = { entry, share: 1, within, ...more, ...read };
-    for (const word of one.all ?? []) forms.add(word);
+    for (const word of one.all ?? []) forms.set(word, true);
     for (const term of new Set([...one.list, ...one.signs.map((sign) => sign.term)])) {
       if (!having.has(term)) having.set(term, []), spread.set(term, new Set());
       having.get(term).push(one);
@@ -146,6 +135,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     return Math.min(rarity(word), ...same.map((sign) => rarity(sign.term)))
       * (isWeak(word) ? OF_WEAK : ofSubject.has(word) || /\d/.test(word) ? 1 : OF_OTHERS);
   });
+  const sorted = (word) => [...word].sort().join("");
   const sum = (list) => list.reduce((all, one) => all + one, 0);
   for (const one of documents) if (!one.within) one.worths = worths(one), one.worth = sum(one.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
@@ -161,7 +151,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       const put = () => {
         const two = [one, next];
         if (next && !two.some(isLeftOut) && !two.every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
-        const longer = one.length > 2 ? [...forms].filter((form) => form.startsWith(one)) : [];
+        const longer = one.length > 2 ? [...forms.atPrefix(one).keys()] : [];
         if (goesOn && !next && longer.length) { // as it makes a name with what stands before, or else the most frequent
           const named = longer.find((form) => understood([...found, form].join(" ")).names.at(-1));
           return [named ?? (forms.has(one) ? one : widest(longer))];
@@ -172,11 +162,10 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
           .find((parts) => parts.every((part) => part.length > 2 && forms.has(part)));
         if (cut) return cut;
-        for (let most = 1; most <= (one.length > 6 ? 2 : 1); most += 1) {
-          const near = [...forms].filter((form) => Math.abs(form.length - one.length) <= most);
-          const like = near.filter((form) => slips(one, form) <= most);
-          if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
-        }
+        const near = [...forms.fuzzyGet(one, 2)];
+        const close = near.filter(([form, [, slips]]) => slips === 1 || sorted(form) === sorted(one));
+        const like = (close.length ? close : one.length > 6 ? near : []).map(([form]) => form);
+        if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
         return [one];
       };
       found.push(...put());
@@ -188,7 +177,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   function meant(word, typed, goesOn) {
     const found = new Map(), whole = having.has(typed) || having.has(stem(typed));
     if (typed.length > 2 && (goesOn || !whole)) {
-      for (const term of having.keys()) if (term.startsWith(typed)) {
+      for (const term of having.atPrefix(typed).keys()) {
         found.set(term, whole ? 0.6 : 0.92 - 0.02 * (term.length - typed.length));
       }
     }
