@@ -80,7 +80,7 @@ function setFormulas(box) {
       if (place % 2 === 0) return part;
       const math = element("span");
       math.innerHTML = katex.renderToString(part, { output: "htmlAndMathml", throwOnError: false, strict: "ignore" });
-      return math;
+      return math.firstChild;
     });
     text.replaceWith(...parts);
   }
