@@ -1,5 +1,6 @@
 """What the tests share: which of them run, the built site, a server for it, and a browser."""
 
+import gc
 import os
 import threading
 from collections import defaultdict
@@ -72,6 +73,19 @@ def pytest_configure(config):
 
 def pytest_report_header():
     return f"what is drawn by lot is drawn from BOOK_TEST_SEED={SEED!r}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """What is collected stays to the end: whoever looks for memory to be freed need not look at it,
+    which would take a third of the time of collecting.
+    """
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out

@@ -199,8 +199,6 @@ for name in codes["cells"]:
     told[name] = json.loads(sys.__stdout__.getvalue())
 sys.__stdout__ = plain
 sys.meta_path[:] = [finder for finder in sys.meta_path if type(finder).__name__ != "Missing"]
-for name in [name for name in sys.modules if name.partition(".")[0] == "numpy"]:
-    del sys.modules[name]
 
 class Node(dict):
     __getattr__ = dict.get

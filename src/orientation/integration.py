@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from .direction_cosines import check_dcm
+from .direction_cosines import demand_dcm
 from .numbers_and_symbols import number_array
 from .rotation_vector import dcm_from_rotation_vector
 
@@ -131,12 +131,13 @@ def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
     """
     import numpy
 
-    check_dcm(start)
-    small = dcm_from_rotation_vector(turns)
-    if small.ndim != 3:
-        raise ValueError(f"turns has shape {numpy.shape(turns)}, where (n, 3) was expected")
-    dcms = numpy.empty((len(small) + 1, 3, 3))
+    start, turns = number_array(start, (3, 3), "start"), number_array(turns, (3,), "turns")
+    for name, array, expected in (("start", start, "(3, 3)"), ("turns", turns, "(n, 3)")):
+        if array.ndim != 2:
+            raise ValueError(f"{name} has shape {array.shape}, where {expected} was expected")
+    demand_dcm(start.ravel().tolist(), name="start")
+    dcms = numpy.empty((len(turns) + 1, 3, 3))
     dcms[0] = start
-    for k, turn in enumerate(small):
+    for k, turn in enumerate(dcm_from_rotation_vector(turns)):
         dcms[k + 1] = turn @ dcms[k]
     return dcms

@@ -6,9 +6,7 @@ or arrays that hold a batch), hands the components to the formula with the match
 and friends, and shapes the results.
 
 SymPy objects are recognised without importing SymPy. One orientation in numbers is computed with
-Python's own floats, which is faster than with arrays, and needs NumPy for the result only: where
-there is none, as in a browser, the result is a :class:`~orientation._plain_arrays.PlainArray`.
-Batches need NumPy.
+Python's own floats, which is faster than with arrays, and needs NumPy for the result only.
 """
 
 from __future__ import annotations
@@ -19,8 +17,6 @@ import numbers
 import operator
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias, TypeGuard, TypeVar, overload
-
-from ._plain_arrays import PlainArray
 
 if TYPE_CHECKING:
     from ._types import (
@@ -82,7 +78,7 @@ def is_symbolic(value: object) -> TypeGuard[Symbols]:
     """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
-    if isinstance(value, (PlainArray, float)):
+    if isinstance(value, float):
         return False
     if hasattr(value, "dtype") and hasattr(value, "tolist") and value.dtype == object:
         return is_symbolic(value.tolist())
@@ -162,8 +158,6 @@ def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None
         elif len(item) != 1 or len(value) != item[0]:
             return None
         entries = value if _PLAIN.issuperset(map(type, value)) else None
-    elif type(value) is PlainArray:
-        entries = value.entries() if value.shape == item else None
     elif _is_array(value) and value.shape == item and value.dtype.char == "d":
         entries = value.ravel().tolist()
     try:
@@ -181,9 +175,7 @@ _PLAIN = {float, int}
 
 
 def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | None:
-    """The floats of one item of the given shape as a list; None for what needs NumPy: a batch, or
-    another shape.
-    """
+    """The floats of one item of the given shape as a list; None for a batch, or another shape."""
     entries = _at_a_glance(value, item)
     if entries is not None:
         return list(map(float, entries))
@@ -257,10 +249,8 @@ def _evaluate_item(
     result = [
         entry + 0.0 for entry in result
     ]  # adding zero turns -0 into 0, which would look like a wrong sign
-    try:
-        from numpy import array
-    except ModuleNotFoundError:
-        return PlainArray.of(result, shape)  # type: ignore[return-value]  # it stands for an array
+    from numpy import array
+
     return array(result).reshape(shape) if len(shape) > 1 else array(result)
 
 

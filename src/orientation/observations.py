@@ -227,8 +227,8 @@ def _weighted(
     import numpy
 
     observed, reference = (
-        numpy.asarray(observed, dtype=float),
-        numpy.asarray(reference, dtype=float),
+        number_array(observed, (), "observed"),
+        number_array(reference, (), "reference"),
     )
     if observed.ndim < 2 or observed.shape[-1] != 3 or observed.shape[-2:] != reference.shape[-2:]:
         raise ValueError(

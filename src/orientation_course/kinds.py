@@ -67,7 +67,7 @@ def _dcm(question, value):
 
 
 def _quaternion(question, value):
-    return components(value, 4, "A list of four numbers, the scalar first,")
+    return components(value, 4, "A list of four numbers, the scalar first")
 
 
 def _angles(question, value):
@@ -75,7 +75,7 @@ def _angles(question, value):
 
 
 def _axis_and_angle(question, value):
-    wanted = "An axis with three components and an angle, `(axis, angle)`,"
+    wanted = "An axis with three components and an angle, `(axis, angle)`"
     if value[0] != "list" or len(value[1]) != 2:
         raise shape_fault(wanted, value)
     first, second = value[1]
@@ -87,7 +87,7 @@ def _axis_and_angle(question, value):
 
 
 def _sequence(question, plain):
-    given = word(plain, "A sequence of three axes, such as `'xyz'`,").lower()
+    given = word(plain, "A sequence of three axes, such as `'xyz'`").lower()
     # Wide letters are letters; and in many a book the axes are numbers.
     text = "".join(letter for letter in unicodedata.normalize("NFKC", given) if letter.isalnum())
     text = text.translate(str.maketrans("123", "xyz"))

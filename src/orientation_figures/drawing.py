@@ -16,30 +16,14 @@ from pathlib import Path
 
 import numpy as np
 
-from orientation.axis_angle import dcm_from_axis_angle
 from orientation.direction_cosines import simple_dcm
 
 from .style import STYLE
-
-# Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their
-# strokes, without colour.
-BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
-TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
-DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
-HEADS = {
-    "A": TRIANGLE,
-    "B": TRIANGLE,
-    "C": DIAMOND,
-    "D": TRIANGLE,
-    "E": TRIANGLE,
-    "F": DIAMOND,
-    "Z": TRIANGLE,
-}
+from .vectors import unit
+from .words import Words, hatted  # noqa: F401  # those who draw took it from here before
 
 #: How the labels of the book's drawings are set: ``python -m tools.labels`` writes it.
 LABELS = Path(__file__).with_name("labels.json")
-
-ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
 
 
 def looking_down(axis):
@@ -95,12 +79,7 @@ def view_from(azimuth, elevation):
 IN_SPACE = view_from(np.radians(32), np.radians(24))
 
 
-def hatted(letter):
-    """Return the symbols of three unit vectors, as labels."""
-    return [rf"$\hat{{{letter}}}_{axis}$" for axis in "xyz"]
-
-
-class Drawing:
+class Drawing(Words):
     r"""A sheet on which frames, vectors and angles are drawn.
 
     The sheet is cut to what is drawn. Every drawing method returns the drawing, so that calls can
@@ -152,230 +131,65 @@ class Drawing:
         """
         return self.scale * (np.asarray(points, dtype=float) @ self.view.T)[..., :2] * (1, -1)
 
-    def path(self, commands, points, kind):
+    @property
+    def size(self):
+        """Pixels for one unit of length, by the name that the words have for it."""
+        return self.scale
+
+    @size.setter
+    def size(self, pixels):
+        self.scale = pixels
+
+    def path(self, commands, points, kind, depth=0):
         """Add an SVG path, one letter of ``commands`` per step; ``points`` on the sheet, ``kind``
-        its classes.
+        its classes. On paper what comes later lies above, whatever its ``depth``.
         """
         self.marks.append(
             (kind.strip(), commands, np.asarray(points, dtype=float).reshape(-1, 2), 1.0)
         )
         return self
 
-    def _write(self, text, place, colour, size=20, opacity=1.0):
+    def text(self, text, place, colour, size=20, opacity=1.0):
+        """Write ``text``, its middle at a place of the sheet."""
         self.marks.append((f"text {colour}", (text, size), np.asarray(place, dtype=float), opacity))
         return self
-
-    # Lines, areas and words.
-
-    def line(self, points, colour="ink", kind=""):
-        """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or
-        'tube'.
-        """
-        for layer in (kind, "tube core") if kind == "tube" else (kind,):
-            self.path("M" + "L" * (len(points) - 1), self.on_sheet(points), f"{layer} {colour}")
-        return self
-
-    def area(self, points, colour="ink", fill=16, edge=True):
-        """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the
-        colour.
-        """
-        kind = f"fill-{fill} " + ("" if edge else "bare ")
-        return self.path("M" + "L" * (len(points) - 1) + "Z", self.on_sheet(points), kind + colour)
-
-    def dot(self, point, colour="ink", radius=4):
-        """Draw a dot with a radius in pixels."""
-        return self.path(*ellipse(self.on_sheet(point), (radius, 0), (0, radius)), f"head {colour}")
-
-    def label(self, point, text, colour="ink", shift=(0, 0), size=20):
-        """Write ``text``, its middle on a point."""
-        return self._write(text, self.on_sheet(point) + shift, colour, size)
 
     def note(self, text, colour="ink", size=18):
         """Write a line of ``text`` under all that has been drawn so far."""
         left, _, right, bottom = self.bounds()
-        return self._write(text, ((left + right) / 2, bottom + 1.4 * size), colour, size)
+        return self.text(text, ((left + right) / 2, bottom + 1.4 * size), colour, size)
 
-    # Arrows and frames.
-
-    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, bow=0, size=20):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
-        the tip.
-
-        An arrow that points straight at the reader is a circle with a dot, one that points straight
-        away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
-        and carries its label at its middle.
-        """
-        reach = np.subtract(end, start)
-        tail, tip = self.on_sheet([start, end])
-        along, length = _direction(tip - tail)
-        if length < 0.05 * self.scale * np.linalg.norm(reach):
-            self.path(*ellipse(tip, (9, 0), (0, 9)), f"paper {colour}")
-            if self.view[2] @ reach > 0:
-                self.path(*ellipse(tip, (3, 0), (0, 3)), f"head {colour}")
-            else:
-                self.path(
-                    "MLML", tip + 6.4 * np.array([(-1, -1), (1, 1), (-1, 1), (1, -1)]), colour
-                )
-            outward = np.array((15, 15))
-        elif bow:
-            left = np.array((along[1], -along[0]))
-            first, second = (
-                tail + part * (tip - tail) + 4 / 3 * bow * left for part in (0.25, 0.75)
-            )
-            along = _direction(tip - second)[0]
-            self.path("MC", [tail, first, second, tip - 9 * along], f"axis {colour}")
-            self._head(tip, along, 1, colour)
-            outward, tip = np.sign(bow) * 15 * left, (tail + tip) / 2 + bow * left
-        else:
-            head = min(1, 0.5 * length / 14)
-            self.path("ML", [tail, tip - 10 * head * along], f"axis {colour}")
-            self._head(tip, along, head, colour)
-            outward = 17 * along
-        return (
-            self._write(label, tip + (outward if shift is None else shift), colour, size)
-            if label
-            else self
-        )
-
-    def _head(self, tip, along, size, colour):
-        corners = size * np.array(HEADS.get(colour, BARB)) @ [along, (-along[1], along[0])]
-        self.path("MLLLZ", tip + corners, f"head {colour}")
-
-    def triad(
-        self, letter, dcm, origin=(0, 0, 0), length=1.0, labels=None, shifts=(None, None, None)
+    def arrow(
+        self,
+        end,
+        start=(0, 0, 0),
+        colour="ink",
+        label="",
+        shift=None,
+        bow=0,
+        size=20,
+        kind="",
     ):
-        """Draw the unit vectors of the frame ``letter``.
-
-        ``dcm``, shape ``(3, 3)``, is the direction cosine matrix of that frame with respect to N:
-        its rows are the frame's unit vectors. ``labels`` are three strings, by default the hatted
-        symbols; an empty string leaves that arrow without a label, and None leaves that arrow out.
+        """Draw an arrow, as :meth:`Words.arrow`; one with a ``bow`` curves to its left by so many
+        pixels, and carries its label at its middle.
         """
-        if labels is None:
-            labels = hatted(letter.lower())
-        for row, label, shift in zip(np.asarray(dcm, dtype=float), labels, shifts, strict=True):
-            if label is not None:
-                self.arrow(origin + length * row, origin, letter, label, shift)
-        return self
+        if not bow:
+            return super().arrow(end, start, colour, label, shift, size, kind)
+        tail, tip = self.on_sheet([start, end])
+        along = np.array(unit(tip - tail))
+        left = np.array((along[1], -along[0]))
+        first, second = (tail + part * (tip - tail) + 4 / 3 * bow * left for part in (0.25, 0.75))
+        along = np.array(unit(tip - second))
+        self.path("MC", [tail, first, second, tip - 9 * along], f"axis {colour}")
+        self.head(tip, along, 1, colour)
+        middle, outward = (tail + tip) / 2 + bow * left, np.sign(bow) * 15 * left
+        place = middle + (outward if shift is None else shift)
+        return self.text(label, place, colour, size) if label else self
 
     def node(self, point, letter):
         """Draw a circle that stands for the frame ``letter`` in a diagram of connected frames."""
-        self.path(*ellipse(self.on_sheet(point), (19, 0), (0, 19)), f"fill-8 axis {letter}")
+        self.ellipse(self.on_sheet(point), (19, 0), (0, 19), f"fill-8 axis {letter}")
         return self.label(point, f"${letter}$", letter)
-
-    # Angles and circles.
-
-    def turn(
-        self,
-        axis,
-        angle,
-        start,
-        radius=0.5,
-        label="",
-        origin=(0, 0, 0),
-        colour="ink",
-        shift=(0, 0),
-        kind="",
-        head=True,
-    ):
-        """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about
-        ``axis``.
-        """
-        axis, angle, pieces = _direction(axis)[0], float(angle), 4
-        arm = radius * _direction(start)[0]
-
-        def turned(part):
-            # The rows of A_C_N are N's unit vectors turned; its transpose turns every vector alike.
-            return dcm_from_axis_angle(axis, part * angle).T @ arm
-
-        swept = abs(angle) * radius * self.scale
-        size = min(0.8, 0.5 * swept / 14) if head else 0
-        last = 1 - (9 * size / swept if swept else 0)
-        reach = 4 / 3 * np.tan(last * angle / pieces / 4)
-        points = [arm]
-        for k in range(pieces):
-            near, far = turned(last * k / pieces), turned(last * (k + 1) / pieces)
-            points += [near + reach * np.cross(axis, near), far - reach * np.cross(axis, far), far]
-        self.path("M" + "C" * pieces, self.on_sheet(np.add(origin, points)), f"{kind} {colour}")
-        tip, before, middle, centre = self.on_sheet(
-            np.add(origin, [turned(1), turned(last), turned(0.5), 0 * arm])
-        )
-        if head:
-            self._head(tip, _direction(tip - before)[0], size, colour)
-        if label:
-            place = middle + 15 * _direction(middle - centre)[0] + shift
-            self._write(label, place, colour, opacity=min(1.0, abs(angle) / 0.2))
-        return self
-
-    def arc(
-        self,
-        start,
-        end,
-        radius=0.5,
-        label="",
-        origin=(0, 0, 0),
-        colour="ink",
-        shift=(0, 0),
-        kind="",
-        head=True,
-    ):
-        """Draw the angle from the direction ``start`` to the direction ``end``, the short way
-        round.
-        """
-        axis, sine = _direction(np.cross(start, end))
-        angle = np.arctan2(sine, np.dot(start, end))
-        return self.turn(axis, angle, start, radius, label, origin, colour, shift, kind, head)
-
-    def right_angle(self, first, second, origin=(0, 0, 0), size=0.12, colour="muted"):
-        """Mark the right angle between two directions at ``origin``."""
-        first, second = (size * _direction(direction)[0] for direction in (first, second))
-        return self.line(np.add(origin, [first, first + second, second]), colour)
-
-    def circle(self, normal, radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide"):
-        """Draw the circle about ``normal``; ``kind`` as in ``line``, or 'fill-8', 'fill-16', ..."""
-        normal = _direction(normal)[0]
-        first = radius * _direction(np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))]))[0]
-        return self.path(
-            *ellipse(*self.on_sheet([origin, first, np.cross(normal, first)])), f"{kind} {colour}"
-        )
-
-    # Solid bodies. Draw what lies farther from the reader first. Faces turned away shrink to
-    # nothing instead of being left out, so that an Animation finds the same marks at every moment.
-
-    def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
-        """Draw a box with edges ``size`` along the rows of ``dcm``, its middle at ``origin``."""
-        half = np.asarray(dcm, dtype=float) * np.reshape(size, (3, 1)) / 2
-        for i, fill in enumerate((26, 16, 8)):
-            u, v = half[(i + 1) % 3], half[(i + 2) % 3]
-            for outward in (half[i], -half[i]):
-                seen = outward @ self.view[2] > 0
-                self.area(
-                    origin + outward + seen * np.array([u + v, v - u, -u - v, u - v]), colour, fill
-                )
-        return self
-
-    def cylinder(self, start, end, radius, colour="ink", fill=26):
-        """Draw a cylinder between the middles of its two round ends."""
-        facing, radius = _direction(np.subtract(end, start))[0] @ self.view[2], radius * self.scale
-        ends = self.on_sheet([start, end])
-        along = _direction(ends[1] - ends[0])[0] if abs(facing) < 0.9999 else np.array((1.0, 0.0))
-        bulge, side = radius * abs(facing) * along, radius * np.array((-along[1], along[0]))
-        body = [
-            place + part
-            for place, out, across in ((ends[1], bulge, side), (ends[0], -bulge, -side))
-            for part in (
-                across,
-                across + ROUND * out,
-                ROUND * across + out,
-                out,
-                out - ROUND * across,
-                ROUND * out - across,
-                -across,
-            )
-        ]
-        self.path("MCCLCCZ", body, f"fill-{fill} {colour}")
-        for place, seen in zip(ends, (facing < 0, facing > 0)):
-            self.path(*ellipse(place, seen * bulge, seen * side), f"fill-8 {colour}")
-        return self
 
     # SVG.
 
@@ -570,21 +384,3 @@ def path_data(commands, points, decimals=2):
         data += letter + " ".join(pair(point, decimals) for point in points[k : k + count])
         k += count
     return data
-
-
-def _direction(vector):
-    """Return the unit vector and the length; a zero vector stays zero."""
-    vector = np.asarray(vector, dtype=float)
-    length = np.linalg.norm(vector)
-    return (vector / length if length > 1e-9 else 0 * vector), length
-
-
-def ellipse(middle, u, v):
-    """Return the commands and points of the ellipse with conjugate half diameters ``u`` and
-    ``v``.
-    """
-    middle, u, v = np.asarray(middle), np.asarray(u), np.asarray(v)
-    points = [u]
-    for near, far in ((u, v), (v, -u), (-u, -v), (-v, u)):
-        points += [near + ROUND * far, far + ROUND * near, far]
-    return "MCCCCZ", middle + points

@@ -60,7 +60,7 @@ EQUAL = [
         simple_dcm("z", psi + theta + phi),
     ),
     (composed(SYMBOLS, "zxy"), composed(SYMBOLS, "zxy").expand()),
-    (sum_form(composed(SYMBOLS, "zxy")), composed(SYMBOLS, "zxy")),
+    (lambda: sum_form(composed(SYMBOLS, "zxy")), composed(SYMBOLS, "zxy")),
     (
         composed(SYMBOLS, "zxy").adjugate() / composed(SYMBOLS, "zxy").det(),
         composed(SYMBOLS, "zxy").T,
@@ -89,6 +89,8 @@ EQUAL = [
 
 @pytest.mark.parametrize("pair", EQUAL, ids=range(len(EQUAL)))
 def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch):
+    pair = [one() if callable(one) else one for one in pair]
+
     def refuse(*_, **__):
         raise AssertionError("an algebraic simplification was asked for")
 

@@ -389,6 +389,33 @@ def test_missing_numbers_are_found(function, batches):
                 function(*(batch[7] for batch in spoilt))
 
 
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        (check_dcm, DCMS[:1]),
+        (orientation.same_orientation, DCMS[:2]),
+        (orientation.diagnose, DCMS[:2]),
+        (orientation.scipy_rotation_from_dcm, DCMS[:1]),
+        (orientation.mean_orientation, (DCMS, ANGLE**2)),
+        (orientation.dcms_after_turns, (DCMS[0], RATES)),
+        (orientation.dcm_from_two_directions, (AXES[:2], RATES[:2])),
+        (orientation.dcm_from_directions, (AXES, AXES, ANGLE**2)),
+        (orientation.directions_covariance, (AXES, ANGLE**2)),
+    ],
+)
+def test_whoever_takes_numbers_says_which_are_none(function, arguments):
+    function(*arguments)
+    for place, argument in enumerate(arguments):
+        name, bad = name_of(function, place), argument.copy()
+        bad.reshape(-1)[-1] = np.nan
+        for wrong, error, said in (
+            (bad, ValueError, r"\[.*\] is nan: a number is missing"),
+            ({"angle": 1}, TypeError, " must hold real numbers"),
+        ):
+            with pytest.raises(error, match=f"^{name}{said}"):
+                function(*arguments[:place], wrong, *arguments[place + 1 :])
+
+
 @every
 def test_wrong_shapes_are_told(function, batches):
     for place in range(len(batches)):

@@ -94,6 +94,9 @@ def test_only_the_shares_of_weights_count_and_a_share_of_none_leaves_one_out(met
     dcms, weights = np.concatenate([near, -np.diag([1, 1, -1]) @ near[:1]]), np.arange(1.0, 7)
     weights[5] = 0
     right = mean_orientation(near, weights[:5], metric=metric)
+    assert same_orientation(
+        mean_orientation(near, metric=metric), mean_orientation(near, np.full(5, 7), metric=metric)
+    )
     for scale in (1e-3, 1, 1e3):
         assert same_orientation(mean_orientation(dcms, scale * weights, metric=metric), right)
 

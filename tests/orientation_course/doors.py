@@ -2,9 +2,9 @@
 standard input.
 
 ``laptop`` has NumPy. ``page`` is Python on a page of the book, where ``plain_numpy.py`` stands in
-for NumPy until a cell needs the real one; ``notebook interface`` is JupyterLite, where nothing
-stands in for it. What needs the real one says so, and is run again with it, as a reader would. The
-fourth door is the grader's own: see ``test_doors.py``.
+for NumPy until a cell needs the real one; ``notebook interface`` is JupyterLite, where it does so
+until a cell imports NumPy and it is fetched. What needs the real one says so, and is run again with
+it, as a reader would. The fourth door is the grader's own: see ``test_doors.py``.
 """
 
 import json
@@ -86,21 +86,25 @@ class Absent:
 
 def run_plainly(cells):
     names = {"__name__": "__main__"}
-    absent = Absent()
-    if door != "laptop":
-        for name in [*sys.modules]:
-            if name.partition(".")[0] in ("numpy", "matplotlib", "scipy"):
-                del sys.modules[name]
-        sys.meta_path.insert(0, absent)
     for cell in cells:
-        try:
-            exec(compile(cell, "a cell", "exec"), names)
-        except ModuleNotFoundError as error:
-            if absent not in sys.meta_path or error.name != "numpy":
-                raise
+        exec(compile(cell, "a cell", "exec"), names)
+
+
+def run_in_a_notebook(cells):
+    from IPython.core.interactiveshell import InteractiveShell
+
+    absent = Absent()
+    sys.meta_path.insert(0, absent)
+    shell = InteractiveShell()
+    shell.history_manager.enabled = False
+    shell.run_line_magic("load_ext", "plain_numpy")
+    for cell in cells:
+        result = shell.run_cell(cell)
+        if absent in sys.meta_path and getattr(result.error_in_exec, "name", None) == "numpy":
             needed.append(cell)
             sys.meta_path.remove(absent)
-            exec(compile(cell, "a cell", "exec"), names)
+            result = shell.run_cell(cell)
+        result.raise_error()
     if absent in sys.meta_path:
         sys.meta_path.remove(absent)
 
@@ -121,8 +125,15 @@ def run_in_the_page(cells):
     sys.meta_path.remove(shell.missing)
 
 
+run = {
+    "laptop": run_plainly,
+    "page": run_in_the_page,
+    "notebook interface": run_in_a_notebook,
+}[door]
 if door == "page":
     sys.path.insert(0, folder)
+elif door == "notebook interface":
+    sys.path.append(folder)  # behind the real IPython
 elif door == "laptop":
     import numpy  # once, for all that are forked
 checking.judge = judge_and_tell
@@ -132,7 +143,7 @@ for cells in given:
     reading, writing = os.pipe()
     if not os.fork():
         try:
-            (run_in_the_page if door == "page" else run_plainly)(cells)
+            run(cells)
             with open(writing, "w") as out:
                 json.dump([told, needed], out)
         except BaseException:

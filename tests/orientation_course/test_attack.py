@@ -67,6 +67,23 @@ def test_an_answer_that_can_be_guessed_is_found():
     assert try_question(ABOUT_X).attack.tries <= 6
 
 
+def test_the_angular_velocity_of_successive_turns_is_found_along_both_frames():
+    psi, elevation = dynamicsymbols("psi theta")
+    psi_dot, up = psi.diff(), elevation.diff()
+    along_the_last = [up, psi_dot * sm.sin(elevation), psi_dot * sm.cos(elevation)]
+    along_the_first = [up * sm.cos(psi), up * sm.sin(psi), psi_dot]
+    for answer in (along_the_last, along_the_first):
+        one = question(
+            "trial/radar",
+            "vector",
+            answer,
+            frames=("C",),
+            symbols="psi theta psi' theta'",
+            length=3,
+        )
+        assert attack(one, budget=3000).way.startswith("the angular velocity of turns")
+
+
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
     """None of these is a turn about an axis through a special angle; each is one to three calls
     with what is given.

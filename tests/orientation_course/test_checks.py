@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 import random
+import re
 import sys
 import threading
 from dataclasses import replace
@@ -24,7 +25,7 @@ from coursework.checking import plugins, questions, sealing
 from coursework.checking.catalogue import message
 from coursework.checking.kinds import Fault, Undecidable
 from coursework.checking.plain import NotPlain, to_plain
-from coursework.checking.question import Sealed
+from coursework.checking.question import Question, Sealed
 from coursework.checking.questions import NoSuchQuestion
 from coursework.checking.reading import fault, read
 from coursework.checking.reply import Reply
@@ -1040,3 +1041,17 @@ def test_what_sympy_has_put_off_and_what_mechanics_makes_is_read():
     rows = make("trial/rows", answer=frames[1].dcm(frames[0]), frames=("A", "N"), symbols="theta")
     assert passes(rows, [frames[1].x, frames[1].y, frames[1].z])
     assert reply_to(rows, [ReferenceFrame("Q").x] * 3).note == "frame"
+
+
+@pytest.mark.parametrize("kind", sorted(plugins.kinds()))
+def test_what_is_wanted_is_said_in_a_whole_sentence(kind):
+    asked = Question(
+        kind, frames=("B", "A"), length=3, options=("x", "y"), arguments={"sequence": "xyz"}
+    )
+    for answer in ("no such text", [1, "two"], {1, 2}, 3, sm.eye(2)):
+        try:
+            read(asked, to_plain(answer))
+        except Fault as found:
+            assert not re.search(r"[,;:.] ?[,;:.]", found.message), found.message
+        except (NotPlain, KeyError):
+            pass  # it says so elsewhere; an answer in words that is none of the options

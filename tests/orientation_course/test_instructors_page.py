@@ -6,12 +6,41 @@ from pathlib import Path
 
 import pytest
 
+from coursework.authoring.course import find_course
+from coursework.authoring.source import measured_questions, share_beyond
 from coursework.grading import sample_class
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import term
 from coursework.grading.judging.ledger import Ledger
 from coursework.grading.store import Store
+
+PAGE = Path(__file__).parents[2] / "appendix" / "instructors.md"
+
+
+@pytest.mark.long  # it is quick, but whoever adds a question is not held up by it
+def test_the_instructors_page_says_what_was_measured_of_the_questions():
+    """What is wrong here is to be put there: no other place of the book says these numbers."""
+    notebooks = {}
+    for name, one in measured_questions(find_course().sources).items():
+        notebooks.setdefault(name.partition("/")[0], {})[name] = one
+    whole = {name: one for some in notebooks.values() for name, one in some.items()}
+    rows = "".join(_row(f"of *{name}*", some) for name, some in notebooks.items())
+    heavy = {name: one for name, one in whole.items() if one["worth"] > 1}
+    rows = _row("all", whole) + _row("those worth more than a point", heavy) + rows
+    assert HEAD + rows in PAGE.read_text("utf8")
+
+
+HEAD = """| questions | points | sets of numbers | not found |
+|---|---:|---:|---:|
+"""
+
+
+def _row(name, measured):
+    tries = [count for one in measured.values() for count in one["tries"]]
+    assert None not in tries, f"{name} was not measured whole: coursework selftest"
+    points = sum(one["worth"] for one in measured.values())
+    return f"| {name} | {points:g} | {len(tries)} | {100 * share_beyond(measured):.0f} % |\n"
 
 
 @pytest.mark.long
@@ -20,7 +49,7 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     notebooks = ["simple-orientations", "unit-quaternions"]
     submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
     grade(submissions, tmp_path / "out", assignments={"homework": notebooks}, show=said)
-    manual = (Path(__file__).parents[2] / "appendix" / "instructors.md").read_text("utf8")
+    manual = PAGE.read_text("utf8")
     report = (tmp_path / "out" / "report.html").read_text("utf8")
     for line in said.getvalue().splitlines():
         if line.startswith(("196 to grade", "Isolation:", "homework:")):
@@ -35,8 +64,8 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     # What waited is decided, and the gradebook filled, line for line as the page prints it; only
     # places are others.
     store, ledger = Store(tmp_path / "out"), Ledger(tmp_path / "out")
-    waiting = [(record, name) for record in store.all() for name, mark in record["marks"].items()
-               if mark["outcome"] == "undecided"]  # fmt: skip
+    waiting = [(record, name) for record in store.all() for name, mark in record.marks.items()
+               if mark.outcome == "undecided"]  # fmt: skip
     for record, name in waiting:
         ledger.add(record, name, 0.5, who="Ann")
     for one in regrade(tmp_path / "out", show=said):

@@ -12,13 +12,16 @@ import pytest
 from coursework.authoring import release
 from coursework.authoring.course import find_course
 
-nbgrader_utils = pytest.importorskip("nbgrader.utils")
-
 COURSE = find_course(Path(__file__).parent)
 ASSIGNMENT = "simple-orientations"
 
 
-def test_the_checksums_are_nbgraders():
+@pytest.fixture(autouse=True, scope="module")
+def nbgrader_utils():
+    return pytest.importorskip("nbgrader.utils")
+
+
+def test_the_checksums_are_nbgraders(nbgrader_utils):
     for path in COURSE.exercises.glob("*.ipynb"):
         for cell in nbformat.read(path, as_version=4).cells:
             about = cell.metadata.get("nbgrader")

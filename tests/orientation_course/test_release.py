@@ -1,6 +1,7 @@
 """From the notebooks with solutions to what students receive: nothing more, and always the same."""
 
 import base64
+import io
 import json
 import os
 import random
@@ -20,6 +21,7 @@ import pytest
 from seed import SEED
 from trial_course import SETUP, SOLUTION, made_in, write_source
 
+from coursework.__main__ import main as command
 from coursework.authoring import author, release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
@@ -468,6 +470,29 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
         update(old, work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
+
+
+def test_what_is_no_archive_of_exercises_is_refused(tmp_path):
+    """A download that broke off, a page that was saved in its place, another archive, none."""
+    whole = io.BytesIO()
+    with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as box:
+        box.writestr("exercises/a.ipynb", "an exercise " * 1000)
+    damaged = bytearray(whole.getvalue())
+    damaged[60] ^= 255
+    photos = io.BytesIO()
+    with zipfile.ZipFile(photos, "w") as box:
+        box.writestr("beach.jpg", "sand")
+    data = {"page": b"<html>", "cut": whole.getvalue()[:-30], "damaged": damaged, "empty": b""}
+    data["photos"] = photos.getvalue()
+    work = tmp_path / "work"
+    work.mkdir()
+    for name in (*data, "absent"):
+        if name in data:
+            (tmp_path / f"{name}.zip").write_bytes(data[name])
+        with pytest.raises(SystemExit) as said:
+            command(["update", str(tmp_path / f"{name}.zip"), "--folder", str(work)])
+        assert str(said.value).startswith("coursework update:") and f"{name}.zip" in str(said.value)
+        assert "Errno" not in str(said.value) and list(work.iterdir()) == []
 
 
 def in_bash(text, prompt):

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from test_site import WATCH_SHIFTS
 
+from notebook_pages.page import make_small
 from orientation_figures import moving
 from orientation_figures.moving import bundle
 
@@ -64,12 +65,13 @@ SETTLED = """async () => {
 
 @pytest.fixture(scope="session")
 def front_end(tmp_path_factory):
-    """A folder with the scripts of all figures, as the site has them."""
+    """A folder with the scripts of all figures, as the site has them: with short names."""
     folder = tmp_path_factory.mktemp("figures")
     (folder / "shared.js").write_text(bundle.shared_script(), "utf8")
     for kind in (*KINDS, "formula"):
         for name, text in {f"{kind}.js": bundle.script(kind), **bundle.beside(kind)}.items():
             (folder / name).write_text(text, "utf8")
+    make_small(folder, sorted(folder.iterdir()), "warning")
     return folder
 
 

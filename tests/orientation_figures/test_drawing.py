@@ -19,8 +19,6 @@ from orientation import dcm_from_axis_angle, dcm_from_body_fixed, simple_dcm
 from orientation_figures import drawing as drawings
 from orientation_figures.animation import Animation, one_after_another
 from orientation_figures.drawing import (
-    BARB,
-    HEADS,
     IN_SPACE,
     Drawing,
     looking_down,
@@ -30,6 +28,7 @@ from orientation_figures.drawing import (
 )
 from orientation_figures.objects import draw_book, draw_eye, plane_drawing, turning_frames_animation
 from orientation_figures.style import DARK, LIGHT, STROKES
+from orientation_figures.words import BARB, HEADS
 
 ALT = "A triad of unit vectors, drawn for a test: x to the left, y to the right, z up."
 GIMBAL_ANGLES = np.radians((35, 25, 25))

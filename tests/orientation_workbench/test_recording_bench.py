@@ -11,7 +11,6 @@ import pytest
 from formats import DEG, FORMS, GRAVITY, core_motion, recording
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
-from scipy.stats import chi2
 from simulated_recordings import FAULTS, NAMES, as_text, faulty, simulate
 
 from orientation import MultiplicativeKalmanFilter, dcm_from_rotation_vector
@@ -473,6 +472,8 @@ def test_innovations_of_an_honest_filter_stay_within_their_bounds():
     """In 95 of 100 runs, give or take two: four hundred runs of twenty seconds, at two
     directions.
     """
+    from scipy.stats import chi2  # every process collects this file, and one runs it
+
     runs, step, random = 400, 0.02, np.random.default_rng(5)
     noise, wander, deviations = 0.01, 0.002, (0.03, 0.08)
     references = np.array([[0, 0, 1.0], [0.6, 0, -0.8]])

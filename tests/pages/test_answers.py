@@ -246,6 +246,21 @@ def test_page_is_handed_in_and_graded(context, site, tmp_path):
     assert (float(row["points"]), row["simple-orientations/crank: outcome"]) == (2, "correct")
 
 
+def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
+    """On a laptop the numbers of its questions are the ones that its reader had on the page."""
+    tab = Tab(context, site).edit()
+    before = tab.text(1)
+    tab.page.evaluate("bookStore.put('coursework me.txt', { text: 'Ada O\\'Hara', at: 1 })")
+    tab.write(ANSWER, "mine = 1")
+    tab.take().save_as(tmp_path / "mine.ipynb")
+    cells = nbformat.read(tmp_path / "mine.ipynb", as_version=4).cells
+    codes = [cell.source for cell in cells if cell.cell_type == "code"]
+    assert 'student("Ada O\'Hara")' in codes[0] and "student('')" in before
+    assert codes[ANSWER - 1] == "mine = 1" and "1 cell of this page" in tab.words()
+    tab.bring(tmp_path / "mine.ipynb")
+    assert "Nothing is different" in tab.words() and tab.text(1) == before and tab.errors == []
+
+
 def test_notebook_is_loaded_back(context, site, tmp_path):
     tab = Tab(context, site).edit()
     tab.write(1, "imports = 'mine'")
@@ -511,6 +526,27 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
             content for path, content in tab.page.evaluate(ALL_COPIES) if "my copy of" in path
         )
         assert "crank = 1" in old and "boom = 2" in old
+
+
+def test_what_was_written_for_a_question_that_is_gone_stands_in_no_other_cell(context, site):
+    """The next edition asks one question less: its answer is shown, named, and put into no cell."""
+    tab = Tab(context, site)
+    gone = {"code": "gone = 1", "number": OTHER, "original": "of code that is gone", "at": 1}
+    tab.page.evaluate(
+        "([page, entry]) => bookStore.put(`answer ${page} simple-orientations-gone`, entry)",
+        [EXERCISE, gone],
+    )
+    tab.reload()
+    box = tab.page.locator(".live-choice", has_text="simple-orientations-gone")
+    box.wait_for()
+    assert "gone = 1" in box.inner_text() and "has changed" not in box.inner_text()
+    assert tab.page.locator("div.cell .live-choice", has_text="gone = 1").count() == 0
+    box.get_by_role("button").click()
+    assert "gone = 1" not in tab.shown()
+    tab.reload()
+    tab.edit()
+    assert "gone = 1" not in tab.shown() and "gone = 1" in json.dumps(tab.page.evaluate(KEPT))
+    assert tab.errors == []
 
 
 def test_copies_of_one_minute_stand_beside_each_other(context, site):

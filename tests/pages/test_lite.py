@@ -72,8 +72,7 @@ def test_notebook_is_the_page_ready_to_run(page):
     ]
     if any(needs):
         assert announced.index(True) == needs.index(True)
-        # The words come before all code that imports it, and before all that the page computes in
-        # its place.
+        # The words come before all code that imports it.
         before = "\n".join(codes(page)[: needs.index(True)])
         assert "import numpy" not in before and "from numpy" not in before
     expected = [cell.source for cell in source.cells if cell.cell_type == "code"]
@@ -250,7 +249,7 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     interface = Interface(context, site, CHAPTER)
     page = interface.page
-    # The SymPy cells give what the book prints, and the figure is alive without NumPy.
+    # The cells that the page runs without NumPy give here what the book prints, too.
     stored = nbformat.read(REPOSITORY / f"{CHAPTER}.ipynb", as_version=4)
     cells = [cell for cell in stored.cells if cell.cell_type == "code"]
     ran, absent = 0, set()  # names that only cells with NumPy give

@@ -788,7 +788,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
         record,
     )
     page.page.reload()
-    assert "Correct, when you checked it last" in page.below(
+    assert "Correct, in an earlier check" in page.below(
         check
     ) and "Not attempted" not in page.below(check)
     assert "the numbers of ada" in page.below(shown)

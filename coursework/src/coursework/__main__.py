@@ -4,6 +4,7 @@ exercises.
 
 import argparse
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -11,7 +12,7 @@ from importlib.util import find_spec
 ROOMS = ("authoring", "grading")
 
 
-def main(arguments=None):
+def main(arguments: Sequence[str] | None = None) -> None:
     rooms = [
         import_module(f"coursework.{room}.commands")
         for room in ROOMS
@@ -33,13 +34,14 @@ def main(arguments=None):
     for room in rooms:
         room.add_commands(commands)
     options = vars(parser.parse_args(arguments))
-    return {
+    runs = {
         "update": _update,
         **{name: run for room in rooms for name, run in room.COMMANDS.items()},
-    }[options.pop("command")](**options)
+    }
+    runs[options.pop("command")](**options)
 
 
-def _update(archive, folder):
+def _update(archive: str, folder: str) -> None:
     from .checking.update import ArchiveRefused, update
 
     try:

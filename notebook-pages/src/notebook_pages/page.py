@@ -255,7 +255,7 @@ def bundle_styles(site):
         parts.append(static / "book.css")
     for path in parts:
         path.unlink()
-    make_small(static, [*static.glob("*.css"), *static.glob("moving/*.css")], "warning")
+    make_small(static, [*static.glob("*.css"), *static.glob("moving/*")], "warning")
 
 
 def join_scripts(site):

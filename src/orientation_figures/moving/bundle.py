@@ -12,14 +12,21 @@ from pathlib import Path
 from ..style import STYLE
 
 FOLDER = Path(__file__).parent
-SHARED = ("formulas", "mathematics", "common_picture", "glyphs", "model", "address", "shared")
+SHARED = (
+    "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address",
+    "shared",
+)  # fmt: skip
 #: What ``pictures`` describes, and ``javascript`` has translated.
 PICTURES = sorted(
     path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js")
 )
 #: Modules that one figure alone needs, before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
-OWN |= {name: (*OWN.get(name, ()), f"{name}_picture") for name in PICTURES if name != "common"}
+OWN |= {
+    name: (*OWN.get(name, ()), f"{name}_picture")
+    for name in PICTURES
+    if f"{name}_picture" not in SHARED
+}
 #: Figures that use packages of npm: what their page loads when they are seen is built from this
 #: script, and each has a style sheet of its own.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}

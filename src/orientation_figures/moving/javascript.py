@@ -1,15 +1,15 @@
 """Write the pictures of the moving figures in JavaScript, too, in ``js/*_picture.js``.
 
 Run it with ``python -m orientation_figures.moving.javascript``. What a figure shows is described
-once, in ``pictures``: functions of its state in the words of a sheet and of
-:mod:`~orientation_figures.moving.vectors`. Python paints stills with them; here they are
-translated, statement by statement, for the figures in the page. The files are kept with the others,
-as the figures need them where nothing is translated.
+once, in ``pictures``: functions of its state in the words of a sheet, which stand in
+:mod:`~orientation_figures.words`, and of :mod:`~orientation_figures.vectors`. Python paints stills
+with them; here they are translated, statement by statement, for the figures in the page. The files
+are kept with the others, as the figures need them where nothing is translated.
 
 A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is
-given by name becomes an object. What begins with ``_``, and functions of a whole ``figure``, stay
-in Python. In JavaScript an empty list counts as true, so ask for its length; and a text is no list
-until ``list`` makes it one.
+given by name becomes an object, and what may be left out of a word has to be given so. What begins
+with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an empty list counts
+as true, so ask for its length; and a text is no list until ``list`` makes it one.
 """
 
 import ast
@@ -21,8 +21,18 @@ COMMAND = "python -m orientation_figures.moving.javascript"
 
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
 #: Words of a sheet that take what they are given in order, in both languages.
-_IN_ORDER = ("area", "cylinder", "dot", "label", "label_beyond", "line", "path", "ring")
-_METHODS = {"append": "push", "index": "indexOf", "lower": "toLowerCase"}
+_IN_ORDER = (
+    "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring",
+    "shadow", "text",
+)  # fmt: skip
+_METHODS = {
+    "append": "push",
+    "index": "indexOf",
+    "lower": "toLowerCase",
+    "startswith": "startsWith",
+}
+#: Where the words of the sheets stand; the pictures have a folder.
+_WORDS = FOLDER.parent / "words.py"
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
     ast.Pow: ("**", 3), ast.Eq: "===", ast.NotEq: "!==", ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">",
@@ -33,14 +43,15 @@ _OPERATORS = {
 _STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}
 
 
-def translated(name):
-    """The module of JavaScript that says what ``pictures/NAME.py`` says."""
+def translated(path):
+    """The module of JavaScript that says what a file says."""
     parts, modules = [], dict.fromkeys(("enumerate", "range", "sum", "zip"), "mathematics")
-    for node in ast.parse((FOLDER / "pictures" / f"{name}.py").read_text("utf8")).body:
+    for node in ast.parse(path.read_text("utf8")).body:
         match node:
             case ast.ImportFrom(module=module, level=level):
                 # What is no other picture has its twin in JavaScript under the same name.
-                source = f"{module}_picture" if level == 1 else "mathematics"
+                beside = level == 1 and module != "vectors"
+                source = f"{module}_picture" if beside else "mathematics"
                 modules |= {alias.name: source for alias in node.names}
             case ast.Assign(targets=[ast.Name(id=constant)]) if not constant.startswith("_"):
                 parts.append((node, f"export const {constant} = {expression(node.value)};"))
@@ -54,8 +65,11 @@ def translated(name):
                         f"{block(node)}",
                     )
                 )
+            case ast.ClassDef(name=name):
+                methods = [method(one) for one in node.body if isinstance(one, ast.FunctionDef)]
+                parts.append((node, f"\nexport class {name} {braces(methods)}"))
     used = {one.id for node, _ in parts for one in ast.walk(node) if isinstance(one, ast.Name)}
-    lines = [f"// Written by `{COMMAND}` from pictures/{name}.py."]
+    lines = [f"// Written by `{COMMAND}` from {path.relative_to(FOLDER.parent)}."]
     for module in sorted({modules[one] for one in used & set(modules)}):
         names = ", ".join(
             sorted(camel(one) for one in used & set(modules) if modules[one] == module)
@@ -78,6 +92,16 @@ def parameters(arguments):
         for one, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
     ]
     return ", ".join(given + ([f"{{ {', '.join(named)} }} = {{}}"] if named else []))
+
+
+def method(function):
+    """A word: what may be left out is given by name, unless it is one of those in order."""
+    arguments = function.args
+    arguments.args = arguments.args[1:]
+    if function.name not in _IN_ORDER and (defaults := arguments.defaults):
+        arguments.kwonlyargs, arguments.kw_defaults = arguments.args[-len(defaults) :], defaults
+        arguments.args, arguments.defaults = arguments.args[: -len(defaults)], []
+    return f"{camel(function.name)}({parameters(arguments)}) {block(function)}"
 
 
 def block(function):
@@ -121,8 +145,15 @@ def statement(node, changing):
             return ""  # a docstring
         case ast.Expr():
             return f"{expression(node.value)};"
+        case ast.Return(value=ast.Name(id="self")):
+            return ""  # nobody chains words in the page
         case ast.Return():
             return f"return {expression(node.value)};" if node.value else "return;"
+        case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)) if not (
+            set(names_in(node.targets[0])) & set(changing)
+        ):
+            pairs = zip(map(expression, names), map(expression, values), strict=True)
+            return f"const {', '.join(' = '.join(pair) for pair in pairs)};"
         case ast.Assign(targets=[target]):
             names = names_in(target)
             first = "const " if names and not set(names) & set(changing) else ""
@@ -145,6 +176,8 @@ def statement(node, changing):
                     statement(node.orelse[0], changing) if chained else all_of(node.orelse)
                 )
             return f"if ({expression(node.test)}) {all_of(node.body)}{other}"
+        case ast.FunctionDef(body=[ast.Return(value=value)]):
+            return f"const {camel(node.name)} = ({parameters(node.args)}) => {expression(value)};"
         case ast.FunctionDef():
             return f"const {camel(node.name)} = ({parameters(node.args)}) => {block(node)};"
         case ast.Continue():
@@ -168,9 +201,9 @@ def expression(node):
         case ast.Constant(value=str()):
             return quoted(node.value, "'")
         case ast.Constant():
-            return repr(node.value)
+            return repr(node.value).removesuffix(".0").replace("e-0", "e-")
         case ast.Name():
-            return camel(node.id)
+            return "this" if node.id == "self" else camel(node.id)
         case ast.JoinedStr():
             return f"`{''.join(filled(part) for part in node.values)}`"
         case ast.Attribute(value=ast.Name(id="math")):
@@ -192,6 +225,8 @@ def expression(node):
             return f"{within(node.value)}[{expression(node.slice)}]"
         case ast.Call():
             return call(node)
+        case ast.BinOp(left=ast.Constant(value=str()), op=ast.Mult()):
+            return f"{expression(node.left)}.repeat({expression(node.right)})"
         case ast.BinOp():
             sign, strength = _OPERATORS[type(node.op)]
             return f"{within(node.left, strength)} {sign} {within(node.right, strength + 1)}"
@@ -230,7 +265,9 @@ def over(part):
 
 def call(node):
     given = [expression(one) for one in node.args]
-    if node.keywords:
+    if isinstance(node.func, ast.Attribute) and node.func.attr == "get":
+        return f"({within(node.func.value)}[{given[0]}] ?? {given[1]})"
+    if node.keywords and not (isinstance(node.func, ast.Name) and node.func.id == "zip"):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
             raise ValueError(
                 f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, "
@@ -262,8 +299,8 @@ def filled(part):
 
 def files():
     """All that is written, by the names of the files."""
-    names = sorted(path.stem for path in (FOLDER / "pictures").glob("[!_]*.py"))
-    return {FOLDER / "js" / f"{name}_picture.js": translated(name) for name in names}
+    paths = [*sorted((FOLDER / "pictures").glob("[!_]*.py")), _WORDS]
+    return {FOLDER / "js" / f"{path.stem}_picture.js": translated(path) for path in paths}
 
 
 if __name__ == "__main__":

@@ -21,18 +21,35 @@ import importlib.util
 import itertools
 import math
 import re
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..checking import sealing
 from ..checking.kinds import PARTS, sign_limit
 from ..checking.plugins import kinds, plugins
 from ..checking.points import points
+from ..checking.question import Question, Sealed
 from ..checking.reading import EXACT, EXACT_WIDTH, FAR, NEAR, calls_for, tolerances
 from ..checking.reading import offsets as offsets_of
 from ..checking.units import unit
 from . import typed
+
+if TYPE_CHECKING:
+    from .author import AuthoredQuestion
+
+#: Choices, one row for each candidate.
+Choices: TypeAlias = NDArray[np.int64]
+#: The numbers of candidates, a row for each as they are read of an answer.
+Numbers: TypeAlias = NDArray[np.float64]
+#: These, or for an answer in words the word of each candidate, ``None`` where it is none.
+Candidates: TypeAlias = "Numbers | list[str | None]"
+#: The cells of a candidate as bytes, or its word.
+Key: TypeAlias = bytes | str
+#: What a fingerprint opens: 1 the right answer, 2 a mistake, 0 nothing.
+Open: TypeAlias = Callable[[str], int]
 
 #: What parts the words of a question from the open code of its cell.
 CODE = "\n\n```python\n"
@@ -62,7 +79,7 @@ class Found(NamedTuple):
     tries: int
     way: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         if not self.tries:
             return "there is nothing to try a guess on"
         if self.way:
@@ -78,12 +95,14 @@ class Family(NamedTuple):
     """
 
     name: str
-    sizes: tuple
-    evaluate: object
+    sizes: tuple[int, ...]
+    evaluate: Callable[[Choices], Candidates]
     by_shells: bool = False
-    near: object = None  # the numbers of what is beside a choice, where no choices are beside it
+    near: Callable[[Sequence[int]], Numbers] | None = (
+        None  # the numbers of what is beside a choice, where no choices are beside it
+    )
 
-    def orders(self):
+    def orders(self) -> Iterator[Choices]:
         """All choices, some thousand rows at a time."""
         if self.by_shells:
             yield from _shells(self.sizes)
@@ -97,7 +116,7 @@ class Family(NamedTuple):
                 rows = rows // size
             yield np.stack(columns[::-1], axis=1)
 
-    def beside(self, choice):
+    def beside(self, choice: Sequence[int]) -> Choices:
         """All choices that differ from one in a single place."""
         rows = []
         for place, size in enumerate(self.sizes):
@@ -107,7 +126,7 @@ class Family(NamedTuple):
         return np.array(rows, dtype=int).reshape(-1, len(self.sizes))
 
 
-def _shells(sizes):
+def _shells(sizes: Sequence[int]) -> Iterator[Choices]:
     """All choices, those first in which every choice is among the first few."""
     for largest in range(max(sizes)):
         limited = [min(size, largest + 1) for size in sizes]
@@ -121,7 +140,7 @@ def _shells(sizes):
 # --- the attack ---------------------------------------------------------------------------------
 
 
-def attack(question, text="", budget=BUDGET):
+def attack(question: "AuthoredQuestion", text: str = "", budget: int = BUDGET) -> Found:
     """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that
     it takes.
 
@@ -142,36 +161,36 @@ def attack(question, text="", budget=BUDGET):
     )
 
 
-def really_attack(sealed, text="", budget=100):
+def really_attack(sealed: Sealed, text: str = "", budget: int = 100) -> Found:
     """The same attack with the slow hash on what a student has; only ``budget`` hashes are
     spent.
     """
 
-    def open_(known):
-        found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, known))
-        return 0 if found is None else 1 if found[0] == 0 else 2
+    def open_(known: str) -> int:
+        locker = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, known))
+        return 0 if locker is None else 1 if locker[0] == 0 else 2
 
     return _attack(sealed.question, text, budget, open_)
 
 
-def _attack(public, text, budget, open_):
+def _attack(public: Question, text: str, budget: int, open_: Open) -> Found:
     """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0
     neither.
     """
-    tried = set()
+    tried: set[Key] = set()
     for family, choices in _in_turns(public, text) if budget else ():
         with np.errstate(all="ignore"):
             known = _keys_of(public, family.evaluate(choices))
-        for choice, one in zip(choices.tolist(), known, strict=True):
-            for way, candidate in _and_beside(public, family, choice, one, open_, tried):
-                if candidate == 1:
+        for choice, key in zip(choices.tolist(), known, strict=True):
+            for way, opened in _and_beside(public, family, choice, key, open_, tried):
+                if opened == 1:
                     return Found(len(tried), way)
                 if len(tried) >= budget:
                     return Found(len(tried), "")
     return Found(len(tried), "")
 
 
-def _in_turns(public, text):
+def _in_turns(public: Question, text: str) -> Iterator[tuple[Family, Choices]]:
     """Candidates from what the subject suggests, and from what the question gives, some of each in
     turn.
     """
@@ -193,14 +212,21 @@ def _in_turns(public, text):
                 yield portion
 
 
-def _portions(found):
+def _portions(found: Iterable[Family]) -> Iterator[tuple[Family, Choices]]:
     for family in found:
         for choices in family.orders():
             for start in range(0, len(choices), PORTION):
                 yield family, choices[start : start + PORTION]
 
 
-def _and_beside(public, family, choice, known, open_, tried):
+def _and_beside(
+    public: Question,
+    family: Family,
+    choice: Sequence[int],
+    known: Key | None,
+    open_: Open,
+    tried: set[Key],
+) -> Iterator[tuple[str, int]]:
     """Try one candidate, and where it is a mistake all beside it."""
     if known is None or known in tried:
         return
@@ -218,15 +244,15 @@ def _and_beside(public, family, choice, known, open_, tried):
             yield f"{family.name}, then by the reply", open_(_text_of(other))
 
 
-def _beginning(public, text):
+def _beginning(public: Question, text: str) -> typed.Pool:
     """What a student holds, as :mod:`coursework.authoring.typed` begins with it."""
     words, _, code = text.partition(CODE)
     if public.kind == "function":
-        return typed.of_arguments(calls_for(public), [shape_of(public)])
+        return typed.of_arguments(calls_for(public) or [], [shape_of(public)])
     return typed.beginning(At(public, words), public.given, words, code, [shape_of(public)])
 
 
-def shape_of(public):
+def shape_of(public: Question) -> tuple[int, ...]:
     """The shape of an answer at one point, or for one call."""
     values, size = public.kind_of_values, size_of(public)
     if values in ("expression", "measurement"):
@@ -234,11 +260,13 @@ def shape_of(public):
     return public.shape if public.shape else {1: (), 9: (3, 3)}.get(size, (size,))
 
 
-def _of_values(public, pool, steps, most=typed.MOST):
+def _of_values(
+    public: Question, pool: typed.Pool, steps: Sequence[typed.Step], most: int = typed.MOST
+) -> Iterator[Family]:
     """Candidates that some steps lead to from what is given: at each price those first that use all
     that is given.
     """
-    left_out = []
+    left_out: list[Family] = []
     with np.errstate(all="ignore"):
         for price in typed.by_price(pool, steps, most):
             yield from _tables(public, pool, price, True)
@@ -247,14 +275,14 @@ def _of_values(public, pool, steps, most=typed.MOST):
         yield from left_out
 
 
-def _of_table(public, table, shape):
+def _of_table(public: Question, table: Numbers, shape: tuple[int, ...] | None) -> Family:
     """A family of candidates that stand in a table, a row for each; ``shape`` is that of an answer
     at one point.
     """
 
-    def near(choice):
-        found = typed.near(table[choice[0]].reshape(-1, *shape))
-        return one_sign(public, found.reshape(len(found), -1), math.prod(shape))
+    def near(choice: Sequence[int], shape: tuple[int, ...] = shape or ()) -> Numbers:
+        values = typed.near(table[choice[0]].reshape(-1, *shape))
+        return one_sign(public, values.reshape(len(values), -1), math.prod(shape))
 
     return Family(
         "built from what is given",
@@ -264,7 +292,7 @@ def _of_table(public, table, shape):
     )
 
 
-def _tables(public, pool, price, whole):
+def _tables(public: Question, pool: typed.Pool, price: int, whole: bool) -> Iterator[Family]:
     """The values of a pool that have a price as candidates: those that use all that is given, or
     the others.
     """
@@ -279,7 +307,7 @@ def _tables(public, pool, price, whole):
         )
 
 
-def _of_parts(public, pool):
+def _of_parts(public: Question, pool: typed.Pool) -> Iterator[Family]:
     """Answers that are put together of what a pool has by then: a list of its parts, a matrix of
     rows or of columns.
     """
@@ -292,30 +320,30 @@ def _of_parts(public, pool):
             others = [
                 shape[:axis] + ((size,) if size > 1 else ()) + shape[axis + 1 :] for size in sizes
             ]
-            ones = [pool.of_shape(other)[:most] for other in others]
-            if not all(ones) or math.prod(map(len, ones)) > 4 * BUDGET:
+            pools = [pool.of_shape(other)[:most] for other in others]
+            if not all(pools) or math.prod(map(len, pools)) > 4 * BUDGET:
                 continue
-            ones = [
-                np.array(one).reshape(
-                    len(one), pool.points, *shape[:axis], size, *shape[axis + 1 :]
+            parts = [
+                np.array(values).reshape(
+                    len(values), pool.points, *shape[:axis], size, *shape[axis + 1 :]
                 )
-                for one, size in zip(ones, sizes, strict=True)
+                for values, size in zip(pools, sizes, strict=True)
             ]
-            places = np.indices([len(one) for one in ones]).reshape(len(ones), -1)
+            places = np.indices([len(part) for part in parts]).reshape(len(parts), -1)
             places = places[:, np.argsort(places.sum(axis=0), kind="stable")]
             whole = np.concatenate(
-                [one[of] for one, of in zip(ones, places, strict=True)], axis=2 + axis
+                [part[place] for part, place in zip(parts, places, strict=True)], axis=2 + axis
             )
             yield _of_table(
                 public, one_sign(public, whole.reshape(len(whole), -1), math.prod(shape)), shape
             )
 
 
-def _compositions(size):
+def _compositions(size: int) -> list[tuple[int, ...]]:
     """All ways to make a size of at least two parts, those of few parts first: as large ones, or
     numbers alone.
     """
-    found = [
+    found: list[tuple[int, ...]] = [
         sizes
         for count in (2, 3)
         for sizes in itertools.product(range(1, size), repeat=count)
@@ -324,7 +352,7 @@ def _compositions(size):
     return found + [(1,) * size] * (3 < size <= MOST_PARTS)
 
 
-def _with_units(public, numbers):
+def _with_units(public: Question, numbers: Numbers) -> Numbers:
     absolute = max(float(tolerances(public)[0]), float(NEAR))
     found = [unit(text) for text in UNITS]
     rows = []
@@ -335,7 +363,7 @@ def _with_units(public, numbers):
             )
             rows.append(
                 np.concatenate(
-                    [(value * float(one.size) / float(public.scale))[:, None], far], axis=1
+                    [(value * float(one.size) / float(public.scale or 1))[:, None], far], axis=1
                 ).ravel()
             )
     return np.array(rows)
@@ -344,16 +372,16 @@ def _with_units(public, numbers):
 # --- fingerprints, many at a time ---------------------------------------------------------------
 
 
-def fingerprints_of(public, numbers):
+def fingerprints_of(public: Question, numbers: Candidates) -> list[str | None]:
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
     As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the
     two.
     """
-    return [key and _text_of(key) for key in _keys_of(public, numbers)]
+    return [None if key is None else _text_of(key) for key in _keys_of(public, numbers)]
 
 
-def _keys_of(public, numbers):
+def _keys_of(public: Question, numbers: Candidates) -> Sequence[Key | None]:
     """The cells of each candidate as bytes, from which its fingerprint is written only where it is
     a new one.
     """
@@ -375,13 +403,13 @@ def _keys_of(public, numbers):
     ]
 
 
-def _text_of(key):
+def _text_of(key: Key) -> str:
     return (
         key if isinstance(key, str) else " ".join(map(str, np.frombuffer(key, np.int64).tolist()))
     )
 
 
-def one_sign(public, numbers, size):
+def one_sign(public: Question, numbers: Numbers, size: int) -> Numbers:
     """Of two opposites the one that is taken, as in :mod:`coursework.checking.kinds`."""
     if not public.either_sign:
         return numbers
@@ -398,7 +426,7 @@ def one_sign(public, numbers, size):
 # --- what is tried for each kind ----------------------------------------------------------------
 
 
-def families(public, text=""):
+def families(public: Question, text: str = "") -> Iterator[Family]:
     """The generators of candidates for a question, in the order in which they are tried."""
     kind = public.kind
     at = At(public, text)
@@ -418,7 +446,7 @@ def families(public, text=""):
 class At:
     """The points of a question as doubles, and the angles and numbers that suggest themselves."""
 
-    def __init__(self, public, text=""):
+    def __init__(self, public: Question, text: str = "") -> None:
         self.points = points(public)
         self.symbols = list(public.symbols)
         self.values = {
@@ -430,7 +458,7 @@ class At:
         )[:24]
         self.ones = np.ones(len(self.points))
 
-    def constants(self, step):
+    def constants(self, step: int) -> Numbers:
         """Special angles, and those of the text, which is in degrees or in radians; one row for
         each.
         """
@@ -440,15 +468,15 @@ class At:
         return np.array(list(dict.fromkeys(angles)))[:, None] * self.ones
 
 
-WORDS = {
+WORDS: Mapping[str, Callable[[Question], list[Family]]] = {
     "choice": lambda public: [
         of_words("all options", [public.options], lambda word: word[0].lower())
     ],
-    "truth values": lambda public: [of_words("all lists", ["TF"] * public.length, "".join)],
+    "truth values": lambda public: [of_words("all lists", ["TF"] * (public.length or 0), "".join)],
     "words": lambda public: [
         of_words(
             "all lists",
-            [public.options] * public.length,
+            [public.options] * (public.length or 0),
             lambda word: PARTS["words"].join(word).lower(),
         )
     ],
@@ -463,8 +491,13 @@ WORDS = {
 }
 
 
-def of_words(name, options, write, allowed=lambda word: True):
-    def evaluate(choices):
+def of_words(
+    name: str,
+    options: Sequence[Sequence[str]],
+    write: Callable[[Sequence[str]], str],
+    allowed: Callable[[Sequence[str]], bool] = lambda word: True,
+) -> Family:
+    def evaluate(choices: Choices) -> list[str | None]:
         words = (
             [part[place] for part, place in zip(options, row, strict=True)]
             for row in choices.tolist()
@@ -483,19 +516,19 @@ UNITS = (
 )  # fmt: skip
 
 
-def _of_measurements(public, at):
+def _of_measurements(public: Question, at: At) -> Iterator[Family]:
     absolute = max(float(tolerances(public)[0]), float(NEAR))
     found = [unit(text) for text in UNITS]
-    sizes = np.array([float(one.size) for one in found]) / float(public.scale)
+    sizes = np.array([float(one.size) for one in found]) / float(public.scale or 1)
     far = np.array([one.exponents for one in found]) * FAR * absolute
     pool = _monomials(at) if at.symbols else _numbers(public, at)
 
-    def beside_units(values, units):
+    def beside_units(values: Numbers, units: Choices) -> Numbers:
         scaled = (values * sizes[units][:, None])[..., None]
         exponents = np.broadcast_to(far[units][:, None, :], (*values.shape, far.shape[1]))
         return np.concatenate([scaled, exponents], axis=2).reshape(len(values), -1)
 
-    def evaluate(choices):
+    def evaluate(choices: Choices) -> Numbers:
         return beside_units(pool[choices[:, 0]], choices[:, 1])
 
     yield Family("one small formula, in usual units", (len(pool), len(UNITS)), evaluate)
@@ -505,7 +538,8 @@ def _of_measurements(public, at):
             "every value in turn, in usual units",
             (*sweep.sizes, len(UNITS)),
             lambda choices: beside_units(
-                sweep.evaluate(choices[:, :2]) / sizes[choices[:, 2]][:, None], choices[:, 2]
+                np.asarray(sweep.evaluate(choices[:, :2])) / sizes[choices[:, 2]][:, None],
+                choices[:, 2],
             ),
         )
 
@@ -513,10 +547,10 @@ def _of_measurements(public, at):
 # Formulas: monomials of what is given, and what is made of two of them.
 
 
-def of_pools(public, at, size):
+def of_pools(public: Question, at: At, size: int) -> Iterator[Family]:
     pool = _monomials(at) if at.symbols else _numbers(public, at)
 
-    def evaluate(choices):
+    def evaluate(choices: Choices) -> Numbers:
         return one_sign(public, np.moveaxis(pool[choices], 1, 2).reshape(len(choices), -1), size)
 
     if size > 1:
@@ -533,18 +567,19 @@ def of_pools(public, at, size):
     functions = (np.arctan, np.arccos, np.arcsin, np.sqrt, np.square, np.sin, np.cos, np.tan)
     operations = (np.add, np.subtract, np.divide, np.arctan2, np.multiply)
 
-    def of_one(choices):
+    def of_one(choices: Choices) -> Numbers:
         values = np.stack([function(pool) for function in functions])
-        return (1 - 2 * choices[:, 2, None]) * values[choices[:, 0], choices[:, 1]]
+        chosen: Numbers = values[choices[:, 0], choices[:, 1]]
+        return (1 - 2 * choices[:, 2, None]) * chosen
 
-    def of_two(choices):
+    def of_two(choices: Choices) -> Numbers:
         values = np.zeros((len(choices), len(at.ones)))
         for number, operation in enumerate(operations):
             rows = choices[:, 2] == number
             values[rows] = operation(pool[choices[rows, 0]], pool[choices[rows, 1]])
         return values
 
-    def of_three(choices):
+    def of_three(choices: Choices) -> Numbers:
         return (
             pool[choices[:, 0]]
             + (1 - 2 * (choices[:, 3, None] % 2)) * pool[choices[:, 1]]
@@ -566,7 +601,7 @@ def of_pools(public, at, size):
     )
 
 
-def _monomials(at):
+def _monomials(at: At) -> Numbers:
     """Small formulas of the symbols, one row each: products of up to three sines, cosines and
     symbols.
     """
@@ -593,7 +628,7 @@ def _monomials(at):
     return np.array(signed)
 
 
-def _numbers(public, at):
+def _numbers(public: Question, at: At) -> Numbers:
     """Small numbers: those of the text, special sines, fractions, multiples of pi."""
     found = [0, 1, *at.given]
     found += [math.sin(math.radians(angle)) for angle in (30, 45, 60)]
@@ -609,46 +644,46 @@ def _numbers(public, at):
     return np.array(values)[:, None] * at.ones
 
 
-def _sweep(public):
+def _sweep(public: Question) -> Family:
     """Every value of one number, from zero outwards: a cell at a time."""
     absolute, _ = (float(part) for part in tolerances(public))
     step = 3 * absolute if public.tolerance is not None else float(EXACT) * EXACT_WIDTH
 
-    def evaluate(choices):
-        return (choices[:, :1] + 0.5) * (1 - 2 * choices[:, 1:]) * step
+    def evaluate(choices: Choices) -> Numbers:
+        return np.asarray((choices[:, :1] + 0.5) * (1 - 2 * choices[:, 1:]) * step, float)
 
     return Family("every value in turn", (BUDGET, 2), evaluate)
 
 
-def _directions(public):
+def _directions(public: Question) -> Family:
     whole = [
         axis
         for axis in itertools.product(range(-9, 10), repeat=3)
         if any(axis) and math.gcd(*axis) == 1
     ]
     whole.sort(key=lambda axis: (sum(map(abs, axis)), axis))
-    whole = np.array([np.array(axis) / np.linalg.norm(axis) for axis in whole])
+    units = np.array([np.array(axis) / np.linalg.norm(axis) for axis in whole])
     return Family(
         "directions of small whole numbers",
-        (len(whole),),
-        lambda choices: one_sign(public, whole[choices[:, 0]], 3),
+        (len(units),),
+        lambda choices: one_sign(public, units[choices[:, 0]], 3),
     )
 
 
 # Functions: what the library gives, and small formulas of the arguments.
 
 
-def _of_functions(public):
-    calls, size = calls_for(public), size_of(public)
-    pool = _features(calls)
+def _of_functions(public: Question) -> Iterator[Family]:
+    size = size_of(public)
+    pool = _features(calls_for(public) or [])
     if not len(pool):
         return
 
-    def evaluate(choices):
+    def evaluate(choices: Choices) -> Numbers:
         numbers = np.moveaxis(pool[choices], 1, 2).reshape(len(choices), -1)
         return one_sign(public, numbers, size)
 
-    def of_two(choices):
+    def of_two(choices: Choices) -> Numbers:
         first, second = pool[choices[:, 0]], pool[choices[:, 1]]
         values = [
             first + second,
@@ -666,7 +701,7 @@ def _of_functions(public):
         )
 
 
-def size_of(public):
+def size_of(public: Question) -> int:
     """How many numbers an answer is compared by, at one point or for one call."""
     values = public.kind_of_values
     if values == "expression":
@@ -674,13 +709,13 @@ def size_of(public):
     if values in ("vector", "matrix"):
         return (public.length or 3) if values == "vector" else math.prod(public.shape or (3, 3))
     for plugin in plugins():
-        size = getattr(plugin, "SIZES", {}).get(values)
+        size: int | None = getattr(plugin, "SIZES", {}).get(values)
         if size:
             return size
     return 1
 
 
-def _numbers_in(argument):
+def _numbers_in(argument: Any) -> list[float]:
     """All numbers of an argument of a call, in order; what else stands in it, the name of an axis
     say, is left out.
     """
@@ -689,7 +724,7 @@ def _numbers_in(argument):
     return [float(argument)] if isinstance(argument, (int, float, np.number)) else []
 
 
-def _features(calls):
+def _features(calls: Sequence[Sequence[Any]]) -> Numbers:
     """Small formulas of the arguments of each call, one row each."""
     flat = [[part for argument in call for part in _numbers_in(argument)] for call in calls]
     shortest = min(map(len, flat))

@@ -2,12 +2,20 @@
 ``wheels``.
 """
 
+from __future__ import annotations
+
+import argparse
 import shlex
 import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .course import Course
 
 
-def add_commands(commands):
+def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
     new = commands.add_parser("new", help="make a small course that works at once")
     new.add_argument(
@@ -70,26 +78,37 @@ def add_commands(commands):
         parser.add_argument("--page", help=f"where the page goes; {page}.html beside the archive")
 
 
-def _course(**folders):
+def _course(
+    sources: Path | None = None, exercises: Path | None = None, sealed: Path | None = None
+) -> Course:
     from .course import find_course
 
-    return find_course()._replace(
-        **{name: folder.resolve() for name, folder in folders.items() if folder}
+    course = find_course()
+    return course._replace(
+        sources=sources.resolve() if sources else course.sources,
+        exercises=exercises.resolve() if exercises else course.exercises,
+        sealed=sealed.resolve() if sealed else course.sealed,
     )
 
 
-def new(course):
+def new(course: str) -> None:
     from .new import new as make
 
     print(*make(course), sep="\n")
 
 
-def release(only, no_archive, **folders):
+def release(
+    only: Sequence[str],
+    no_archive: bool,
+    sources: Path | None,
+    exercises: Path | None,
+    sealed: Path | None,
+) -> None:
     from .packing import archive
     from .release import release as make
     from .selftest import measure
 
-    course = _course(**folders)
+    course = _course(sources, exercises, sealed)
     names = make(course, only)
     print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
     if not no_archive:
@@ -97,7 +116,7 @@ def release(only, no_archive, **folders):
     print(*measure(course, names), sep="\n")
 
 
-def publish(site, room):
+def publish(site: Path | None, room: bool) -> None:
     from .publish import publish as make
 
     course = _course()
@@ -106,14 +125,14 @@ def publish(site, room):
     print(f"To look at it: python -m http.server --directory {shlex.quote(str(page.parent))}")
 
 
-def wheels(folder):
+def wheels(folder: Path) -> None:
     from .packing import DISTRIBUTIONS, wheel
 
     folder.mkdir(parents=True, exist_ok=True)
     print(*(wheel(name, folder) for name in DISTRIBUTIONS), sep="\n")
 
 
-def _writable(page):
+def _writable(page: str | Path) -> str | Path:
     """The path of a page that is to be written; that it cannot be is said before the work is
     done.
     """
@@ -132,7 +151,7 @@ def _writable(page):
     return page
 
 
-def trial(name, page):
+def trial(name: str, page: str | None) -> None:
     from .trial import trial as show
 
     course = _course()
@@ -141,20 +160,20 @@ def trial(name, page):
     )
 
 
-def selftest(only, page, budget, **folders):
+def selftest(only: Sequence[str], page: str | None, budget: int, sources: Path | None) -> None:
     from .selftest import selftest as try_all
 
-    course = _course(**folders)
-    page = _writable(page or course.archive.with_name("selftest.html"))
-    faults = try_all(course, page, budget, only)
-    print(f"The page: {page}")
+    course = _course(sources)
+    place = _writable(page or course.archive.with_name("selftest.html"))
+    faults = try_all(course, place, budget, only)
+    print(f"The page: {place}")
     if faults:
         sys.exit("\n".join(faults))
     print("Every question passed.")
 
 
-def _told(command, run):
-    def told(**options):
+def _told(command: str, run: Callable[..., None]) -> Callable[..., None]:
+    def told(**options: object) -> None:
         from .author import AuthorError
 
         try:
@@ -165,14 +184,12 @@ def _told(command, run):
     return told
 
 
-COMMANDS = {
-    name: _told(name, run)
-    for name, run in (
-        ("new", new),
-        ("release", release),
-        ("publish", publish),
-        ("try", trial),
-        ("selftest", selftest),
-        ("wheels", wheels),
-    )
+RUNS: dict[str, Callable[..., None]] = {
+    "new": new,
+    "release": release,
+    "publish": publish,
+    "try": trial,
+    "selftest": selftest,
+    "wheels": wheels,
 }
+COMMANDS = {name: _told(name, run) for name, run in RUNS.items()}

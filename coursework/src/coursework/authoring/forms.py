@@ -2,16 +2,28 @@
 wrote.
 """
 
+import functools
 import itertools
 import random
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import Any, TypeAlias
 
 import sympy
 from sympy import I, Rational, cos, exp, pi, sin, sqrt, tan
 from sympy.core.function import AppliedUndef
 
 from ..checking.plugins import kinds
+from ..checking.question import Question
 from ..checking.units import BASE, unit
+
+#: What an author or a student writes: an expression, a matrix, a list, a text or a function.
+Answer: TypeAlias = Any
+#: Puts entries into the shape of an answer.
+Put: TypeAlias = Callable[[Iterable[Answer]], Answer]
+Change: TypeAlias = Callable[[sympy.Expr], Answer]
+#: The name of a form, and an answer in it.
+Form: TypeAlias = tuple[str, Answer]
 
 #: Ways of writing the sine and the cosine, each a function of the argument.
 SINES = {
@@ -32,7 +44,7 @@ COSINES = {
 }
 
 
-def _rewrite(expression, sines, cosines):
+def _rewrite(expression: sympy.Expr, sines: Change, cosines: Change) -> sympy.Expr:
     """An expression with each sine and cosine written in another way."""
     if isinstance(expression, sin):
         return sines(_rewrite(expression.args[0], sines, cosines))
@@ -43,18 +55,17 @@ def _rewrite(expression, sines, cosines):
     return expression.func(*(_rewrite(part, sines, cosines) for part in expression.args))
 
 
-def unknowns(entries):
+def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
     """The symbols and functions of time in some expressions."""
-    found = set()
-    for entry in entries:
-        entry = sympy.sympify(entry)
+    free: set[sympy.Expr] = set()
+    for entry in map(sympy.sympify, entries):
         functions = entry.atoms(AppliedUndef)
         times = {argument for function in functions for argument in function.args}
-        found |= functions | (entry.free_symbols - times)
-    return sorted(found, key=str)
+        free |= functions | (entry.free_symbols - times)
+    return sorted(free, key=str)
 
 
-def flat(answer):
+def flat(answer: Answer) -> tuple[list[Answer], Put]:
     """The entries of a matrix or a nested list, and a function that puts entries back into that
     shape.
     """
@@ -66,10 +77,10 @@ def flat(answer):
         parts = [flat(part) for part in answer]
         lengths = [len(entries) for entries, _ in parts]
 
-        def together(entries):
-            entries = iter(list(entries))
+        def together(entries: Iterable[Answer]) -> Answer:
+            waiting = iter(list(entries))
             return [
-                put(list(itertools.islice(entries, length)))
+                put(list(itertools.islice(waiting, length)))
                 for (_, put), length in zip(parts, lengths)
             ]
 
@@ -77,20 +88,20 @@ def flat(answer):
     return [sympy.sympify(answer)], lambda entries: list(entries)[0]
 
 
-def equivalent_forms(public, answer):
+def equivalent_forms(public: Question, answer: Answer) -> list[Form]:
     """Give the same answer in several forms, as pairs (name of the form, answer)."""
     kind, more = public.kind, kinds()[public.kind].forms
-    found = _common_forms(public, kind, answer)
-    return [*found, *more(public, answer)] if more else found
+    forms = _common_forms(public, kind, answer)
+    return [*forms, *more(public, answer)] if more else forms
 
 
-def _quantity(exponents):
+def _quantity(exponents: Iterable[int]) -> sympy.Expr:
     from sympy.physics import units
 
     return sympy.Mul(*(getattr(units, name) ** power for name, power in zip(BASE, exponents)))
 
 
-def _common_forms(public, kind, answer):
+def _common_forms(public: Question, kind: str, answer: Answer) -> list[Form]:
     if kind == "truth values":
         answer = list(answer)
         return [
@@ -101,18 +112,16 @@ def _common_forms(public, kind, answer):
         ]
     if kind == "measurement":
         number, text = answer
-        found = unit(text)
-        base = (
-            " ".join(f"{name}^{power}" for name, power in zip(BASE, found.exponents) if power)
-            or "1"
-        )
+        given = unit(text)
+        powers = (f"{name}^{power}" for name, power in zip(BASE, given.exponents) if power)
+        base = " ".join(powers) or "1"
         forms = _common_forms(replace(public, kind="expression"), "expression", number)
         forms = [(name, (form, text)) for name, form in forms]
         return [
             *forms,
             ("a list", [number, f" {text} "]),
-            ("in base units", (sympy.sympify(number) * found.size, base)),
-            ("SymPy's quantities", sympy.sympify(number) * found.size * _quantity(found.exponents)),
+            ("in base units", (sympy.sympify(number) * given.size, base)),
+            ("SymPy's quantities", sympy.sympify(number) * given.size * _quantity(given.exponents)),
         ]
     if kind in ("words", "order"):
         return [
@@ -139,20 +148,22 @@ def _common_forms(public, kind, answer):
     )
 
 
-def _as_lists(result):
+def _as_lists(result: Answer) -> Answer:
     entries, put = flat(list(result) if getattr(result, "shape", ())[1:] == (1,) else result)
     return put(entries)
 
 
-def _forms_of_symbols(public, answer, entries, put):
+def _forms_of_symbols(
+    public: Question, answer: Answer, entries: Sequence[Answer], put: Put
+) -> list[Form]:
     forms = [("itself", answer)]
 
-    def add(name, change):
+    def add(name: str, change: Change) -> None:
         forms.append((name, put([change(sympy.sympify(entry)) for entry in entries])))
 
     add("expanded", sympy.expand)
     for name in ("half angle", "exponentials", "half tangent", "negative argument"):
-        add(name, lambda entry, name=name: _rewrite(entry, SINES[name], COSINES[name]))
+        add(name, functools.partial(_rewrite, sines=SINES[name], cosines=COSINES[name]))
     add(
         "one added as squares",
         lambda entry: (
@@ -187,8 +198,10 @@ def _forms_of_symbols(public, answer, entries, put):
     return forms
 
 
-def _forms_of_numbers(public, answer, entries, put):
-    def each(change):
+def _forms_of_numbers(
+    public: Question, answer: Answer, entries: Sequence[Answer], put: Put
+) -> list[Form]:
+    def each(change: Change) -> Answer:
         return put([change(sympy.sympify(entry)) for entry in entries])
 
     forms = [
@@ -212,7 +225,7 @@ def _forms_of_numbers(public, answer, entries, put):
     return forms
 
 
-def _digits(public):
+def _digits(public: Question) -> int | None:
     """How many decimals are enough for the tolerance of a question."""
     tolerance = public.tolerance
     if tolerance is None:
@@ -223,7 +236,7 @@ def _digits(public):
     return digits
 
 
-def random_form(public, answer, chance):
+def random_form(public: Question, answer: Answer, chance: random.Random) -> Answer:
     """Give the same answer in a form made up by chance, as one who simplifies nothing might write
     it.
     """
@@ -264,7 +277,9 @@ def random_form(public, answer, chance):
     return result
 
 
-def _shuffled(expression, chance, free):
+def _shuffled(
+    expression: sympy.Expr, chance: random.Random, free: Sequence[sympy.Expr]
+) -> sympy.Expr:
     if isinstance(expression, (sin, cos)) and chance.random() < 0.5:
         table = SINES if isinstance(expression, sin) else COSINES
         return table[chance.choice(sorted(table))](expression.args[0])
@@ -287,19 +302,18 @@ def _shuffled(expression, chance, free):
     return result
 
 
-def _shuffled_number(number, chance):
-    return chance.choice(
-        [
-            lambda: number,
-            lambda: number.evalf(30),
-            lambda: sympy.Add(number, pi, -pi, evaluate=False),
-            lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
-            lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False),
-        ]
-    )()
+def _shuffled_number(number: sympy.Expr, chance: random.Random) -> sympy.Expr:
+    forms: list[Callable[[], sympy.Expr]] = [
+        lambda: number,
+        lambda: number.evalf(30),
+        lambda: sympy.Add(number, pi, -pi, evaluate=False),
+        lambda: sympy.Mul(number, sqrt(3), 1 / sqrt(3), evaluate=False),
+        lambda: sympy.Mul(number, exp(I * pi / 7), exp(-I * pi / 7), evaluate=False),
+    ]
+    return chance.choice(forms)()
 
 
-def another_answer(public, answer, chance=None):
+def another_answer(public: Question, answer: Answer, chance: random.Random | None = None) -> Answer:
     """An answer of the right form that is neither right nor a mistake of the catalogue."""
     chance = chance or random.Random(1)
     kind = public.kind
@@ -307,8 +321,8 @@ def another_answer(public, answer, chance=None):
         return lambda *arguments: another_answer(
             replace(public, kind=public.kind_of_values), answer(*arguments), random.Random(1)
         )
-    if kinds()[kind].another:
-        return kinds()[kind].another(public, answer)
+    if another := kinds()[kind].another:
+        return another(public, answer)
     if kind == "choice":
         return next(option for option in public.options if option.lower() != answer.lower())
     if kind == "truth values":
@@ -328,7 +342,7 @@ def another_answer(public, answer, chance=None):
     )
 
 
-def roots_for_cosines(answer):
+def roots_for_cosines(answer: Answer) -> list[Form]:
     """Answers in which one function of one symbol is a root that agrees with it in some quadrants
     only.
 
@@ -337,17 +351,17 @@ def roots_for_cosines(answer):
     """
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]
-    found = []
+    forms = []
     for function, other in ((cos, sin), (sin, cos)):
         for part in sorted(set().union(*(entry.atoms(function) for entry in entries)), key=str):
             root = sqrt(1 - other(part.args[0]) ** 2)
-            found.append(
+            forms.append(
                 (f"{root} for {part}", put([entry.xreplace({part: root}) for entry in entries]))
             )
-    return found
+    return forms
 
 
-def mutant(answer, chance):
+def mutant(answer: Answer, chance: random.Random) -> Answer:
     """The answer with one small thing changed by chance; it may still be right, and whoever asks
     must look.
     """
@@ -358,7 +372,7 @@ def mutant(answer, chance):
     return put(entries)
 
 
-def _mutated(expression, chance):
+def _mutated(expression: sympy.Expr, chance: random.Random) -> sympy.Expr:
     parts = [
         part for part in sympy.preorder_traversal(expression) if not isinstance(part, AppliedUndef)
     ]

@@ -127,7 +127,7 @@ that need the solutions are skipped there.
 }
 
 
-def new(folder):
+def new(folder: str | Path) -> list[str]:
     """Make a course: sources, exercises, sealed questions, tests, CI and a README.
 
     Returns

@@ -18,10 +18,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from importlib import import_module, metadata
 from pathlib import Path
+from typing import TypedDict
 
 from .author import AuthorError
+from .course import Course
 from .packing import archive, dated, wheel, write_wheel
 
 GROUP = "coursework.pages"
@@ -29,7 +32,33 @@ GROUP = "coursework.pages"
 FORMAT = 1
 
 
-def publish(course, site, room=False):
+class Parts(TypedDict):
+    """What whoever makes the pages is given.
+
+    Attributes
+    ----------
+    format : int
+    title : str
+    notebooks : list of Path
+        The files that students get, in their order.
+    archive : Path
+        The zip with all of them.
+    wheels : list of Path
+        The files of the packages that they import, each after those that it needs.
+    plugin : str
+        The module among them that holds the sealed questions; empty where the course has a package
+        of its own.
+    """
+
+    format: int
+    title: str
+    notebooks: list[Path]
+    archive: Path
+    wheels: list[Path]
+    plugin: str
+
+
+def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     """Make the site of a course.
 
     Parameters
@@ -69,17 +98,8 @@ def publish(course, site, room=False):
     return site / "index.html"
 
 
-def parts_of(course, folder):
-    """What the pages of a course are made from.
-
-    Returns
-    -------
-    dict
-        ``format``; ``title``; ``notebooks``, the files that students get, in their order;
-        ``archive``, the zip with all of them; ``wheels``, the files of the packages that they
-        import, each after those that it needs; ``plugin``, the module among them that holds the
-        sealed questions.
-    """
+def parts_of(course: Course, folder: str | Path) -> Parts:
+    """What the pages of a course are made from."""
     if course.package:
         module, _, function = course.package.partition(":")
         wheels, plugin = list(getattr(import_module(module), function)(folder)), ""
@@ -96,7 +116,7 @@ def parts_of(course, folder):
     }
 
 
-def questions_wheel(course, module, folder):
+def questions_wheel(course: Course, module: str, folder: str | Path) -> Path:
     """The sealed questions of a course as a package that ``check`` finds wherever it is
     installed.
     """
@@ -117,7 +137,7 @@ def questions_wheel(course, module, folder):
     )
 
 
-def _maker():
+def _maker() -> Callable[[Parts, Path, Path], None]:
     offers = list(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
@@ -127,14 +147,15 @@ def _maker():
             "are made with."
         )
     if len(offers) > 1:
-        named = " and ".join(f"{one.dist.name} ({one.value})" for one in offers)
+        named = " and ".join(f"{offer.dist.name} ({offer.value})" for offer in offers if offer.dist)
         raise AuthorError(
             f"More than one package makes pages: {named}. Leave one of them installed."
         )
-    return offers[0].load()
+    make: Callable[[Parts, Path, Path], None] = offers[0].load()
+    return make
 
 
-def _fetch_wheels(archive, target):
+def _fetch_wheels(archive: Path, target: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         shutil.unpack_archive(archive, folder)
         command = [

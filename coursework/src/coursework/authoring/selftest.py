@@ -19,8 +19,9 @@ import random
 import re
 import zipfile
 from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
 from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
@@ -32,7 +33,8 @@ from ..checking.reply import Reply, to_html
 from ..checking.variants import shown
 from . import typed
 from .attack import BUDGET, CODE, VERSION, Found, attack
-from .author import AuthorError
+from .author import AuthoredQuestion, AuthorError
+from .course import Course
 from .forms import another_answer, equivalent_forms
 from .source import (
     CHAPTERS,
@@ -40,6 +42,8 @@ from .source import (
     HIDDEN,
     MEASURED,
     SOLUTION,
+    Measured,
+    Source,
     blank,
     cells_needed,
     measured_questions,
@@ -97,15 +101,34 @@ class Finding(NamedTuple):
 
     name: str
     kind: str
-    forms: list
-    mistakes: list
-    unmoved: list
+    forms: list[str]
+    mistakes: list[tuple[str, str]]  # the note, and what is said
+    unmoved: list[str]
     attack: Found
-    worth: int
-    faults: list
+    worth: float
+    faults: list[str]
 
 
-def try_question(question, text="", budget=BUDGET, against_sealed=True, found=None):
+#: What something is that no student may receive, by its text without spaces.
+Secrets = Mapping[str, str]
+#: What it is, and where it stands.
+Leak = tuple[str, str]
+
+
+class Cell(TypedDict):
+    """A cell of a notebook, as JSON."""
+
+    cell_type: str
+    source: str | list[str]
+
+
+def try_question(
+    question: AuthoredQuestion,
+    text: str = "",
+    budget: int = BUDGET,
+    against_sealed: bool = True,
+    found: Found | None = None,
+) -> Finding:
     """Try one question as students will, right and wrong, and as somebody does who guesses.
 
     Parameters
@@ -124,7 +147,7 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     the same is shown by the right answer here, and for the rest by the release, which makes the
     locks of nothing else.
     """
-    faults = []
+    faults: list[str] = []
     if kinds()[question.public.kind].by_a_person:
         return _try_text(question)
     forms = equivalent_forms(question.public, question.answer)
@@ -157,9 +180,9 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     other = next(
         (plain for plain in others if question.fingerprint_of(plain) not in question.entries), None
     )
-    other = Reply(question.name, "wrong") if other is None else question.reply_to(other)
-    if other.outcome == "correct" or other.outcome == "wrong" and other.note:
-        faults.append(f'Another answer gets "{other.outcome}", {other.note!r}.')
+    reply = Reply(question.name, "wrong") if other is None else question.reply_to(other)
+    if reply.outcome == "correct" or reply.outcome == "wrong" and reply.note:
+        faults.append(f'Another answer gets "{reply.outcome}", {reply.note!r}.')
     if found is None:
         found = NOTHING if question.public.exam else attack(question, text, budget)
     return Finding(
@@ -174,7 +197,7 @@ def try_question(question, text="", budget=BUDGET, against_sealed=True, found=No
     )
 
 
-def _try_text(question):
+def _try_text(question: AuthoredQuestion) -> Finding:
     """A question whose answers a person reads: the untouched blank is none, and every text is put
     aside.
     """
@@ -190,15 +213,18 @@ def _try_text(question):
     return Finding(name, kind, [], [], [], NOTHING, question.worth, faults)
 
 
-def _judge(question, answer):
+def _judge(question: AuthoredQuestion, answer: object) -> Reply:
     try:
         return question.reply_to(question.to_plain(answer))
     except NotPlain as error:
         return Reply(question.name, "invalid", "unreadable", [str(error)])
 
 
-def _try_mistakes(question, faults):
-    named, unmoved = [], []
+def _try_mistakes(
+    question: AuthoredQuestion, faults: list[str]
+) -> tuple[list[tuple[str, str]], list[str]]:
+    named: list[tuple[str, str]] = []
+    unmoved: list[str] = []
     for mistake in question.mistakes:
         said = message(question.public, mistake.note, mistake.details)
         try:
@@ -235,26 +261,26 @@ def _try_mistakes(question, faults):
 # --- what must not be found in anything that a student receives ---------------------------------
 
 
-def secrets_of(source):
+def secrets_of(source: Source) -> Secrets:
     """Texts of a notebook with solutions that no student may receive, without spaces: what each is,
     and it.
     """
-    found = []
+    texts: list[tuple[str, str]] = []
     for cell in source.notebook.cells:
         if cell.cell_type == "code":
             for region in SOLUTION.findall(cell.source):
-                found += [("a line of a solution", line) for line in region.splitlines()]
+                texts += [("a line of a solution", line) for line in region.splitlines()]
             for region in HIDDEN.findall(cell.source):
-                found += [("a line of a hidden test", line) for line in region.splitlines()]
+                texts += [("a line of a hidden test", line) for line in region.splitlines()]
     for name, question in source.questions.items():
         for line in question.solution.splitlines():
-            found.append((f"the worked solution of {name}", line))
+            texts.append((f"the worked solution of {name}", line))
         for step in [
             step for steps in [*question.hints.values(), *question.after.values()] for step in steps
         ]:
-            found.append((f"a hint of {name}", step))
+            texts.append((f"a hint of {name}", step))
         if kinds()[question.public.kind].entries:
-            found += [(f"the answer of {name}", text) for text in _writings(question.answer)]
+            texts += [(f"the answer of {name}", text) for text in _writings(question.answer)]
     given = {
         _dense(line)
         for cell in source.notebook.cells
@@ -262,7 +288,7 @@ def secrets_of(source):
     }
     # What stands in place of a solution is given too: the signature of a function and its
     # docstring.
-    owners = {question.variable: name for name, question in source.questions.items()}
+    owners = {question.variable or "": name for name, question in source.questions.items()}
     given |= {
         _dense(line)
         for cell in source.notebook.cells
@@ -273,8 +299,8 @@ def secrets_of(source):
     given |= {
         _dense(json.dumps(question.public.calls or "")) for question in source.questions.values()
     }
-    seen = {}
-    for what, text in found:
+    secrets: dict[str, str] = {}
+    for what, text in texts:
         dense = _dense(text)
         # Short lines stand anywhere, imports and marks tell nothing, and what the author gives
         # openly elsewhere is no secret.
@@ -283,11 +309,11 @@ def secrets_of(source):
             and not _tells_nothing(text)
             and not any(dense.strip(",") in line for line in given)
         ):
-            seen.setdefault(dense, what)
-    return seen
+            secrets.setdefault(dense, what)
+    return secrets
 
 
-def told_openly(question, secrets):
+def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
     """The faults of the ladder of a question: no secret locks its steps, so anybody can read them
     with a few lines.
 
@@ -298,7 +324,7 @@ def told_openly(question, secrets):
         What :func:`secrets_of` gives.
     """
     openly = "A step of its ladder, which anybody can open with a few lines of code,"
-    faults = []
+    faults: list[str] = []
     for step in question.ladder:
         faults += [
             f"{openly} holds {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)
@@ -309,7 +335,7 @@ def told_openly(question, secrets):
     return [f"{fault} Lock it up as one of its `hints` or in `after`." for fault in faults]
 
 
-def _judge_code(question, code):
+def _judge_code(question: AuthoredQuestion, code: str) -> str:
     """The outcome of a piece of code as the answer to a question; empty where it gives none."""
     import sympy
 
@@ -320,7 +346,7 @@ def _judge_code(question, code):
     return ""
 
 
-def _tells_nothing(line):
+def _tells_nothing(line: str) -> bool:
     """Whether a line is an import, a mark, or the head of a function, a class or a loop over what
     has a name.
     """
@@ -330,7 +356,7 @@ def _tells_nothing(line):
     )
 
 
-def _writings(answer):
+def _writings(answer: object) -> list[str]:
     import sympy
 
     if isinstance(answer, tuple) and isinstance(answer[-1], str):
@@ -349,11 +375,13 @@ def _writings(answer):
     return writings
 
 
-def _dense(text):
+def _dense(text: str) -> str:
     return re.sub(r"\s+", "", text).lower()
 
 
-def released_texts(exercises, sealed, archive):
+def released_texts(
+    exercises: str | Path, sealed: str | Path, archive: str | Path
+) -> dict[str, str]:
     """Everything that students receive, as texts by place: files, what is packed in them, and
     pictures.
     """
@@ -364,7 +392,7 @@ def released_texts(exercises, sealed, archive):
     }
     if Path(archive).exists():
         files[str(archive)] = Path(archive).read_bytes()
-    texts = {}
+    texts: dict[str, str] = {}
     while files:
         name, data = files.popitem()
         if name.endswith((".zip", ".whl")):
@@ -380,7 +408,7 @@ def released_texts(exercises, sealed, archive):
     return texts
 
 
-def _strings(data):
+def _strings(data: object) -> Iterator[str]:
     """All texts in JSON data, as they are read and not as they are written."""
     if isinstance(data, str):
         yield data
@@ -397,7 +425,7 @@ def _strings(data):
                 yield from _strings(part)
 
 
-def leaks(sources, texts):
+def leaks(sources: Iterable[Source], texts: Mapping[str, str]) -> list[Leak]:
     """Give every secret that stands in a released text: what it is, and where."""
     return [
         leak
@@ -407,7 +435,7 @@ def leaks(sources, texts):
     ]
 
 
-def found_in(texts, secrets):
+def found_in(texts: Mapping[str, str], secrets: Secrets) -> list[Leak]:
     """Each of some secrets that stands in a text: what it is, and where."""
     return [
         (what, place)
@@ -420,7 +448,12 @@ def found_in(texts, secrets):
 # --- the page -----------------------------------------------------------------------------------
 
 
-def selftest(course, page=None, budget=BUDGET, only=()):
+def selftest(
+    course: Course,
+    page: str | Path | None = None,
+    budget: int = BUDGET,
+    only: Collection[str] = (),
+) -> list[str]:
     """Try all questions of a course, or of the notebooks that are named, look for leaks, and write
     the page.
 
@@ -435,25 +468,30 @@ def selftest(course, page=None, budget=BUDGET, only=()):
         There is nothing to try, or a notebook cannot be read.
     """
     paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
     findings = [finding for found, *_ in tried for finding in found]
-    measured = {name: one for _, some, _ in tried for name, one in some.items()}
+    measured = {name: known for _, some, _ in tried for name, known in some.items()}
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} ask no question.")
     texts = released_texts(course.exercises, course.sealed, course.archive)
-    found = [leak for *_, secrets in tried for leak in found_in(texts, secrets)]
+    leaked = [leak for *_, secrets in tried for leak in found_in(texts, secrets)]
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
-        Path(page).write_text(write_page(findings, found, measured=measured), "utf8")
+        Path(page).write_text(write_page(findings, leaked, measured=measured), "utf8")
     if budget == BUDGET:
         write_measured(course.sources, paths, measured)
     return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
-        f"{what} stands in {place}" for what, place in found
+        f"{what} stands in {place}" for what, place in leaked
     ]
 
 
-def measure(course, only=(), all_variants=False, budget=BUDGET):
+def measure(
+    course: Course,
+    only: Collection[str] = (),
+    all_variants: bool = False,
+    budget: int = BUDGET,
+) -> list[str]:
     """Attack the questions of some notebooks, and write down what was found beside the sources.
 
     What was measured of the same question by the same attack is not measured again.
@@ -473,31 +511,39 @@ def measure(course, only=(), all_variants=False, budget=BUDGET):
         of the points.
     """
     paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count())) as pool:
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
         sources = [course] * len(paths), [all_variants] * len(paths), [budget] * len(paths)
-        measured = {}
+        measured: dict[str, Measured] = {}
         for path, some in zip(paths, pool.map(_measured_in, paths, *sources), strict=True):
             # What is known is kept, should somebody have no time for the rest.
             write_measured(course.sources, [path], some)
             measured |= some
-    found = {name: (one["worth"], weakest_of(one)) for name, one in measured.items()}
+    weakest = {name: (known["worth"], weakest_of(known)) for name, known in measured.items()}
     return [
-        *(f"{name}, {_of(worth, 'point')}: {one}" for name, (worth, one) in found.items()),
+        *(f"{name}, {_of(worth, 'point')}: {found}" for name, (worth, found) in weakest.items()),
         *(
-            proposal(name, worth, one)
-            for name, (worth, one) in found.items()
-            if one.way and worth > LIGHT
+            proposal(name, worth, found)
+            for name, (worth, found) in weakest.items()
+            if found.way and worth > LIGHT
         ),
         f"{said_beyond(measured)}.",
     ]
 
 
-def _measured_in(path, course, all_variants=False, budget=BUDGET):
+def _measured_in(
+    path: Path, course: Course, all_variants: bool = False, budget: int = BUDGET
+) -> dict[str, Measured]:
     source = read_source(path, edition=course.edition)
     return measured_of(source, course, source.questions, all_variants, budget)
 
 
-def measured_of(source, course, names, all_variants=False, budget=BUDGET):
+def measured_of(
+    source: Source,
+    course: Course,
+    names: Iterable[str],
+    all_variants: bool = False,
+    budget: int = BUDGET,
+) -> dict[str, Measured]:
     """What the attack finds of some questions of a notebook, by name: what is known of them is not
     tried again.
 
@@ -505,49 +551,60 @@ def measured_of(source, course, names, all_variants=False, budget=BUDGET):
     variant was found, 0 where it was not and ``None`` where it was not attacked, and by what way
     the weakest.
     """
-    known, found = measured_questions(course.sources) if budget == BUDGET else {}, {}
+    known = measured_questions(course.sources) if budget == BUDGET else {}
+    measured: dict[str, Measured] = {}
     for name in names:
-        question, count = (
-            source.questions[name],
-            source.rules[name].count if name in source.rules else 1,
-        )
+        question = source.questions[name]
+        count = source.rules[name].count if name in source.rules else 1
         digest = digest_of_question(source, course, name)
-        one = known.get(name)
-        if one is None or one["digest"] != digest or len(one["tries"]) not in (0, count):
-            one = {"digest": digest, "tries": [None] * count, "way": ""}
-        one["worth"] = question.worth
-        found[name] = one
+        of_this = known.get(name)
+        if of_this is None or (
+            of_this["digest"] != digest or len(of_this["tries"]) not in (0, count)
+        ):
+            of_this = Measured(worth=0, digest=digest, tries=[None] * count, way="")
+        of_this["worth"] = question.worth
+        measured[name] = of_this
         if _says_nothing(question):
-            one["tries"] = []
+            of_this["tries"] = []
             continue
         for number in range(count if all_variants else 1):
-            if one["tries"][number] is None:
-                attack_variant(source, course, name, number, one, budget)
-    return found
+            if of_this["tries"][number] is None:
+                attack_variant(source, course, name, number, of_this, budget)
+    return measured
 
 
-def attack_variant(source, course, name, number, one, budget=BUDGET):
-    """Attack a variant of a question, and write into ``one`` what came of it."""
+def attack_variant(
+    source: Source,
+    course: Course,
+    name: str,
+    number: int,
+    measured: Measured,
+    budget: int = BUDGET,
+) -> None:
+    """Attack a variant of a question, and write into ``measured`` what came of it."""
     if number:
         source = read_source(
             course.sources / f"{source.name}.ipynb", number, course.edition, only=[name]
         )
     question = source.questions[name]
-    found, before = attack(question, text_of(source, question, course), budget), weakest_of(one)
-    one["tries"][number] = found.tries if found.way else 0
-    if found.way and (not before.way or found.tries < before.tries):
-        one["way"] = found.way
-
-
-def weakest_of(one, budget=BUDGET):
-    """What was found of the weakest variant of a question that was measured."""
-    tries = [count for count in one["tries"] if count]
-    return (
-        Found(min(tries), one["way"]) if tries else Found(budget, "") if one["tries"] else NOTHING
+    found, before = (
+        attack(question, text_of(source, question, course), budget),
+        weakest_of(measured),
     )
+    measured["tries"][number] = found.tries if found.way else 0
+    if found.way and (not before.way or found.tries < before.tries):
+        measured["way"] = found.way
 
 
-def digest_of_question(source, course, name):
+def weakest_of(measured: Measured, budget: int = BUDGET) -> Found:
+    """What was found of the weakest variant of a question that was measured."""
+    tries = [count for count in measured["tries"] if count]
+    if tries:
+        return Found(min(tries), measured["way"])
+    return Found(budget, "") if measured["tries"] else NOTHING
+
+
+def digest_of_question(source: Source, course: Course, name: str) -> str:
     """A text that follows from what the attack on a question depends on: its cells, with the text,
     and the attack.
     """
@@ -565,7 +622,7 @@ def digest_of_question(source, course, name):
 
 
 @functools.cache
-def digest_of_attack():
+def digest_of_attack() -> str:
     """A text that follows from the attack: which versions of it there are, and what functions it
     applies.
     """
@@ -576,7 +633,7 @@ def digest_of_attack():
     return hashlib.sha256(known.encode()).hexdigest()
 
 
-def proposal(name, worth, found):
+def proposal(name: str, worth: float, found: Found) -> str:
     """What an author may do of a question that counts much and is soon guessed."""
     return (
         f"{name}, {_of(worth, 'point')}, {found}. To carry them, ask for several parts in one "
@@ -585,29 +642,34 @@ def proposal(name, worth, found):
     )
 
 
-def write_measured(sources, paths, found):
+def write_measured(
+    sources: str | Path, paths: Iterable[Path], measured: Mapping[str, Measured]
+) -> None:
     """Write down what was measured of the questions of some notebooks; what is known of the others
     stays.
     """
     tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
     questions = {
-        name: one
-        for name, one in measured_questions(sources).items()
+        name: known
+        for name, known in measured_questions(sources).items()
         if name.partition("/")[0] in there - tried
-    } | found
+    } | dict(measured)
     lines = ",\n".join(
-        f"  {json.dumps(name)}: {json.dumps(one, sort_keys=True)}"
-        for name, one in sorted(questions.items())
+        f"  {json.dumps(name)}: {json.dumps(known, sort_keys=True)}"
+        for name, known in sorted(questions.items())
     )
     text = f'{{\n "format": {FORMAT_OF_MEASURED},\n "questions": {{\n{lines}\n }}\n}}\n'
     Path(sources, MEASURED).write_text(text, "utf8")
 
 
-def _try_notebook(path, course, budget):
+def _try_notebook(
+    path: Path, course: Course, budget: int
+) -> tuple[list[Finding], dict[str, Measured], Secrets]:
     """What was found of the questions of a notebook, what was measured of them, and its secrets."""
     source = read_source(path, edition=course.edition)
     measured = measured_of(source, course, source.questions, True, budget) if budget else {}
-    secrets, findings = secrets_of(source), []
+    secrets = secrets_of(source)
+    findings: list[Finding] = []
     for name, question in source.questions.items():
         found = weakest_of(measured[name], budget) if measured else NOTHING
         finding = try_question(question, found=found)
@@ -615,12 +677,12 @@ def _try_notebook(path, course, budget):
     return findings, measured, {} if source.name == CHAPTERS else secrets
 
 
-def _says_nothing(question):
+def _says_nothing(question: AuthoredQuestion) -> bool:
     """Whether a question has nothing to try a guess on."""
     return bool(question.public.exam) or kinds()[question.public.kind].by_a_person
 
 
-def text_of(source, question, course):
+def text_of(source: Source, question: AuthoredQuestion, course: Course) -> str:
     """The text of a question, that of its variant or the Markdown above its check, and the open
     code of its cell.
 
@@ -628,17 +690,19 @@ def text_of(source, question, course):
     """
     if source.name == CHAPTERS:
         for path in sorted((course.root / CHAPTERS).glob("*.ipynb")):
-            found = _above_check(json.loads(path.read_text("utf8"))["cells"], question)
-            if found:
-                return f"{found[0]}{CODE}{found[1]}"
-    cells = [{"cell_type": cell.cell_type, "source": cell.source} for cell in source.notebook.cells]
-    text = (_above_check(cells, question) or [""])[0]
+            checked = _above_check(json.loads(path.read_text("utf8"))["cells"], question)
+            if checked:
+                return f"{checked[0]}{CODE}{checked[1]}"
+    cells: list[Cell] = [
+        {"cell_type": cell.cell_type, "source": cell.source} for cell in source.notebook.cells
+    ]
+    text, _ = _above_check(cells, question) or ("", "")
     if question.public.variant:
         text = shown(question.public.variant.text, question.public.variant.shown)
     return f"{text}{CODE}{_open_code(source, question)}"
 
 
-def _above_check(cells, question):
+def _above_check(cells: Iterable[Cell], question: AuthoredQuestion) -> tuple[str, str] | None:
     """The Markdown above the cell that checks a question, and that cell; ``None`` where none
     does.
     """
@@ -652,7 +716,7 @@ def _above_check(cells, question):
     return None
 
 
-def _open_code(source, question):
+def _open_code(source: Source, question: AuthoredQuestion) -> str:
     """The code that students get of the cell in which a question is answered."""
     for cell in source.notebook.cells:
         if cell.cell_type == "code" and re.search(
@@ -662,7 +726,12 @@ def _open_code(source, question):
     return ""
 
 
-def write_page(findings, found, before="", measured=None):
+def write_page(
+    findings: Sequence[Finding],
+    leaked: Sequence[Leak] | None,
+    before: str = "",
+    measured: Mapping[str, Measured] | None = None,
+) -> str:
     share = said_beyond(measured) if measured else ""
     rows = []
     for finding in findings:
@@ -691,10 +760,10 @@ def write_page(findings, found, before="", measured=None):
         )
     listed = "".join(
         f"<li>{html.escape(what)} stands in {html.escape(place)}</li>"
-        for what, place in found or []
+        for what, place in leaked or []
     )
     # Where only a few questions are tried, nothing was looked for.
-    leaked = "" if found is None else f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
+    leaks_found = f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'
         '<meta name="viewport" content="width=device-width, '
@@ -708,15 +777,15 @@ def write_page(findings, found, before="", measured=None):
         "needed to find the "
         "answer. Not found means not found by this attack: somebody may have a better idea."
         f"{f' {share}.' if share else ''}</p>"
-        f"{before}{leaked}<h2>Questions</h2><table><thead><tr>"
+        f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"
     )
 
 
-def _of(count, what):
-    return f"{count} {what}{'' if count == 1 else 's'}"
+def _of(count: float, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
-def _folded(summary, inside):
+def _folded(summary: int, inside: str) -> str:
     return f"<details><summary>{summary}</summary>{inside}</details>" if summary else "none"

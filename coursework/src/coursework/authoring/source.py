@@ -201,13 +201,15 @@ def said_beyond(measured: Mapping[str, Measured]) -> str:
 
     points = sum(one["worth"] for one in measured.values())
     tries = [count for one in measured.values() for count in one["tries"]]
+    known = len(tries) - tries.count(None)
     attacked = (
-        f", as far as {len(tries) - tries.count(None)} of {len(tries)} variants were attacked"
+        f", over all {known} variants"
+        if known == len(tries)
+        else f", as far as {known} of {len(tries)} variants were attacked"
     )
     return (
         f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are "
-        "behind more than "
-        f"{BUDGET:,} tries of a "
+        f"behind more than {BUDGET:,} tries of a "
         f"script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
     )
 

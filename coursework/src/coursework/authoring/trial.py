@@ -9,13 +9,14 @@ from pathlib import Path
 from ..checking.reply import to_html
 from ..checking.variants import image
 from ..checking.variants import text_of as whole_text
-from .author import AuthorError, to_page
+from .author import AuthoredQuestion, AuthorError, to_page
+from .course import Course
 from .release import shows_variants
 from .selftest import measured_of, try_question, weakest_of, write_page
-from .source import answered_in, read_source
+from .source import Source, answered_in, read_source
 
 
-def trial(course, name, page):
+def trial(course: Course, name: str, page: str | Path) -> str | Path:
     """Write a page on one question, or on all questions of a notebook.
 
     Parameters
@@ -48,25 +49,27 @@ def trial(course, name, page):
         for question in chosen
     )
     measured = measured_of(source, course, [question.name for question in chosen])
-    findings = [try_question(one, found=weakest_of(measured[one.name])) for one in chosen]
+    findings = [
+        try_question(question, found=weakest_of(measured[question.name])) for question in chosen
+    ]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
     Path(page).write_text(_with_mathematics(write_page(findings, None, texts, measured)), "utf8")
     return page
 
 
-def _under(text):
+def _under(text: str) -> str:
     """A text whose headings stand below that of its section."""
     return re.sub(r"(</?)h[12]>", r"\1h3>", text)
 
 
-def _with_mathematics(page):
+def _with_mathematics(page: str) -> str:
     """The page with its formulas as browsers show them."""
     from latex2mathml.converter import convert
 
     return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: convert(html.unescape(found[2])), page)
 
 
-def _text(source, question):
+def _text(source: Source, question: AuthoredQuestion) -> str:
     """All that stands above a question as students meet it: the heading, the text and the
     pictures.
     """
@@ -78,35 +81,35 @@ def _text(source, question):
     )
 
 
-def _above(source, question):
+def _above(source: Source, question: AuthoredQuestion) -> list[str]:
     """The Markdown and the figures between the question before and the cell that its answer stands
     in.
     """
-    cells, found = source.notebook.cells, []
-    owners = {one.variable: name for name, one in source.questions.items()}
+    cells = source.notebook.cells
+    above: list[str] = []
+    owners = {known.variable or "": name for name, known in source.questions.items()}
     for number, cell in enumerate(cells):
         if cell.cell_type == "markdown":
             if not shows_variants(cells, number):
-                found = (
-                    [cell.source] if cell.source.lstrip().startswith("#") else [*found, cell.source]
-                )
+                heading = cell.source.lstrip().startswith("#")
+                above = [cell.source] if heading else [*above, cell.source]
         elif number in source.figures:
-            found.append(image(source.figures[number].picture(), source.figures[number].alt))
+            above.append(image(source.figures[number].picture(), source.figures[number].alt))
         elif question.variable in answered_in(cell.source, owners):
-            return found
+            return above
         elif answered_in(cell.source, owners):
-            found = []
-    return found
+            above = []
+    return above
 
 
-def _rubric(question):
+def _rubric(question: AuthoredQuestion) -> str:
     worths = question.rubric if isinstance(question.rubric, dict) else {}
     shares = {line: f" ({worth:g} of {question.worth})" for line, worth in worths.items()}
     lines = "".join(f"<li>{to_html(line)}{shares.get(line, '')}</li>" for line in question.rubric)
     return f"<h3>What a person looks for</h3><ul>{lines}</ul>" if lines else ""
 
 
-def _hints(question):
+def _hints(question: AuthoredQuestion) -> str:
     lines = [
         f"<li><b>{html.escape(note)}</b>: {to_html(step)}</li>"
         for note, steps in question.hints.items()

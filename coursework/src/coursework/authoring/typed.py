@@ -17,11 +17,28 @@ import itertools
 import math
 import operator
 import re
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..checking.plugins import packages, plugins
+
+if TYPE_CHECKING:
+    from .attack import At
+
+Values: TypeAlias = NDArray[np.float64]
+#: What the data that a value uses is called: a number whose bits stand for it, or one for each.
+Uses: TypeAlias = "int | NDArray[np.int64]"
+Shape: TypeAlias = tuple[int, ...]
+#: The shape of a value, and whether it is a rotation or a unit vector.
+Sort: TypeAlias = tuple[Shape, bool]
+#: Values of one sort and price, and what each uses.
+Priced: TypeAlias = tuple[list[Values], list[int]]
+#: The same as arrays.
+Arrays: TypeAlias = tuple[Values, NDArray[np.int64]]
+Work: TypeAlias = Callable[..., Any]
 
 #: Values that one step may give at one price, values in all, and calls that a function needs for
 #: them.
@@ -63,9 +80,9 @@ class Step(NamedTuple):
     """
 
     name: str
-    work: object
+    work: Work
     arity: int
-    shapes: tuple = ()
+    shapes: tuple[int, ...] = ()
     price: int = 1
 
 
@@ -77,16 +94,18 @@ class Pool:
     these.
     """
 
-    def __init__(self, points, wanted=()):
-        self.points, self.wanted, self.sorts, self.seen = points, wanted, {}, set()
+    def __init__(self, points: int, wanted: Sequence[Shape] = ()) -> None:
+        self.points, self.wanted = points, wanted
+        self.sorts: dict[Sort, dict[int, Priced]] = {}
+        self.seen: set[tuple[Shape, bytes]] = set()
         self.data = self.calls = 0
 
-    def of_new_data(self):
+    def of_new_data(self) -> int:
         """The bit of one more thing that the question gives."""
         self.data += 1
         return 1 << (self.data - 1)
 
-    def add(self, values, price, uses=0):
+    def add(self, values: Values, price: int, uses: Uses = 0) -> None:
         """Add an array of values, shape (values, points, ...); what they use is one number, or one
         for each.
         """
@@ -98,9 +117,9 @@ class Pool:
         if math.prod(shape) > 48 or price > dearest:
             return
         flat = values.reshape(len(values), -1)
-        good = np.isfinite(flat).all(axis=1)
+        good = np.asarray(np.isfinite(flat).all(axis=1))
         good[good] = np.abs(flat[good]).max(axis=1) < 1e9
-        uses = np.broadcast_to(uses, len(values))[good].tolist()
+        used = np.broadcast_to(uses, len(values))[good].tolist()
         values, flat = values[good], np.round(flat[good], 8) + 0.0
         special, size, packed = _special(values).tolist(), flat[:1].nbytes, flat.tobytes()
         for place in range(len(values)):
@@ -111,9 +130,9 @@ class Pool:
                     price, ([], [])
                 )
                 at_price[0].append(values[place])
-                at_price[1].append(uses[place])
+                at_price[1].append(used[place])
 
-    def add_whole(self, values, price, uses=0):
+    def add_whole(self, values: Values, price: int, uses: Uses = 0) -> None:
         """Add values like :meth:`add`, and the rows and entries that they are made of."""
         self.add(values, price, uses)
         if values.ndim > 2 and values.size:
@@ -121,7 +140,13 @@ class Pool:
             uses = np.repeat(np.broadcast_to(uses, len(values)), rows.shape[1])
             self.add_whole(rows.reshape(-1, *rows.shape[2:]), price + (values.ndim == 4), uses)
 
-    def of_shape(self, shape, only_special=False, price=None, whole=None):
+    def of_shape(
+        self,
+        shape: Shape,
+        only_special: bool = False,
+        price: int | None = None,
+        whole: bool | None = None,
+    ) -> list[Values]:
         """All values of a shape, the cheap ones first, or those of one price: shape (values,
         points, ...).
 
@@ -143,7 +168,7 @@ class Pool:
         ]
 
 
-def _special(values):
+def _special(values: Values) -> NDArray[np.bool_]:
     """Which values are rotations, or unit vectors, at each point."""
     shape = values.shape[2:]
     special = np.zeros(len(values), dtype=bool)
@@ -166,13 +191,15 @@ OF_ENTRIES = (np.sum, np.mean, np.max, np.min, np.median, np.prod, np.std, len, 
 # --- where it begins ------------------------------------------------------------------------------
 
 
-def beginning(at, given, text, code, wanted):
+def beginning(
+    at: "At", given: Mapping[str, object], text: str, code: str, wanted: Sequence[Shape]
+) -> Pool:
     """The pool of what a student holds: symbols, the numbers of a variant, of the text and of the
     open code.
     """
     pool, in_degrees = Pool(len(at.points), wanted), DEGREES.search(text)
 
-    def add(value, price=1, uses=None):
+    def add(value: Any, price: int = 1, uses: int | None = None) -> None:
         if isinstance(value, (str, bool)) or value is None or value is Ellipsis:
             return
         try:
@@ -199,11 +226,11 @@ def beginning(at, given, text, code, wanted):
         pool.add(at.values[name][None], 1, pool.of_new_data())
     for value in given.values():
         add(value)
-    given = pool.data
+    has_data = pool.data > 0
     for table in _tables_in(text):
-        add(table, uses=0 if given else None)
+        add(table, uses=0 if has_data else None)
     for value in _literals(code):
-        add(value, uses=0 if given else None)
+        add(value, uses=0 if has_data else None)
     for found in TUPLE.finditer(text):
         add([float(part) for part in found[1].split(",")], uses=0)
     for found in SUM.finditer(text):
@@ -216,18 +243,16 @@ def beginning(at, given, text, code, wanted):
         add(components, uses=0)
     for above, below, over, under in FRACTION.findall(text):
         add(float(above or over) / (float(below or under) or 1), uses=0)
-    found = list(dict.fromkeys(re.findall(NUMBER, text)))
-    for number in found:
-        add(float(number), 1 if len(found) <= FEW_NUMBERS else 2, uses=0)
-    numbers = pool.of_shape(())[:30]
-    for value in numbers:
+    written = list(dict.fromkeys(re.findall(NUMBER, text)))
+    for number in written:
+        add(float(number), 1 if len(written) <= FEW_NUMBERS else 2, uses=0)
+    for value in pool.of_shape(())[:30]:
         pool.add(np.radians(value)[None], 2)
     _add_constants(pool)
     # What stands as separate numbers may be meant as one triple, of angles or of components, most
     # likely in order.
-    numbers, used = (
-        np.array(part[:8]) for part in pool.sorts.get(((), False), {}).get(1, ([], []))
-    )
+    values, bits = pool.sorts.get(((), False), {}).get(1, ([], []))
+    numbers, used = np.array(values[:8]), np.array(bits[:8])
     for size in (3, 4):
         for start in range(len(numbers) - size + 1):
             uses = np.bitwise_or.reduce(used[start : start + size])
@@ -243,7 +268,7 @@ def beginning(at, given, text, code, wanted):
     return pool
 
 
-def _tables_in(text):
+def _tables_in(text: str) -> Iterator[list[list[float | None]]]:
     """The numbers of the matrices and tables of a text, as far as they are numbers."""
     for found in MATRIX.finditer(text):
         yield [
@@ -260,7 +285,7 @@ def _tables_in(text):
         yield [row for row in rows if row]
 
 
-def _number(text):
+def _number(text: str) -> float | None:
     """The number that an entry is, or ``None``: a fraction is a number, too."""
     text = text.replace("$", "").replace(" ", "")
     found = FRACTION.fullmatch(text.lstrip("-"))
@@ -270,7 +295,7 @@ def _number(text):
     return float(text) if re.fullmatch(NUMBER, text) else None
 
 
-def of_arguments(calls, wanted):
+def of_arguments(calls: Sequence[Sequence[Any]], wanted: Sequence[Shape]) -> Pool:
     """The pool of the arguments that a function is called with, where they have one shape in all
     calls.
     """
@@ -278,21 +303,21 @@ def of_arguments(calls, wanted):
     for column in zip(*calls, strict=False):
         uses = pool.of_new_data()
         try:
-            column = [np.asarray(one, dtype=float) for one in column]
-            if len({one.shape[1:] for one in column}) == 1 and column[0].ndim:
+            given = [np.asarray(argument, dtype=float) for argument in column]
+            if len({argument.shape[1:] for argument in given}) == 1 and given[0].ndim:
                 # Lists of several lengths have in common what is made of all of their entries.
-                for work in OF_ENTRIES if column[0].ndim == 1 else ():
-                    pool.add(np.array([work(one) for one in column], dtype=float)[None], 2, uses)
-                for work in OF_ROWS if column[0].ndim > 1 else ():
-                    pool.add(np.array([work(one) for one in column])[None], 2, uses)
-            pool.add_whole(np.array(column, dtype=float)[None], 1, uses)
+                for work in OF_ENTRIES if given[0].ndim == 1 else ():
+                    pool.add(np.array([work(list_) for list_ in given], dtype=float)[None], 2, uses)
+                for work in OF_ROWS if given[0].ndim > 1 else ():
+                    pool.add(np.array([work(rows) for rows in given])[None], 2, uses)
+            pool.add_whole(np.array(given, dtype=float)[None], 1, uses)
         except (TypeError, ValueError, IndexError):
             continue
     _add_constants(pool)
     return pool
 
 
-def _add_constants(pool):
+def _add_constants(pool: Pool) -> None:
     for place, number in enumerate(CONSTANTS):
         pool.add(np.full((1, pool.points), number), 2 if place < 4 else 4)
     for size in (3, 4):
@@ -301,10 +326,10 @@ def _add_constants(pool):
     pool.add(np.broadcast_to(np.eye(3), (1, pool.points, 3, 3)), 3)
 
 
-def _literals(code):
+def _literals(code: str) -> Iterator[object]:
     """Numbers and lists of numbers that stand in code, as whole as they stand."""
     try:
-        waiting = [ast.parse(code)]
+        waiting: list[ast.AST] = [ast.parse(code)]
     except SyntaxError:
         return
     while waiting:
@@ -318,23 +343,25 @@ def _literals(code):
 # --- steps ----------------------------------------------------------------------------------------
 
 
-def _unit(v):
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
+def _unit(v: Values) -> Values:
+    unit: Values = v / np.linalg.norm(v, axis=-1, keepdims=True)
+    return unit
 
 
-def _dot(v, w):
-    return (v * w).sum(-1)
+def _dot(v: Values, w: Values) -> Values:
+    product: Values = (v * w).sum(-1)
+    return product
 
 
-def _turn_round(m):
+def _turn_round(m: Values) -> Values:
     return np.swapaxes(m, -1, -2)
 
 
-def _angle(v, w):
+def _angle(v: Values, w: Values) -> Values:
     return np.arccos(np.clip(_dot(_unit(v), _unit(w)), -1, 1))
 
 
-def _vee(m):
+def _vee(m: Values) -> Values:
     """What of a matrix changes its sign with the transpose, as a vector."""
     return (
         np.stack(
@@ -345,7 +372,7 @@ def _vee(m):
     )
 
 
-def _inverse(m):
+def _inverse(m: Values) -> Values:
     """The inverse; not a number where there is none, so that the others of a batch are found all
     the same.
     """
@@ -357,7 +384,7 @@ def _inverse(m):
     )
 
 
-def _crossed(v):
+def _crossed(v: Values) -> Values:
     x, y, z = np.moveaxis(v, -1, 0)
     o = 0 * x
     return np.stack(
@@ -365,26 +392,26 @@ def _crossed(v):
     )
 
 
-def _outer(v, w):
+def _outer(v: Values, w: Values) -> Values:
     return v[..., :, None] * w[..., None, :]
 
 
-def _wrapped(turn):
+def _wrapped(turn: float) -> Work:
     return lambda v: np.remainder(v + turn / 2, turn) - turn / 2
 
 
-def _other_way(half, proper):
+def _other_way(half: float, proper: bool) -> Work:
     """The other triple of angles of the same orientation."""
     return lambda v: np.stack(
         [v[..., 0] + half, -v[..., 1] if proper else half - v[..., 1], v[..., 2] + half], -1
     )
 
 
-def _entry(*place):
+def _entry(*place: int | slice) -> Work:
     return lambda v: v[(..., *place)]
 
 
-def _without_sign(place, size):
+def _without_sign(place: int, size: int) -> Work:
     signs = np.where(np.arange(size) == place, -1, 1)
     return lambda v: v * signs if v.shape[-1] == size else 1 / 0
 
@@ -395,7 +422,7 @@ WRAPS = (
 )  # fmt: skip
 
 
-def _quotient(p, q):
+def _quotient(p: Values, q: Values) -> Values:
     """The quaternion from q to p, and from p to q."""
     p = np.concatenate([p[..., :1], -p[..., 1:]], -1)
     scalar = p[..., :1] * q[..., :1] - _dot(p[..., 1:], q[..., 1:])[..., None]
@@ -403,7 +430,7 @@ def _quotient(p, q):
     return np.concatenate([scalar, vector], -1)
 
 
-def _steps(price, shapes, *works):
+def _steps(price: int, shapes: tuple[int, ...], *works: Work) -> tuple[Step, ...]:
     return tuple(Step("", work, len(shapes), shapes, price) for work in works)
 
 
@@ -485,22 +512,23 @@ TURNS = (
 
 
 @functools.cache
-def public_functions():
+def public_functions() -> list[Step]:
     """The public functions of the course's packages, once for each choice of the words that they
     need.
     """
-    words, found = {}, []
+    words: dict[str, Sequence[str]] = {}
+    steps: list[Step] = []
     for plugin in plugins():
         words |= getattr(plugin, "WORDS", {})
     for package in packages():
         module = importlib.import_module(package)
         for name in getattr(module, "__all__", ()):
             if inspect.isfunction(getattr(module, name)):
-                found += _steps_of(name, getattr(module, name), words)
-    return found
+                steps += _steps_of(name, getattr(module, name), words)
+    return steps
 
 
-def _steps_of(name, function, words):
+def _steps_of(name: str, function: Work, words: Mapping[str, Sequence[str]]) -> Iterator[Step]:
     needed = [
         one for one in inspect.signature(function).parameters.values() if one.default is one.empty
     ]
@@ -511,16 +539,14 @@ def _steps_of(name, function, words):
     for chosen in itertools.product(*(words[one] for one in spoken)):
         said = dict(zip(spoken, chosen, strict=True))
 
-        def work(*values, said=said):
-            values = iter(values)
-            return function(
-                *(said[one.name] if one.name in said else next(values) for one in needed)
-            )
+        def work(*values: Values, said: Mapping[str, str] = said) -> Any:
+            left = iter(values)
+            return function(*(said[one.name] if one.name in said else next(left) for one in needed))
 
         yield Step(" ".join([name, *chosen]), work, arity)
 
 
-def priced(steps, text):
+def priced(steps: Iterable[Step], text: str) -> list[Step]:
     """Steps with their prices: functions whose axes the text does not name are dearer."""
     named = {"".join(found).lower() for found in AXES.findall(text)}
     return [
@@ -534,7 +560,7 @@ def priced(steps, text):
 # --- what is near to a value ----------------------------------------------------------------------
 
 
-def near(value):
+def near(value: Values) -> Values:
     """What differs little from a value: shape (points, ...), and (values, points, ...) of the
     result.
 
@@ -565,9 +591,12 @@ def near(value):
             ]
         )
     if len(shape) == 1:
-        signs = [np.where(np.isin(np.arange(shape[0]), some), -1, 1) for some in _some_of(shape[0])]
+        turned = [
+            value * np.where(np.isin(np.arange(shape[0]), some), -1, 1)
+            for some in _some_of(shape[0])
+        ]
         swaps = [value[:, order] for order in _swaps(shape[0])]
-        return np.array([*(value * sign for sign in signs), *swaps, *whole])
+        return np.array([*turned, *swaps, *whole])
     if shape:
         return np.array(whole)
     shifts = [
@@ -579,7 +608,7 @@ def near(value):
 
 
 @functools.cache
-def _frames():
+def _frames() -> list[Values]:
     """The 24 rotations that bring three axes onto three axes, and their mirror images."""
     return [
         np.eye(3)[list(order)] * np.array(sign)[:, None]
@@ -589,23 +618,24 @@ def _frames():
     ] + [np.diag(sign) for sign in itertools.product((1, -1), repeat=3) if np.prod(sign) == -1]
 
 
-def _some_of(size):
+def _some_of(size: int) -> list[tuple[int, ...]]:
     return [some for count in (1, 2) for some in itertools.combinations(range(size), count)]
 
 
-def _swaps(size):
+def _swaps(size: int) -> Iterator[list[int]]:
     for first, second in itertools.combinations(range(size), 2):
         order = list(range(size))
         order[first], order[second] = second, first
         yield order
 
 
-def by_price(pool, steps, most=MOST):
+def by_price(pool: Pool, steps: Iterable[Step], most: int = MOST) -> Iterator[int]:
     """Make all values of a price from cheaper ones, price by price; yields the price, first that of
     what is given.
     """
     yield from (1, 2)
-    refused, made = set(), {}
+    refused: set[tuple[Step, tuple[Sort, ...]]] = set()
+    made: dict[Sort, dict[int, Arrays]] = {}
     for price in range(2, DEAREST):
         # What costs less than this is there by now.
         for sort, values in pool.sorts.items():
@@ -636,7 +666,7 @@ def by_price(pool, steps, most=MOST):
             return
 
 
-def _sums(whole, allowed):
+def _sums(whole: int, allowed: Sequence[Mapping[int, object]]) -> list[tuple[int, ...]]:
     """All lists of numbers that make a sum, each of those that are allowed in its place."""
     if len(allowed) == 1:
         return [(whole,)] if whole in allowed[0] else []
@@ -648,7 +678,7 @@ def _sums(whole, allowed):
     ]
 
 
-def _apply(pool, chosen, step, price):
+def _apply(pool: Pool, chosen: Sequence[Arrays], step: Step, price: int) -> bool:
     """Apply a step to values of some prices, all at once. Whether it can."""
     lengths = [min(len(values), TAKEN[step.arity]) for values, _ in chosen]
     while np.prod(lengths) > MOST_OF_A_STEP:
@@ -665,18 +695,19 @@ def _apply(pool, chosen, step, price):
         for part in found:
             pool.add(part, price, uses)
         return bool(found)
-    by_shape = {}
+    by_shape: dict[Shape, list[Arrays]] = {}
     for rows, parts in _called(step.work, values, pool):
         for part in parts:
             by_shape.setdefault(part.shape[2:], []).append((part, uses[rows]))
-    for found in by_shape.values():
-        parts, used = zip(*found, strict=True)
-        pool.add(np.concatenate(parts), price, np.concatenate(used))
-        pool.add_whole(np.concatenate(parts), price + 1, np.concatenate(used))
+    for of_shape in by_shape.values():
+        together = np.concatenate([part for part, _ in of_shape])
+        used = np.concatenate([used for _, used in of_shape])
+        pool.add(together, price, used)
+        pool.add_whole(together, price + 1, used)
     return bool(by_shape)
 
 
-def _parts(work, values, *begin):
+def _parts(work: Work, values: Sequence[Values], *begin: int) -> list[Values]:
     """What a step gives for all values at once, each part of it, as far as their shapes begin so;
     or nothing.
     """
@@ -691,13 +722,16 @@ def _parts(work, values, *begin):
     return [part for part in found if part.shape[: len(begin)] == begin]
 
 
-def _called(function, values, pool):
+def _called(
+    function: Work, values: Sequence[Values], pool: Pool
+) -> Iterator[tuple[slice, list[Values]]]:
     """What a function of the course gives: rows, and the parts of what it gives for them.
 
     Most take a batch, which must have more rows than a vector has numbers. It is tried on one
     value, then on more and more at once, and on fewer again where one of them is refused.
     """
-    points, first, size, refused = pool.points, 0, 1, 0
+    points, first, size = pool.points, 0, 1
+    refused = 0.0
     for _ in range(MOST_CALLS):
         pool.calls += 1
         last = min(first + size, len(values[0]))

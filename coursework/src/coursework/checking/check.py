@@ -224,7 +224,8 @@ def progress() -> Reply:
             "progress", "hints", "", others or ["Nothing has been checked in this folder yet."]
         )
     right = {name for name, entry in record.items() if entry.outcome == "correct"}
-    lines = [f"{len(right)} of the {len(record)} questions that you have tried are right."]
+    are = "is" if len(right) == 1 else "are"
+    lines = [f"{len(right)} of the {len(record)} questions that you have tried {are} right."]
     if len(record) == 1:
         lines = [
             f"The one question that you have tried is {'right' if right else 'not right yet'}."

@@ -148,7 +148,7 @@ def components(value: Value, length: int, wanted: str) -> list[int]:
 
 
 def _measurement(question: Question, value: Value) -> list[int]:
-    wanted = "A number and its unit, such as `(3.2, 'N m')`,"
+    wanted = "A number and its unit, such as `(3.2, 'N m')`"
     parts = parts_of(value) if value[0] == "list" else []
     if len(parts) != 2 or parts[1][0] != "text":
         raise shape_fault(wanted, value)
@@ -233,9 +233,7 @@ def _spelled(plain: Plain) -> str | None:
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(
-        plain, f"One of {listed(question.options)}, in quotation marks,"
-    )
+    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
     given = " ".join(given.split())
     # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
     # out.
@@ -259,7 +257,7 @@ def _choices(question: Question, plain: Plain) -> list[str]:
 
 def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
-    wanted = f"A list of {length} truth values, `True` or `False`,"
+    wanted = f"A list of {length} truth values, `True` or `False`"
     if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(wanted, value)
     letters = ""
@@ -278,7 +276,7 @@ def _truths(question: Question, plain: Plain) -> str:
 
 def _words(question: Question, plain: Plain) -> str:
     value, length, options = plain["value"], question.length, question.options
-    wanted = f"A list of {length} words, each one of {listed(options)},"
+    wanted = f"A list of {length} words, each one of {listed(options)}"
     if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(wanted, value)
     if any(map(is_blank, parts_of(value))):

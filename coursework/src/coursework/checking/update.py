@@ -9,6 +9,7 @@ import json
 import re
 import sys
 import zipfile
+import zlib
 from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -29,8 +30,8 @@ FORMAT = 1
 
 
 class ArchiveRefused(ValueError):
-    """The archive is older than the folder, or the folder is of a newer coursework; the message
-    says which.
+    """The archive is none, or is older than the folder, or the folder is of a newer coursework; the
+    message says which.
     """
 
 
@@ -85,9 +86,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
         Nothing was changed.
     """
     folder = Path(folder)
-    with zipfile.ZipFile(archive_file) as box:
-        entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
-        files = {_place(entry): box.read(entry) for entry in entries}
+    files = _files_in(archive_file)
     files.pop(MANIFEST, None)
     before = _handed_out(folder)
     now = {name: digest_of(name, data) for name, data in files.items()}
@@ -135,6 +134,30 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
         line = " ".join(f'"{word}"' if " " in word else word for word in command)
         said.append(f"Now run this:\n\n    {line}\n")
     return said
+
+
+def _files_in(archive_file: str | Path) -> dict[str, bytes]:
+    """What an archive of exercises holds, by the place of each file in a student's folder."""
+    once_more = "Nothing was changed: download it once more."
+    try:
+        with zipfile.ZipFile(archive_file) as box:
+            entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
+            files = {_place(entry): box.read(entry) for entry in entries}
+    except FileNotFoundError:
+        raise ArchiveRefused(
+            f"There is no {archive_file} in {Path.cwd()}. Put the archive that you have downloaded "
+            "there, or write where it is."
+        ) from None
+    except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
+        raise ArchiveRefused(
+            f"{archive_file} is no whole zip archive. Did the download break off, or was a page "
+            f"saved in its place? {once_more}"
+        ) from None
+    if not any(name.endswith(".ipynb") for name in files):
+        raise ArchiveRefused(
+            f"{archive_file} holds no notebook. Is it the archive of the exercises? {once_more}"
+        )
+    return files
 
 
 def _place(entry: str) -> str:

@@ -1,13 +1,24 @@
 """The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
 
+from __future__ import annotations
+
+import argparse
 import contextlib
+import datetime
 import io
 import re
 import sys
 import tempfile
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .grade import Moved
+    from .judging.ledger import Decision
+    from .store import Store
 
 
-def add_commands(commands):
+def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
     grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
     grade.add_argument(
@@ -239,23 +250,21 @@ def add_commands(commands):
     )
 
 
-def _moment(text):
+def _moment(text: str) -> datetime.datetime:
     """A time that a person typed, on the clocks of this machine if it names no zone."""
-    import datetime
-
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
-def _named(assignments):
+def _named(assignments: Iterable[str]) -> dict[str, list[str]]:
     """The notebooks that make up each assignment, from ``NAME`` and ``NAME=NOTEBOOK,...``."""
-    parts = [one.partition("=") for one in assignments]
-    return {name: (notebooks or name).split(",") for name, _, notebooks in parts} or None
+    parts = [assignment.partition("=") for assignment in assignments]
+    return {name: (notebooks or name).split(",") for name, _, notebooks in parts}
 
 
 class NeedsLinux(RuntimeError):
     """This system keeps no programs apart in the way that grading does."""
 
-    def __str__(self):
+    def __str__(self) -> str:
         return (
             "this judges what strangers wrote, apart from all else and by means of Linux that this "
             "system has not. Run "
@@ -264,7 +273,7 @@ class NeedsLinux(RuntimeError):
 
 
 @contextlib.contextmanager
-def _on_linux():
+def _on_linux() -> Iterator[None]:
     """Where modules that only Unix has are missing, say what that means."""
     try:
         yield
@@ -274,7 +283,20 @@ def _on_linux():
         raise
 
 
-def grade(assignment, **options):
+def grade(
+    submissions: str,
+    out: str,
+    solutions: str | None,
+    assignment: Sequence[str],
+    roster: str | None,
+    student: str | None,
+    dry_run: bool,
+    workers: int | None,
+    scheduler: str | None,
+    keys: str | None,
+    allow_weak_isolation: bool,
+    as_listed: bool,
+) -> None:
     try:
         with _on_linux():
             from .execution.sandbox import WeakIsolation, WorkerDied
@@ -284,7 +306,20 @@ def grade(assignment, **options):
         sys.exit(f"coursework grade: {error}")
 
     try:
-        grade_class(assignments=_named(assignment), **options)
+        grade_class(
+            submissions,
+            out,
+            solutions=solutions,
+            assignments=_named(assignment) or None,
+            roster=roster,
+            student=student,
+            dry_run=dry_run,
+            workers=workers,
+            scheduler=scheduler,
+            keys=keys,
+            allow_weak_isolation=allow_weak_isolation,
+            as_listed=as_listed,
+        )
     except (
         InUse,
         WeakIsolation,
@@ -294,11 +329,19 @@ def grade(assignment, **options):
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
-    if not options["dry_run"]:
-        print(f"The report: {options['out']}/report.html")
+    if not dry_run:
+        print(f"The report: {out}/report.html")
 
 
-def regrade(out, solutions, dry_run, yes, never_lower, full_credit, void):
+def regrade(
+    out: str,
+    solutions: str | None,
+    dry_run: bool,
+    yes: bool,
+    never_lower: Sequence[str],
+    full_credit: Sequence[str],
+    void: Sequence[str],
+) -> None:
     from .reporting.laboratory import PAGE, Policies
     from .store import InUse
 
@@ -329,31 +372,31 @@ def regrade(out, solutions, dry_run, yes, never_lower, full_credit, void):
         sys.exit(f"coursework regrade: {error}")
 
 
-def _say_moved(moved):
+def _say_moved(moved: Sequence[Moved]) -> None:
     from .tables import number
 
-    for one in moved:
+    for student, assignment, before, after, questions in moved:
         print(
-            f"{one.student!r}, {one.assignment}: {number(one.before)} -> {number(one.after)}  "
-            f"({', '.join(one.questions)})"
+            f"{student!r}, {assignment}: {number(before)} -> {number(after)}  "
+            f"({', '.join(questions)})"
         )
     print(f"{len(moved)} moved.")
 
 
-def review(out, grader, share, hide_names, port):
+def review(out: str, grader: str | None, share: str, hide_names: bool, port: int) -> None:
     import getpass
 
     from .review import review as serve
     from .store import InUse
 
-    found = re.fullmatch(r"(\d+)/(\d+)", share)
-    mine, shares = map(int, found.groups()) if found else (0, 0)
+    numbers = re.fullmatch(r"(\d+)/(\d+)", share)
+    mine, shares = map(int, numbers.groups()) if numbers else (0, 0)
     if not 1 <= mine <= shares:
         sys.exit(
             f"coursework review: a share is one of several, such as 2/3, and this is {share!r}."
         )
 
-    def say(address):
+    def say(address: str) -> None:
         print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
 
     try:
@@ -377,7 +420,7 @@ def review(out, grader, share, hide_names, port):
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
-def merge(out, ledgers, dry_run):
+def merge(out: str, ledgers: Sequence[str], dry_run: bool) -> None:
     from pathlib import Path
 
     from .judging.ledger import Decision, Ledger
@@ -396,7 +439,7 @@ def merge(out, ledgers, dry_run):
             new, differing = ledger.merge(Path(path))
         except (OSError, ValueError) as error:
             sys.exit(f"coursework merge: {error}")
-        decisions = [one for one in new if isinstance(one, Decision)]
+        decisions = [entry for entry in new if isinstance(entry, Decision)]
         others = (
             f", and {len(new) - len(decisions)} on appeals and rubrics"
             if len(new) > len(decisions)
@@ -406,11 +449,10 @@ def merge(out, ledgers, dry_run):
             f"{len(decisions)} decisions{others} from "
             f"{path}{' would be taken in' if dry_run else ''}."
         )
-        foreign = [one for one in decisions if not _is_here(store, one)]
+        foreign = [decision for decision in decisions if not _is_here(store, decision)]
         if foreign:
-            whose = ", ".join(
-                in_a_line(name, 60) for name in dict.fromkeys(one.student for one in foreign)
-            )
+            students = dict.fromkeys(decision.student for decision in foreign)
+            whose = ", ".join(in_a_line(name, 60) for name in students)
             print(
                 f"  {len(foreign)} of them are on answers that are not here: {whose}. They change "
                 "no mark."
@@ -423,7 +465,7 @@ def merge(out, ledgers, dry_run):
             )
 
 
-def _is_here(store, decision):
+def _is_here(store: Store, decision: Decision) -> bool:
     """Whether the answer that was decided on is that of the records."""
     from .judging.ledger import digest_of_answer
 
@@ -431,7 +473,7 @@ def _is_here(store, decision):
     return record is not None and digest_of_answer(record, decision.question) == decision.answer
 
 
-def term(out, rules, earlier, dry_run):
+def term(out: str, rules: str, earlier: Sequence[str], dry_run: bool) -> None:
     from pathlib import Path
 
     from .judging.term import BadRules, keep_rules, read_rules
@@ -459,22 +501,22 @@ def term(out, rules, earlier, dry_run):
 
 
 def export(
-    out,
-    lms,
-    filled,
-    column,
-    name,
-    rules,
-    as_graded,
-    as_of,
-    dry_run,
-    overwrite,
-    assignment,
-    feedback,
-    nbgrader,
-    gradescope,
-    student,
-):
+    out: str,
+    lms: str | None,
+    filled: str | None,
+    column: str | None,
+    name: Sequence[str],
+    rules: str | None,
+    as_graded: bool,
+    as_of: datetime.datetime | None,
+    dry_run: bool,
+    overwrite: Sequence[str],
+    assignment: str | None,
+    feedback: str | None,
+    nbgrader: str | None,
+    gradescope: str | None,
+    student: str | None,
+) -> None:
     from .export import gradebooks
     from .judging.term import BadRules, read_rules, rules_of
     from .store import Store
@@ -494,7 +536,8 @@ def export(
             )
         marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
         if lms:
-            names = dict(one.partition("=")[::2] for one in name)
+            pairs = [renamed.partition("=") for renamed in name]
+            names = {ours: theirs for ours, _, theirs in pairs}
             said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)
             print(*said, sep="\n")
         if dry_run:
@@ -510,7 +553,7 @@ def export(
         sys.exit(f"coursework export: {error}")
 
 
-def gradescope(out, solutions, assignment, roster):
+def gradescope(out: str, solutions: str | None, assignment: str, roster: str | None) -> None:
     from .export.gradescope import write_autograder
 
     try:
@@ -523,33 +566,35 @@ def gradescope(out, solutions, assignment, roster):
     )
 
 
-def cluster(keys, host, port, worker, workers):
+def cluster(
+    keys: str, host: str | None, port: int, worker: str | None, workers: int | None
+) -> None:
     import os
     from pathlib import Path
 
     from .execution import cluster_keys
     from .workers import processors
 
-    keys = Path(keys).absolute()
+    folder = Path(keys).absolute()
     try:
         if worker:
-            command = cluster_keys.worker(keys, worker, workers or processors())
+            command = cluster_keys.worker(folder, worker, workers or processors())
         else:
             if not host:
                 sys.exit(
                     "coursework cluster: say at which address of this machine the others reach it: "
                     "--host 192.0.2.7."
                 )
-            made = cluster_keys.make_keys(keys)
-            command = cluster_keys.scheduler(keys, host, port)
+            made = cluster_keys.make_keys(folder)
+            command = cluster_keys.scheduler(folder, host, port)
             address = f"tls://{host}:{port}"
             print(
-                f"{'New keys are' if made else 'The keys are'} in {keys}: whoever has them runs "
+                f"{'New keys are' if made else 'The keys are'} in {folder}: whoever has them runs "
                 "code on this cluster.\n"
                 f"On each machine that is to work, with a copy of that folder:\n"
-                f"  coursework cluster --keys {keys.name} --worker {address}\n"
+                f"  coursework cluster --keys {folder.name} --worker {address}\n"
                 f"Then, where the notebooks are:\n"
-                f"  coursework grade ... --scheduler {address} --keys {keys.name}\n"
+                f"  coursework grade ... --scheduler {address} --keys {folder.name}\n"
                 "Stop it with Ctrl+C.",
                 flush=True,
             )
@@ -558,7 +603,9 @@ def cluster(keys, host, port, worker, workers):
     os.execv(command[0], command)
 
 
-def sample_class(out, students, seed, notebooks, solutions, layout):
+def sample_class(
+    out: str, students: int, seed: int, notebooks: str, solutions: str | None, layout: str
+) -> None:
     from .sample_class import make_class
 
     made = make_class(
@@ -567,12 +614,12 @@ def sample_class(out, students, seed, notebooks, solutions, layout):
     print(f"{students} students in {made}")
 
 
-def _told(name, command):
+def _told(name: str, command: Callable[..., None]) -> Callable[..., None]:
     """A command that says what the system refused, in place of where in the code that happened."""
 
-    def told(**options):
+    def told(**options: object) -> None:
         try:
-            return command(**options)
+            command(**options)
         except OSError as error:
             where = f": {error.filename}" if error.filename else ""
             sys.exit(f"coursework {name}: {error.strerror or error}{where}")
@@ -580,7 +627,7 @@ def _told(name, command):
     return told
 
 
-COMMANDS = {
+RUNS: dict[str, Callable[..., None]] = {
     "grade": grade,
     "regrade": regrade,
     "review": review,
@@ -591,4 +638,4 @@ COMMANDS = {
     "cluster": cluster,
     "sample-class": sample_class,
 }
-COMMANDS = {name: _told(name, command) for name, command in COMMANDS.items()}
+COMMANDS = {name: _told(name, run) for name, run in RUNS.items()}

@@ -21,7 +21,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, TextIO
+from typing import TYPE_CHECKING, Literal, NamedTuple, TextIO, overload
 
 from ..authoring.course import edition_of, find_course, links_of
 from ..authoring.source import measured_questions, names_asked, said_beyond, said_found
@@ -1051,6 +1051,24 @@ class Moved(NamedTuple):
     questions: list[str]
 
 
+@overload
+def regrade(
+    out: str | Path,
+    *,
+    solutions: str | Path | None = None,
+    policies: Policies | None = None,
+    dry_run: Literal[False] = False,
+    show: TextIO | None = None,
+) -> list[Moved]: ...
+@overload
+def regrade(
+    out: str | Path,
+    *,
+    solutions: str | Path | None = None,
+    policies: Policies | None = None,
+    dry_run: Literal[True],
+    show: TextIO | None = None,
+) -> Laboratory: ...
 def regrade(
     out: str | Path,
     *,

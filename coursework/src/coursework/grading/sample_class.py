@@ -4,6 +4,8 @@ What went into each notebook is written down beside them in ``expected.json``, s
 out of grading can be held against it. Nobody in it is real, and the same seed makes the same class.
 """
 
+from __future__ import annotations
+
 import ast
 import contextlib
 import copy
@@ -14,14 +16,22 @@ import os
 import random
 import re
 import zipfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..authoring.course import edition_of, find_course
 from ..authoring.release import KERNEL, exercise_notebook, shows_variants
 from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
 from ..checking.question import Variant
 from ..checking.variants import numbers_of_variants
+
+if TYPE_CHECKING:
+    import sympy
+    from nbformat import NotebookNode
+
+    from ..authoring.author import AuthoredQuestion
+    from .judging.contract import Asked
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns
 #: anything; and none does damage if it succeeds, since somebody may try this class where students'
@@ -65,13 +75,20 @@ class Part(NamedTuple):
     """A cell in which questions are answered."""
 
     cell: int
-    questions: list
+    questions: list[str]
+
+
+class Written(NamedTuple):
+    """An answer as code, and what is to come of it: the outcome and the note."""
+
+    code: str
+    expected: tuple[str, str]
 
 
 class _Exercise:
     """The notebook that is handed in, and how to answer in it."""
 
-    def __init__(self, stems, folder):
+    def __init__(self, stems: Iterable[str], folder: Path) -> None:
         import nbformat
 
         self.edition = edition_of(folder)
@@ -84,8 +101,10 @@ class _Exercise:
             for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
                 for name, question in read_source(path, number, self.edition).questions.items():
                     self.questions[name].append(question)
-        self.cells, self.parts, self.solved = [], [], {}
-        self.names = {}
+        self.cells: list[NotebookNode] = []
+        self.parts: list[Part] = []
+        self.solved: dict[int, str] = {}
+        self.names: dict[str, str] = {}
         for source in sources:
             notebook = exercise_notebook(source)
             checked = checked_names(source.notebook)
@@ -113,24 +132,24 @@ class _Exercise:
             metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
         )
 
-    def variant(self, name, identity):
+    def variant(self, name: str, identity: str) -> int:
         """The number of a student's variant of a question."""
         variants = self.questions[name]
         return numbers_of_variants(
             identity, name, variants[0].public.variant or Variant(), len(variants)
         )[0]
 
-    def notebook(self, cells):
-        made = copy.deepcopy(self.metadata)
+    def notebook(self, cells: list[NotebookNode]) -> NotebookNode:
+        made: NotebookNode = copy.deepcopy(self.metadata)
         made.cells = cells
         return made
 
 
-def _symbols(source):
+def _symbols(source: str) -> dict[str, str]:
     """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or
     ``me.dynamicsymbols``.
     """
-    found = {}
+    variable_of: dict[str, str] = {}
     for node in ast.parse(source).body:
         if (
             isinstance(node, ast.Assign)
@@ -143,20 +162,21 @@ def _symbols(source):
             variables = [
                 part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)
             ]
-            found.update(zip(str(node.value.args[0].value).replace(",", " ").split(), variables))
-    return found
+            names = str(node.value.args[0].value).replace(",", " ").split()
+            variable_of.update(zip(names, variables))
+    return variable_of
 
 
-def code_of(answer, names):
+def code_of(answer: Any, names: Mapping[str, str]) -> str | None:
     """Python code for an answer, or ``None`` where there is no short one."""
     import sympy
     from sympy.printing.str import StrPrinter
 
-    class Code(StrPrinter):
-        def _print_Symbol(self, symbol):
+    class Code(StrPrinter):  # type: ignore[misc]  # SymPy says nothing of its types
+        def _print_Symbol(self, symbol: sympy.Symbol) -> str:
             return names.get(symbol.name) or f"sm.Symbol({symbol.name!r})"
 
-        def _print_Function(self, function):
+        def _print_Function(self, function: sympy.Function) -> str:
             name = function.func.__name__
             if isinstance(function, sympy.core.function.AppliedUndef):
                 return names.get(name) or f'sm.Function({name!r})(sm.Symbol("t"))'
@@ -164,21 +184,21 @@ def code_of(answer, names):
 
         _print_ExpBase = _print_exp = _print_Abs = _print_Function
 
-        def _print_Rational(self, number):
+        def _print_Rational(self, number: sympy.Rational) -> str:
             return f"sm.Rational({number.p}, {number.q})" if number.q != 1 else str(number.p)
 
-        def _print_Pow(self, power, rational=False):
+        def _print_Pow(self, power: sympy.Pow, rational: bool = False) -> str:
             if power.exp == sympy.Rational(1, 2):
                 return f"sm.sqrt({self._print(power.base)})"
             return f"({self._print(power.base)})**({self._print(power.exp)})"
 
-        def _print_Pi(self, pi):
+        def _print_Pi(self, pi: sympy.Expr) -> str:
             return "sm.pi"
 
-        def _print_ImaginaryUnit(self, unit):
+        def _print_ImaginaryUnit(self, unit: sympy.Expr) -> str:
             return "sm.I"
 
-        def _print_Exp1(self, base):
+        def _print_Exp1(self, base: sympy.Expr) -> str:
             return "sm.E"
 
     if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
@@ -186,20 +206,21 @@ def code_of(answer, names):
     if isinstance(answer, (str, bool, int, float)):
         return repr(answer)
     if isinstance(answer, (list, tuple)):
-        parts = [code_of(part, names) for part in answer]
-        return None if None in parts else f"[{', '.join(parts)}]"
+        codes = [code_of(part, names) for part in answer]
+        parts = [code for code in codes if code is not None]
+        return f"[{', '.join(parts)}]" if len(parts) == len(codes) else None
     if isinstance(answer, sympy.MatrixBase):
-        parts = [code_of(row, names) for row in answer.tolist()]
-        return None if None in parts else f"sm.Matrix([{', '.join(parts)}])"
+        rows = code_of(answer.tolist(), names)
+        return rows and f"sm.Matrix({rows})"
     if isinstance(answer, sympy.Expr) and not answer.atoms(sympy.Derivative):
-        return Code().doprint(answer)
+        return str(Code().doprint(answer))
     return None
 
 
 # --- one answer ---------------------------------------------------------------------------------
 
 
-def _forms(question):
+def _forms(question: AuthoredQuestion) -> Iterator[Any]:
     """The right answer in other forms than its author's."""
     import sympy
 
@@ -220,7 +241,7 @@ def _forms(question):
             yield answer.tolist()
 
 
-def _slip(question):
+def _slip(question: AuthoredQuestion) -> Any:
     """A wrong answer that no catalogue knows, the same each time."""
     import sympy
 
@@ -251,11 +272,12 @@ class _Answers:
     once.
     """
 
-    def __init__(self, exercise, dice):
+    def __init__(self, exercise: _Exercise, dice: random.Random) -> None:
         from .judging.contract import Asked
         from .judging.marking import contract_of
 
-        self.right, self.wrong = {}, {}
+        self.right: dict[tuple[str, int], list[Written]] = {}
+        self.wrong: dict[tuple[str, int], list[Written]] = {}
         for name, variants in exercise.questions.items():
             known = [
                 contract_of(question, b"any secret: the class is the same with all")
@@ -279,18 +301,25 @@ class _Answers:
                     exercise, question, judged, [*mistaken[:6], _slip(question)]
                 )
 
-    def _with_code(self, exercise, question, judged, answers):
+    def _with_code(
+        self,
+        exercise: _Exercise,
+        question: AuthoredQuestion,
+        judged: Asked,
+        answers: Iterable[Any],
+    ) -> list[Written]:
         from .judging.marking import mark
         from .record import Answer
 
-        found = []
+        written: list[Written] = []
         for answer in answers:
             code = code_of(answer, exercise.names) if not callable(answer) else None
             if code is not None and len(code) < 1500:
                 given = Answer("recorded", question.to_plain(answer))
                 expected = mark(question.name, judged, given)
-                found.append((f"{question.variable} = {code}", (expected.outcome, expected.note)))
-        return found
+                outcome = expected.outcome, expected.note
+                written.append(Written(f"{question.variable} = {code}", outcome))
+        return written
 
 
 # --- one notebook -------------------------------------------------------------------------------
@@ -299,7 +328,9 @@ class _Answers:
 class _Student:
     """Works through the exercise and hands it in."""
 
-    def __init__(self, exercise, answers, dice, identity):
+    def __init__(
+        self, exercise: _Exercise, answers: _Answers, dice: random.Random, identity: str
+    ) -> None:
         self.exercise, self.answers, self.dice, self.identity = exercise, answers, dice, identity
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
@@ -307,12 +338,12 @@ class _Student:
                 r"(student|me)\(''\)", lambda found: f"{found[1]}({identity!r})", cell.source
             )
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
-        self.did = []
+        self.did: list[str] = []
         skill = dice.betavariate(4, 1.6)
         for part in exercise.parts:
             self.answer(part, skill)
 
-    def answer(self, part, skill):
+    def answer(self, part: Part, skill: float) -> None:
         chance = self.dice.random()
         first = part.questions[0], self.exercise.variant(part.questions[0], self.identity)
         if chance > 0.94 and len(part.questions) == 1:
@@ -327,7 +358,7 @@ class _Student:
         ]
         self.put(part, code, {name: list(outcome)})
 
-    def solve(self, part):
+    def solve(self, part: Part) -> None:
         name = part.questions[0]
         forms = self.answers.right[name, self.exercise.variant(name, self.identity)]
         # The author's own way may use what says what may vary, which students do not get.
@@ -339,7 +370,7 @@ class _Student:
             self.cells[part.cell].source = self.exercise.solved[part.cell]
             self.expected.update({name: ["correct", ""] for name in part.questions})
 
-    def put(self, part, code, outcomes):
+    def put(self, part: Part, code: str, outcomes: Mapping[str, list[str]]) -> None:
         variable = self.exercise.questions[part.questions[0]][0].variable
         lines = self.cells[part.cell].source.split("\n")
         blank = next(
@@ -360,11 +391,11 @@ class _Student:
 
     # -- what happens to notebooks
 
-    def lose_metadata(self):
+    def lose_metadata(self) -> None:
         for cell in self.cells:
             cell.metadata.pop("nbgrader", None)
 
-    def run_out_of_order(self):
+    def run_out_of_order(self) -> None:
         """Move the first code cell to the end; it ran first all the same."""
         first = next(order for order, cell in enumerate(self.cells) if cell.cell_type == "code")
         moved = self.cells.pop(first)
@@ -375,24 +406,23 @@ class _Student:
         ):
             cell.execution_count = count
 
-    def break_a_cell(self):
+    def break_a_cell(self) -> None:
         part = self.dice.choice([part for part in self.exercise.parts if len(part.questions) == 1])
         self.cells[part.cell].source += "\nprint((unfinished"
         self.expected[part.questions[0]] = ["not attempted", "missing"]
-        return part
 
-    def check_twice(self):
+    def check_twice(self) -> None:
         """Copy a cell and its check to the end: the last answer counts, and it is the same."""
         part = self.dice.choice(self.exercise.parts)
         self.cells += copy.deepcopy(self.cells[part.cell : part.cell + 2])
 
-    def join_cells(self):
+    def join_cells(self) -> None:
         """Put an answer and its check into one cell."""
         for part in sorted(self.exercise.parts, reverse=True):
             if part.cell + 1 < len(self.cells) and "check(" in self.cells[part.cell + 1].source:
                 self.cells[part.cell].source += "\n" + self.cells.pop(part.cell + 1).source
 
-    def add_cell(self, source):
+    def add_cell(self, source: str) -> None:
         import nbformat
 
         place = self.dice.choice([part.cell for part in self.exercise.parts])
@@ -400,15 +430,15 @@ class _Student:
         cell["id"] = "cell-added"
         self.cells.insert(place, cell)
 
-    def notebook(self):
+    def notebook(self) -> str:
         import nbformat
 
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
-        return nbformat.writes(self.exercise.notebook(self.cells))
+        return str(nbformat.writes(self.exercise.notebook(self.cells)))
 
 
-HABITS = (
+HABITS: tuple[tuple[str, float, Callable[[_Student], None]], ...] = (
     ("without metadata", 0.08, _Student.lose_metadata),
     ("out of order", 0.04, _Student.run_out_of_order),
     ("a broken cell", 0.05, _Student.break_a_cell),
@@ -425,7 +455,14 @@ HABITS = (
 )
 
 
-def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="folders"):
+def make_class(
+    out: str | Path,
+    students: int = 200,
+    seed: int = 1,
+    notebooks: Sequence[str] = (),
+    solutions: str | Path | None = None,
+    layout: str = "folders",
+) -> Path:
     """Write a class to a folder, and give where its submissions are.
 
     Parameters
@@ -450,7 +487,8 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
     answers = _Answers(exercise, dice)
     out = Path(out)
     out.mkdir(parents=True, exist_ok=True)
-    files, expected = {}, {}
+    files: dict[str, bytes] = {}
+    expected: dict[str, dict[str, object]] = {}
     hostile = dict(
         zip(dice.sample(range(students), min(students // 14 or 1, len(HOSTILE))), HOSTILE)
     )
@@ -498,7 +536,7 @@ def make_class(out, students=200, seed=1, notebooks=(), solutions=None, layout="
 # --- how it is handed out -----------------------------------------------------------------------
 
 
-def _folders(out, files, name):
+def _folders(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     place = out / "submissions"
     for student, data in files.items():
         folder = place / student
@@ -510,7 +548,7 @@ def _folders(out, files, name):
     return place
 
 
-def _nbgrader(out, files, name):
+def _nbgrader(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     place = out / "submitted"
     for student, data in files.items():
         folder = place / student / name
@@ -519,7 +557,7 @@ def _nbgrader(out, files, name):
     return place
 
 
-def _zip(out, entries):
+def _zip(out: Path, entries: Mapping[str, bytes]) -> Path:
     place = out / "submissions.zip"
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -531,14 +569,14 @@ def _zip(out, entries):
     return place
 
 
-def _numbers(files):
+def _numbers(files: Mapping[str, bytes]) -> list[tuple[str, bytes, int]]:
     """Each student with an invented number."""
     return [
         (student, data, 100_000 + number) for number, (student, data) in enumerate(files.items(), 1)
     ]
 
 
-def _canvas(out, files, name):
+def _canvas(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     return _zip(
         out,
         {
@@ -549,7 +587,7 @@ def _canvas(out, files, name):
     )
 
 
-def _moodle(out, files, name):
+def _moodle(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     return _zip(
         out,
         {
@@ -560,7 +598,7 @@ def _moodle(out, files, name):
     )
 
 
-def _brightspace(out, files, name):
+def _brightspace(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     entries = {"index.html": b"<html></html>"}
     for student, data, number in _numbers(files):
         handed_in = datetime.datetime(2026, 11, 21, 20, number % 60)
@@ -578,7 +616,7 @@ LAYOUTS = {
 }
 
 
-def _gradebook(layout, students, worth):
+def _gradebook(layout: str, students: Sequence[str], worth: float) -> bytes:
     """The gradebook that the teacher would export, with a student more who handed in nothing."""
     students = [*students, f"student-{len(students) + 1:03}"]
     numbered = [

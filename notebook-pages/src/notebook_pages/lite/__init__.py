@@ -11,6 +11,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from array import array
 from collections import Counter
 from hashlib import sha256
@@ -20,7 +21,7 @@ import nbformat
 import yaml
 
 from ..live import runtime, scripts
-from ..live.cells import kinds_of_cells
+from ..live.cells import PYTHON, kinds_of_cells
 from ..paths import BUILD, LICENCES_SAID, fingerprint, moment_of_sources
 from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
 
@@ -40,6 +41,7 @@ EXTENSIONS = (
 LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
 KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
 KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
+STARTUP = "stand_in.ipy"  # what IPython runs first
 NOTE = (
     "> This page of *{title}* runs in your browser. What you change is kept in this browser, on "
     "this machine; "
@@ -70,13 +72,29 @@ def compile_ahead():
         runtime.compile_wheels(wheels)
 
 
+def wheel_of_stand_in():
+    """What stands in for NumPy on the page, for notebooks, with the line that puts it in place."""
+    path, about = BUILD / "plain_numpy-1-py3-none-any.whl", "plain_numpy-1.dist-info"
+    with zipfile.ZipFile(path, "w") as wheel:
+        for name, text in (
+            ("plain_numpy.py", (PYTHON / "plain_numpy.py").read_text("utf8")),
+            (STARTUP, "%load_ext plain_numpy\n"),
+            (f"{about}/METADATA", "Metadata-Version: 2.1\nName: plain-numpy\nVersion: 1\n"),
+            (f"{about}/WHEEL", "Wheel-Version: 1.0\nRoot-Is-Purelib: true\nTag: py3-none-any\n"),
+            (f"{about}/RECORD", ""),
+        ):
+            wheel.writestr(zipfile.ZipInfo(name), text)
+    return path
+
+
 def write_lock(site):
     """Put the wheels of the kernel beside the others, and list all of them; return the names of
     what to load.
     """
     target = site / runtime.FOLDER
     lock = json.loads((target / runtime.LOCK).read_text("utf8"))
-    added = runtime.own_packages(runtime.compile_wheels(wheels_of_kernel()), target)
+    wheels = [*wheels_of_kernel(), wheel_of_stand_in()]
+    added = runtime.own_packages(runtime.compile_wheels(wheels), target)
     packages = lock["packages"] | added
     (target / LOCK).write_text(
         json.dumps({"info": lock["info"], "packages": packages}, indent=1), "utf8"
@@ -123,8 +141,8 @@ def announce_numpy(notebook, kinds, place):
     """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws
     with it.
 
-    The kernel fetches what a cell imports; most cells here use NumPy through our own package only.
-    Here nothing stands in for it, as on the page.
+    The kernel fetches what a cell imports; some cells here use NumPy through our own package only,
+    and plain Python cannot stand in for it in all of them.
     """
     codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
     for position, kind in zip(codes, kinds, strict=True):
@@ -167,6 +185,7 @@ def write_workshop(site, settings, names):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(notebook_for(site, page, settings), "utf8")
     lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
+    version = runtime.official_lock()["info"]["python"].rpartition(".")[0]
     # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
         # The kernel takes it for a module by the end of the address, servers by the name of the
@@ -177,6 +196,7 @@ def write_workshop(site, settings, names):
         "loadPyodideOptions": {
             "lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}",
             "packages": names,
+            "env": {"PYTHONSTARTUP": f"/lib/python{version}/site-packages/{STARTUP}"},
         },
     }
     page = {

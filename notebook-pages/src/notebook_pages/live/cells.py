@@ -179,8 +179,8 @@ def classify(cells):
     """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name
     for graders.
 
-    Also whether it asks for ``numpy``, which on a page plain Python may stand in for, and in other
-    places does not.
+    Also whether it imports ``numpy`` itself, which plain Python may stand in for, and which a
+    notebook's kernel fetches then.
 
     A run leaves out a cell that only draws a figure, needs more for it, and gives names to other
     such cells at most: its picture is there already. A result that differs from the stored one
@@ -216,7 +216,7 @@ def classify(cells):
                 "needs": sorted(needs), "figure": "hide-input" in tags,
                 "shown": not HIDDEN & set(tags), "code": cell.source,
                 "name": cell.metadata.get("nbgrader", {}).get("grade_id"),
-                "numpy": bool(outcome.get("plain")) or imports_numpy(cell.source),
+                "numpy": imports_numpy(cell.source),
             }
         )  # fmt: skip
     wanted = set()  # the names that the cells below take, those that are left out not counted

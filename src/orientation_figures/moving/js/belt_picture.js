@@ -1,14 +1,14 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/belt.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/belt.py.
 import { IDENTITY, add, dcmFromQuaternion, dot, range, scale } from './mathematics.js';
 export const SIZE = 96;
-export const LENGTH = 3.0;
+export const LENGTH = 3;
 export const WIDTH = 0.19;
 export const PIECES = 72;
 export const WALL = [0.9, 0.06, 0.9];
 export const PLATE = [0.62, 0.09, 0.44];
 
 export function fullTurns(angle) {
-  const found = [1, 2].filter((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-08);
+  const found = [1, 2].filter((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-8);
   return found.length ? found[0] : 0;
 }
 
@@ -36,8 +36,8 @@ export function belt(angle, passed) {
 
 export function picture(sheet, angle, passed) {
   const [frames, places] = belt(angle, passed);
-  const [toward, end] = [sheet.view[2], frames.at(-1)];
-  const [wall, plate] = [add(places[0], [0, -0.03, 0]), add(places.at(-1), scale(0.045, end[1]))];
+  const toward = sheet.view[2], end = frames.at(-1);
+  const wall = add(places[0], [0, -0.03, 0]), plate = add(places.at(-1), scale(0.045, end[1]));
   sheet.layer = dot(wall, toward);
   sheet.box(IDENTITY, WALL, { origin: wall, colour: 'N' });
   for (const k of range(PIECES)) {

@@ -1,11 +1,12 @@
 import { AXES, axisAngleFromDcm, degrees, IDENTITY, multiply, radians, transpose } from './mathematics.js';
 import { picture, SIZE } from './challenge_picture.js';
 import { chain, partly } from './common_picture.js';
-import { button, change, choice, element, fixed, follow, followTurn, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
+  open, plain, player, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+import { hatted } from './words_picture.js';
 
 const MOST = 20, CLOSE = radians(2), SECONDS = 6;
-const [N, A] = ['n', 'a'].map(hats);
+const [N, A] = ['n', 'a'].map(hatted);
 const any = (list) => list[Math.floor(Math.random() * list.length)];
 const inDegrees = (angle) => `${plain(degrees(angle), 1).replace('-', '\u2212')}°`;
 

@@ -4,10 +4,11 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, d
   spaceFixedFromDcm, transpose, unit } from './mathematics.js';
 import { picture, SIZE } from './converter_picture.js';
 import { canTakeAway, languageChoice, textBox, textOf, textsIn } from './take_away.js';
-import { button, change, choice, element, fixed, follow, group, hats, liveText, numberTable,
-  onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
+import { button, change, choice, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, put,
+  readout, Sheet, stage, write } from './shared.js';
+import { hatted } from './words_picture.js';
 
-const [N, A] = ['n', 'a'].map(hats);
+const [N, A] = ['n', 'a'].map(hatted);
 const OTHER = 'another program', ANGLES = ['body fixed angles', 'space fixed angles'];
 const FORMS = { matrix: 9, quaternion: 4, [ANGLES[0]]: 3, [ANGLES[1]]: 3, 'axis times angle': 3 };
 // Numbers copied with two or three digits are put right, and the reader is told; more is another mistake.

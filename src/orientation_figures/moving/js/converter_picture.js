@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/converter.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/converter.py.
 import { IDENTITY } from './mathematics.js';
 export const REACH = 1.25;
 export const SIZE = 112;

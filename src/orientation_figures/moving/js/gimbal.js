@@ -1,8 +1,9 @@
 import { add, AXES, degrees, dot, gimbalLockMargin, length, PROPER_EULER, radians, scale, SEQUENCES,
   subtract } from './mathematics.js';
 import { device, INNER, OUTER, picture, SIZE, SYMBOLS } from './gimbal_picture.js';
-import { button, change, choice, element, fixed, follow, followTurn, glide, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, put, readout, Sheet, slider, stage, turned, wrapped, write } from './shared.js';
+import { button, change, choice, element, fixed, follow, followTurn, glide, group, liveText, numberTable,
+  onceAFrame, open, plain, put, readout, Sheet, slider, stage, wrapped, write } from './shared.js';
+import { hatted, turned } from './words_picture.js';
 
 const BOUNDS = [-180, -185, 200, 185], NAMES = ['psi', 'theta', 'phi'];
 const CLOSE = radians(10), LOCKED = radians(0.5);
@@ -55,8 +56,8 @@ export function render({ model, el }) {
       const sense = dot(...[0, 2].map((k) => device(...state()).axes[k])) < 0 ? 1 : -1;
       move((part, [psi, theta, phi]) => [psi + part * radians(40), theta, phi + sense * part * radians(40)]);
     })];
-  const matrix = numberTable({ name: 'Direction cosine matrix of D with respect to A', kind: 'bracket', rows: hats('d'),
-    columns: hats('a'), names: AXES.map((i) => AXES.map((j) => `d ${i} dot a ${j}`)),
+  const matrix = numberTable({ name: 'Direction cosine matrix of D with respect to A', kind: 'bracket', rows: hatted('d'),
+    columns: hatted('a'), names: AXES.map((i) => AXES.map((j) => `d ${i} dot a ${j}`)),
     light(i, j) {
       lit = i === undefined ? null : [i, j];
       redraw();

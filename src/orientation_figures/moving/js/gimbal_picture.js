@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/gimbal.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/gimbal.py.
 import { AXES, IDENTITY, add, dot, enumerate, length, multiply, scale, simpleDcm, zip } from './mathematics.js';
 export const OUTER = 1.05;
 export const INNER = 0.76;
@@ -17,11 +17,9 @@ export function device(angles, sequence) {
 }
 
 export function picture(sheet, gimbal, close = false, lit = null) {
-  const [B, C, D] = [gimbal['B'], gimbal['C'], gimbal['D']];
-  const [at, axes] = [gimbal['at'], gimbal['axes']];
-  const near = (direction) => {
-    return dot(direction, sheet.view[2]) < 0 ? -1 : 1;
-  };
+  const B = gimbal['B'], C = gimbal['C'], D = gimbal['D'];
+  const at = gimbal['at'], axes = gimbal['axes'];
+  const near = (direction) => dot(direction, sheet.view[2]) < 0 ? -1 : 1;
   const down = scale(-1, axes[0]);
   sheet.layer = 6 * near(down);
   sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, 'A');

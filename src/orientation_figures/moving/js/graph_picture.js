@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/graph.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/graph.py.
 import { AXES, add, enumerate, length, scale, subtract } from './mathematics.js';
 export const SIZE = 96;
 export const REACH = 0.5;
@@ -9,7 +9,7 @@ export const SHORT = 14;
 export const CORNERS = [[-19, 18], [-19, -18], [19, 18], [19, -18]];
 
 export function places(edges) {
-  const [children, depth, line, leaves] = [{ N: [] }, { N: 0 }, {  }, []];
+  const children = { N: [] }, depth = { N: 0 }, line = {  }, leaves = [];
   const names = ['N', ...edges.map((edge) => edge[0])];
   for (const edge of edges) {
     const [frame, reference] = edge.slice(0, 2);
@@ -59,7 +59,7 @@ export function picture(sheet, edges, dcms, path) {
     [best, most] = [CORNERS[0], 0];
     for (const corner of CORNERS) {
       const free = Math.min(...tips.map((tip) => length(subtract(tip, corner))));
-      if (free > most + 1e-06) {
+      if (free > most + 1e-6) {
         best = corner;
         most = free;
       }

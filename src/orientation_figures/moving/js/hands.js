@@ -1,11 +1,12 @@
 import { AXES, cross, dcmFromQuaternion, degrees, dot, IDENTITY, multiply, multiplyQuaternions,
   quaternionFromAxisAngle, quaternionFromDcm, radians, scale, slerp, subtract, unit } from './mathematics.js';
 import { APART, picture, SIZE } from './hands_picture.js';
-import { button, change, element, follow, glide, group, hats, liveText, numberTable, onceAFrame,
-  open, plain, put, readout, Sheet, stage } from './shared.js';
+import { button, change, element, follow, glide, group, liveText, numberTable, onceAFrame, open, plain, put,
+  readout, Sheet, stage } from './shared.js';
+import { hatted } from './words_picture.js';
 
 const STEP = 15;
-const [N, M] = ['n', 'm'].map(hats);
+const [N, M] = ['n', 'm'].map(hatted);
 
 // A triad, and its mirror image or a copy, which the reader turns.
 export function render({ model, el }) {

@@ -1,7 +1,7 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/motion.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/motion.py.
 import { AXES, IDENTITY, add, cross, dot, enumerate, length, range, scale, subtract, sum, times, transpose } from './mathematics.js';
-export const MOMENTS = { racket: [1.2, 16.0, 17.0], book: [6.9, 13.3, 19.7] };
-export const SECONDS = 20.0;
+export const MOMENTS = { racket: [1.2, 16, 17], book: [6.9, 13.3, 19.7] };
+export const SECONDS = 20;
 export const SAMPLE = 0.1;
 export const ROUNDING = 1e-15;
 export const SIZE = 118;
@@ -79,7 +79,7 @@ export function block(sheet, dcm, edges) {
   const half = enumerate(dcm).map(([k, row]) => scale(edges[k] / 2, row));
   sheet.layer = 3;
   for (const [k, fill] of enumerate([26, 26, 8])) {
-    const [u, v] = [half[(k + 1) % 3], half[(k + 2) % 3]];
+    const u = half[(k + 1) % 3], v = half[(k + 2) % 3];
     for (const side of [-1, 1]) {
       if (side * dot(cross(u, v), sheet.view[2]) > 0) {
         const corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)];

@@ -1,9 +1,10 @@
 import { add, AXES, checkDcm, conditions, determinant, nearestDcm, scale, subtract } from './mathematics.js';
 import { picture, SIZE, SMALL } from './nine_numbers_picture.js';
-import { button, change, element, fixed, follow, glide, grid, group, hats, liveText, numberField,
-  onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
+import { button, change, element, fixed, follow, glide, grid, group, liveText, numberField, onceAFrame, open,
+  put, readout, Sheet, stage, write } from './shared.js';
+import { hatted } from './words_picture.js';
 
-const A = hats('a'), N = hats('n');
+const A = hatted('a'), N = hatted('n');
 const GOOD = [[0.8, 0.6, 0], [-0.48, 0.64, 0.6], [0.36, -0.48, 0.8]];
 // What readers meet: a matrix that is valid to the last digit, and five that are not.
 const EXAMPLES = [

@@ -1,8 +1,8 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/nine_numbers.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/nine_numbers.py.
 import { AXES, IDENTITY, add, cross, dot, enumerate, length, scale, unit, zip } from './mathematics.js';
 export const REACH = 1.2;
 export const SIZE = 116;
-export const SMALL = 1e-09;
+export const SMALL = 1e-9;
 
 export function off(row) {
   return Math.abs(dot(row, row) - 1) > SMALL;
@@ -34,7 +34,7 @@ export function picture(sheet, rows, nearest) {
     }
   }
   for (const [i, j] of [[0, 1], [1, 2], [2, 0]]) {
-    const [u, v] = [scale(0.2, unit(rows[i])), scale(0.2, unit(rows[j]))];
+    const u = scale(0.2, unit(rows[i])), v = scale(0.2, unit(rows[j]));
     const fails = Math.abs(dot(rows[i], rows[j])) > SMALL;
     sheet.line([u, add(u, v), v], fails ? 'B' : 'muted', fails ? 'thick' : '');
   }

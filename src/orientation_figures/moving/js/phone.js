@@ -1,11 +1,12 @@
 import { AXES, bodyFixedFromDcm, dcmFromBodyFixed, dcmFromQuaternion, degrees, dot, length,
   quaternionFromDcm, radians, scale, slerp, transpose } from './mathematics.js';
 import { picture, SIZE } from './phone_picture.js';
-import { button, change, element, fixed, follow, group, hats, liveText, numberTable, onceAFrame,
-  open, plain, player, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { button, change, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, plain,
+  player, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { hatted } from './words_picture.js';
 
 const GRAVITY = 9.80665, RECORD_SECONDS = 10, PATIENCE = 3000;
-const [N, B] = ['n', 'b'].map(hats);
+const [N, B] = ['n', 'b'].map(hatted);
 const ANGLES = ['alpha', 'beta', 'gamma'];
 const COLUMNS = ['time_s', 'alpha_deg', 'beta_deg', 'gamma_deg', 'force_x', 'force_y', 'force_z', 'rate_x', 'rate_y', 'rate_z'];
 

@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/phone.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/phone.py.
 import { IDENTITY, add, dot, scale } from './mathematics.js';
 export const BODY = [0.62, 1.24, 0.1];
 export const SCREEN = [0.27, 0.54];

@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/quaternion.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/quaternion.py.
 import { AXES, IDENTITY, axisAngleFromDcm, degrees, dot, enumerate, length, multiply, range, scale, subtract, transpose, unit, zip } from './mathematics.js';
 export const SIZE = 96;
 export const BALL = 104;
@@ -15,7 +15,7 @@ export const BOTTOM = 196;
 export const TOPS = [30, 60, 90, 120, 180, 360, 720];
 
 export function double(sheet, axis, angle, dcm, more) {
-  const [knob, sizes] = [scale(KNOB, axis), axis.map((entry) => Math.abs(entry))];
+  const knob = scale(KNOB, axis), sizes = axis.map((entry) => Math.abs(entry));
   const far = IDENTITY[sizes.indexOf(Math.min(...sizes))];
   const arm = subtract(far, scale(dot(far, axis), axis));
   sheet.line([scale(-0.6, axis), knob], 'accent', 'guide');
@@ -25,12 +25,12 @@ export function double(sheet, axis, angle, dcm, more) {
   sheet.dot(knob, 'accent', 5);
   sheet.label(knob, '$\\hat{e}$', 'accent', [17, 2]);
   const rest = angle - 2 * Math.PI;
-  const second = rest > 1e-09;
+  const second = rest > 1e-9;
   if (second) {
     sheet.turn(axis, 2 * Math.PI, arm, { radius: 0.5, colour: 'accent', head: false });
   }
   if (angle > 0) {
-    const [turn, radius] = [second ? rest : angle, second ? 0.6 : 0.5];
+    const turn = second ? rest : angle, radius = second ? 0.6 : 0.5;
     sheet.turn(axis, turn, arm, { radius, label: '$\\theta$', colour: 'accent', kind: 'thick' });
   }
   const half = angle / 2;
@@ -42,7 +42,7 @@ export function double(sheet, axis, angle, dcm, more) {
   sheet.label(onCircle(sheet, RADIUS + 12, 0), '$q_0$', 'ink', [3, 13], 16);
   sheet.label(onCircle(sheet, RADIUS + 12, Math.PI / 2), '$\\hat{e}$', 'accent', [12, 2], 16);
   sheet.layer = 2;
-  if (half > 1e-09) {
+  if (half > 1e-9) {
     sheet.line(roundTo(sheet, RADIUS, half), 'accent', 'thick');
     sheet.line(roundTo(sheet, 22, half), 'accent');
     sheet.label(onCircle(sheet, 40, half / 2), '$\\theta/2$', 'accent', [0, 0], 16);
@@ -85,11 +85,11 @@ export function ways(sheet, ends, tracks, speeds, now, raw, k, share) {
   sheet.arrow(ends[0][k], { colour: 'A', label: hats[0] });
   sheet.arrow(ends[1][k], { colour: 'B', label: hats[1] });
   sheet.layer = 1;
-  if (length(subtract(raw, unit(raw))) > 1e-06) {
+  if (length(subtract(raw, unit(raw))) > 1e-6) {
     sheet.line([[0, 0, 0], raw], 'E');
   }
   sheet.dot(raw, 'E', 4);
-  const moving = 1e-09 < share && share < 1 - 1e-09;
+  const moving = 1e-9 < share && share < 1 - 1e-9;
   for (const [n, dcm] of enumerate(now)) {
     if (dcm !== null && moving) {
       sheet.arrow(dcm[k], { colour: WAYS[n], label: hats[n + 2] });
@@ -103,7 +103,7 @@ export function ways(sheet, ends, tracks, speeds, now, raw, k, share) {
 export function plotted(speeds) {
   const fast = degrees(Math.max(...[0, ...speeds.flatMap((track) => track.filter((speed) => speed >= 0))]));
   const tops = TOPS.filter((top) => top >= fast);
-  const [highest, pieces] = [tops.length ? tops[0] : TOPS.at(-1), []];
+  const highest = tops.length ? tops[0] : TOPS.at(-1), pieces = [];
   for (const track of speeds) {
     const runs = [[]];
     for (const [n, speed] of enumerate(track)) {
@@ -120,9 +120,7 @@ export function plotted(speeds) {
 
 export function plot(sheet, speeds, share) {
   const [highest, pieces, beyond] = plotted(speeds);
-  const at = (part, speed) => {
-    return sheet.placed(LEFT + part * (RIGHT - LEFT), BOTTOM - speed / highest * (BOTTOM - TOP));
-  };
+  const at = (part, speed) => sheet.placed(LEFT + part * (RIGHT - LEFT), BOTTOM - speed / highest * (BOTTOM - TOP));
   sheet.line([at(0, 0), at(1, 0)], 'muted');
   sheet.line([at(0, 0), at(0, highest)], 'muted');
   sheet.line([at(0, highest), at(1, highest)], 'muted', 'faint');

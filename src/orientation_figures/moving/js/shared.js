@@ -1,11 +1,11 @@
 // What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
 // work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
-import { add, AXES, cross, dcmFromRotationVector, degrees, dot, IDENTITY, length, multiply, radians,
-  scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
+import { add, degrees, dot, length, multiply, radians, scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
 import { LABELS, OUTLINES } from './glyphs.js';
 import { Model } from './model.js';
+import { turned, Words } from './words_picture.js';
 
 // ---- elements and words --------------------------------------------------------------------------------
 
@@ -92,11 +92,6 @@ export function viewFrom(azimuth, elevation) {
 
 // ---- the sheet -----------------------------------------------------------------------------------------
 
-const TRIANGLE = [[0, 0], [-14, 5.6], [-14, 0], [-14, -5.6]], DIAMOND = [[0, 0], [-8, 5.4], [-16, 0], [-8, -5.4]];
-const BARB = [[0, 0], [-13, 4.6], [-7.5, 0], [-13, -4.6]];
-const HEADS = { A: TRIANGLE, B: TRIANGLE, C: DIAMOND, D: TRIANGLE, E: TRIANGLE };
-const ROUND = 0.5523;
-
 const pair = ([x, y]) => `${Math.round(10 * x) / 10} ${Math.round(10 * y) / 10}`;
 
 function pathData(commands, points) {
@@ -113,14 +108,15 @@ function pathData(commands, points) {
 
 const polygon = (count) => `M${'L'.repeat(count - 1)}Z`;
 
-// A sheet is drawn anew for every picture, by `draw(sheet => ...)`, in the words of orientation_figures.drawing;
+// A sheet is drawn anew for every picture, by `draw(sheet => ...)`, in the words of orientation_figures.words;
 // it keeps its elements and changes only what differs. Marks are sorted by their depth, the component of
 // their middle along v_z, within the `layer` they are drawn in.
-export class Sheet {
+export class Sheet extends Words {
   // bounds: left, top, right, bottom in pixels from the origin; camera: azimuth and elevation in degrees;
   // changed: called when the reader turns the view; grab(part, at): what to do when the reader takes hold of
   // a grip; it returns a function of where the pointer is, or nothing to turn the view.
   constructor({ name, bounds: [left, top, right, bottom], size = 120, camera = [32, 24], changed, grab }) {
+    super();
     this.size = size;
     this.grab = grab;
     this.home = camera;
@@ -214,46 +210,14 @@ export class Sheet {
     return [this.size * dot(this.view[0], point), -this.size * dot(this.view[1], point)];
   }
 
-  depthOf(points) {
-    return dot(this.view[2], add(...points)) / points.length;
-  }
-
-  // `points` are on the sheet, `depth` along v_z.
+  // `points` are on the sheet, `depth` along v_z. What has shrunk to a point is not seen.
   path(commands, points, kind, depth = 0) {
-    this.marks.push({ kind: kind + (this.faded ? ' faded' : ''), data: pathData(commands, points),
-      depth: 1000 * this.layer + depth });
-  }
-
-  line(points, colour = 'ink', kind = '') {
-    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
-      this.path(`M${'L'.repeat(points.length - 1)}`, points.map((p) => this.onSheet(p)), `${layer} ${colour}`,
-        this.depthOf(points) + 1e-6 * k);
+    const [x, y] = points[0];
+    if (points.some(([u, v]) => Math.abs(u - x) > 1e-6 || Math.abs(v - y) > 1e-6)) {
+      this.marks.push({ kind: kind + (this.faded ? ' faded' : ''), data: pathData(commands, points),
+        depth: 1000 * this.layer + depth });
     }
-  }
-
-  area(points, colour = 'ink', fill = 16, edge = true) {
-    this.path(polygon(points.length), points.map((p) => this.onSheet(p)), `fill-${fill} ${edge ? '' : 'bare '}${colour}`,
-      this.depthOf(points));
-  }
-
-  ellipse(middle, u, v, kind, depth) {
-    const points = [u];
-    for (const [near, far] of [[u, v], [v, scale(-1, u)], [scale(-1, u), scale(-1, v)], [scale(-1, v), u]]) {
-      points.push(add(near, scale(ROUND, far)), add(far, scale(ROUND, near)), far);
-    }
-    this.path('MCCCCZ', points.map((p) => add(middle, p)), kind, depth);
-  }
-
-  dot(point, colour = 'ink', radius = 4) {
-    this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `head ${colour}`, this.depthOf([point]));
-  }
-
-  ring(point, colour = 'ink', radius = 5) {
-    this.ellipse(this.onSheet(point), [radius, 0], [0, radius], `paper ${colour}`, this.depthOf([point]) + 1e-6);
-  }
-
-  label(point, text, colour = 'ink', shift = [0, 0], size = 20) {
-    this.text(text, add(this.onSheet(point), shift), colour, size);
+    return this;
   }
 
   // The point of N that is seen at a place of the sheet.
@@ -261,12 +225,9 @@ export class Sheet {
     return times(transpose(this.view), [right / this.size, -down / this.size, 0]);
   }
 
-  // A label beyond a point as seen from the origin.
-  labelBeyond(point, text, colour = 'ink', pixels = 17) {
-    this.label(point, text, colour, scale(pixels, unit(this.onSheet(point))));
-  }
-
-  text(text, place, colour, size = 20) {
+  // A word that fades is there or not: seen through, it could not be read.
+  text(text, place, colour, size = 20, opacity = 1) {
+    if (opacity <= 0.4) return this;
     const tex = text.replaceAll('$', ''), [, labels] = this.pools;
     let name = tex;
     while (this.used[0].has(name)) name += '\'';   // the same text may stand in two places
@@ -275,15 +236,7 @@ export class Sheet {
     const made = labels.get(name);
     put(made, 'class', `text ${colour}${this.faded ? ' faded' : ''}`);
     put(made, 'transform', `translate(${pair(place)}) scale(${size / 1000})`);
-  }
-
-  // The part of one vector that lies along another: its shadow, the line that drops it, and a right angle.
-  shadow(vector, direction, colour = 'accent') {
-    const along = unit(direction), foot = scale(dot(vector, along), along), down = subtract(foot, vector);
-    this.line([[0, 0, 0], foot], colour, 'shadow');
-    if (length(down) < 0.02) return;
-    this.line([vector, foot], colour, 'guide');
-    if (length(foot) > 0.1) this.rightAngle(scale(-1, foot), scale(-1, down), { origin: foot, size: 0.07 });
+    return this;
   }
 
   // A place where the reader can take hold; `part` comes back in grab(part, at).
@@ -305,118 +258,7 @@ export class Sheet {
     if (!grips.has(part)) grips.set(part, this.layers[2].appendChild(element(tag, { class: 'grip', 'data-part': part })));
     return grips.get(part);
   }
-
-  arrow(end, { start = [0, 0, 0], colour = 'ink', label = '', shift, kind = '', size: letters = 20 } = {}) {
-    const reach = subtract(end, start), tail = this.onSheet(start), tip = this.onSheet(end), depth = this.depthOf([start, end]);
-    const pixels = length(subtract(tip, tail)), direction = unit(subtract(tip, tail));
-    let outward = scale(17, direction);
-    if (pixels < 0.05 * this.size * length(reach)) {
-      // It points straight at the reader, or straight away.
-      this.ellipse(tip, [9, 0], [0, 9], `paper ${colour}`, depth);
-      if (dot(this.view[2], reach) > 0) this.ellipse(tip, [3, 0], [0, 3], `head ${colour}`, depth + 1e-6);
-      else this.path('MLML', [[-1, -1], [1, 1], [-1, 1], [1, -1]].map((p) => add(tip, scale(6.4, p))), colour, depth + 1e-6);
-      outward = [15, 15];
-    } else {
-      const size = Math.min(1, pixels / 28);
-      this.path('ML', [tail, subtract(tip, scale(10 * size, direction))], `axis ${colour} ${kind}`, depth);
-      this.head(tip, direction, size, colour, depth + 1e-6);
-    }
-    if (label) this.text(label, add(tip, shift ?? outward), colour, letters);
-  }
-
-  head(tip, [right, down], size, colour, depth) {
-    const corners = (HEADS[colour] ?? BARB).map(([x, y]) => (
-      add(tip, scale(size, [x * right - y * down, x * down + y * right]))));
-    this.path('MLLLZ', corners, `head ${colour}`, depth);
-  }
-
-  // The unit vectors of a frame are the rows of its direction cosine matrix.
-  triad(letter, dcm, { origin = [0, 0, 0], length: far = 1, labels = hats(letter.toLowerCase()) } = {}) {
-    dcm.forEach((row, k) => this.arrow(add(origin, scale(far, row)), { start: origin, colour: letter, label: labels[k] }));
-  }
-
-  // The arc swept by the direction `start`, turned through `angle` about `axis`.
-  turn(axis, angle, start, { radius = 0.5, label = '', origin = [0, 0, 0], colour = 'ink', shift = [0, 0], kind = '',
-    head = true } = {}) {
-    const arm = scale(radius, unit(start)), normal = unit(axis), pieces = Math.max(4, Math.ceil(Math.abs(angle)));
-    const at = (part) => turned(normal, part * angle, arm);
-    const swept = Math.abs(angle) * radius * this.size, size = head ? Math.min(0.8, swept / 28) : 0;
-    const last = 1 - (swept ? 9 * size / swept : 0), bulge = 4 / 3 * Math.tan(last * angle / pieces / 4);
-    const points = [arm];
-    for (let k = 0; k < pieces; k += 1) {
-      const near = at(last * k / pieces), far = at(last * (k + 1) / pieces);
-      points.push(add(near, scale(bulge, cross(normal, near))), subtract(far, scale(bulge, cross(normal, far))), far);
-    }
-    const place = (p) => this.onSheet(add(origin, p)), depth = this.depthOf([add(origin, at(0.5))]);
-    this.path(`M${'C'.repeat(pieces)}`, points.map(place), `${kind} ${colour}`, depth);
-    if (head && size > 0.05) this.head(place(at(1)), unit(subtract(place(at(1)), place(at(last)))), size, colour, depth + 1e-6);
-    if (label && Math.abs(angle) > 0.08) {
-      const middle = place(at(0.5));
-      this.text(label, add(middle, scale(15, unit(subtract(middle, place([0, 0, 0])))), shift), colour);
-    }
-  }
-
-  // The angle from one direction to another, the short way round.
-  arc(start, end, options) {
-    const axis = cross(start, end);
-    this.turn(axis, Math.atan2(length(axis), dot(start, end)), start, options);
-  }
-
-  rightAngle(first, second, { origin = [0, 0, 0], size = 0.12, colour = 'muted' } = {}) {
-    const [u, v] = [first, second].map((direction) => scale(size, unit(direction)));
-    this.line([u, add(u, v), v].map((p) => add(origin, p)), colour);
-  }
-
-  // A circle about `normal`, or the half of it that is nearer to the reader ('front') or farther ('back').
-  circle(normal, { radius = 1, origin = [0, 0, 0], colour = 'muted', kind = 'guide', half = '' } = {}) {
-    const n = unit(normal);
-    const level = cross(n, this.view[2]);
-    const sizes = n.map(Math.abs), other = IDENTITY[sizes.indexOf(Math.min(...sizes))];
-    const across = unit(length(level) > 1e-6 ? level : cross(n, other));
-    const up = cross(across, n);   // the point of the circle nearest to the reader
-    const [u, v] = [across, dot(up, this.view[2]) < 0 ? scale(-1, up) : up].map((p) => this.onSheet(scale(radius, p)));
-    const middle = this.onSheet(origin);
-    for (const [k, layer] of (kind.startsWith('tube') ? [kind, `${kind} core`] : [kind]).entries()) {
-      const style = `${layer} ${colour}`, depth = this.depthOf([origin]) + 1e-6 * k;
-      if (!half) this.ellipse(middle, u, v, style, depth);
-      else {
-        const way = half === 'front' ? v : scale(-1, v);
-        const points = [u, add(u, scale(ROUND, way)), add(way, scale(ROUND, u)), way, subtract(way, scale(ROUND, u)),
-          subtract(scale(ROUND, way), u), scale(-1, u)];
-        this.path('MCC', points.map((p) => add(middle, p)), style, depth);
-      }
-    }
-  }
-
-  // A box with edges `size` along the rows of `dcm`: the faces that are seen.
-  box(dcm, size, { origin = [0, 0, 0], colour = 'ink' } = {}) {
-    const half = dcm.map((row, k) => scale(size[k] / 2, row));
-    [26, 16, 8].forEach((fill, i) => {
-      const [u, v] = [half[(i + 1) % 3], half[(i + 2) % 3]];
-      for (const outward of [half[i], scale(-1, half[i])]) {
-        if (dot(outward, this.view[2]) > 1e-9) {
-          const corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)];
-          this.area(corners.map((p) => add(origin, outward, p)), colour, fill);
-        }
-      }
-    });
-  }
-
-  cylinder(start, end, radius, colour, fill = 26) {
-    const axis = unit(subtract(end, start)), facing = dot(axis, this.view[2]), pixels = radius * this.size;
-    const ends = [this.onSheet(start), this.onSheet(end)], depth = this.depthOf([start, end]);
-    const way = Math.abs(facing) < 0.9999 ? unit(subtract(ends[1], ends[0])) : [1, 0];
-    const bulge = scale(pixels * Math.abs(facing), way), side = scale(pixels, [-way[1], way[0]]);
-    const body = [[ends[1], bulge, side], [ends[0], scale(-1, bulge), scale(-1, side)]].flatMap(([place, out, across]) => [
-      across, add(across, scale(ROUND, out)), add(scale(ROUND, across), out), out,
-      subtract(out, scale(ROUND, across)), subtract(scale(ROUND, out), across), scale(-1, across)].map((p) => add(place, p)));
-    this.path('MCCLCCZ', body, `fill-${fill} ${colour}`, depth);
-    if (Math.abs(facing) > 1e-3) this.ellipse(ends[facing > 0 ? 1 : 0], bulge, side, `fill-8 ${colour}`, depth + 1e-6);
-  }
 }
-
-// A vector turned with its frame: the rows of A_C_N are N's unit vectors turned, its transpose turns all alike.
-export const turned = (axis, angle, vector) => times(transpose(dcmFromRotationVector(scale(angle, unit(axis)))), vector);
 
 // Follows the pointer with a point that can only move on a circle: returns a function from the place of
 // the pointer to the angle, in whole degrees, that brings the turned `arm` nearest to it.
@@ -633,9 +475,6 @@ export function glide(show, seconds = 0.7) {
   if (calm()) show(1); else frame = requestAnimationFrame(tick);
   return () => cancelAnimationFrame(frame);
 }
-
-// The unit vectors of a frame, as labels.
-export const hats = (letter) => AXES.map((axis) => `$\\hat{${letter}}_${axis}$`);
 
 // A result with its title.
 export const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' },

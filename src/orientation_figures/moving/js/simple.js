@@ -1,10 +1,11 @@
 import { AXES, degrees, IDENTITY, radians, scale, simpleDcm } from './mathematics.js';
 import { picture, REACH, SIZE } from './simple_picture.js';
-import { button, change, choice, element, fixed, follow, followTurn, group, hats, liveText,
-  numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { button, change, choice, element, fixed, follow, followTurn, group, liveText, numberTable, onceAFrame,
+  open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { hatted } from './words_picture.js';
 
 const FLAT = 84;
-const [N, A] = ['n', 'a'].map(hats);
+const [N, A] = ['n', 'a'].map(hatted);
 const STEP = radians(5);
 const number = (value) => fixed(value).trim();
 

@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/successive.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/successive.py.
 import { around, chain, partly } from './common_picture.js';
 import { AXES, IDENTITY, axisAngleFromDcm, enumerate, multiply, range, scale, times, transpose } from './mathematics.js';
 export const REACH = 1.25;
@@ -22,7 +22,7 @@ export function axisOf(frames, turns, kind, k) {
 export function picture(sheet, turns, kind, share, compare, lit = false) {
   const now = partly(turns, share);
   const frames = chain(now, kind);
-  const [last, end] = [now.length, frames.at(-1)];
+  const last = now.length, end = frames.at(-1);
   const compared = compare !== COMPARISONS[0];
   sheet.triad('N', IDENTITY, { length: REACH });
   sheet.faded = lit || compared;
@@ -61,10 +61,8 @@ export function picture(sheet, turns, kind, share, compare, lit = false) {
 }
 
 export function strip(sheet, frames, turns, kind, colours, down, radius) {
-  const [width, reach] = [340 / colours.length, radius / SIZE];
-  const at = (x, y = 0) => {
-    return sheet.placed(x, down + y);
-  };
+  const width = 340 / colours.length, reach = radius / SIZE;
+  const at = (x, y = 0) => sheet.placed(x, down + y);
   for (const [k, dcm] of enumerate(frames)) {
     const x = (k - (colours.length - 1) / 2) * width;
     sheet.box(dcm, [1.1 * reach, 0.8 * reach, 0.28 * reach], { origin: at(x), colour: colours[k] });
@@ -73,10 +71,10 @@ export function strip(sheet, frames, turns, kind, colours, down, radius) {
       sheet.label(at(x - radius + 1, -radius + 1), `$${colours[k]}$`, colours[k], [0, 0], 16);
     }
     if (k) {
-      const [start, end] = [x - width + radius + 7, x - radius - 3];
+      const start = x - width + radius + 7, end = x - radius - 3;
       const short = Math.max(0, (end - start - 26) / 2);
       sheet.arrow(at(end - short, 4), { start: at(start + short, 4), colour: 'muted' });
-      const [letter, axis] = [kind === 'space' ? 'N' : colours[k - 1], turns[k - 1][0]];
+      const letter = kind === 'space' ? 'N' : colours[k - 1], axis = turns[k - 1][0];
       const name = letter === 'muted' ? axis : `\\hat{${letter.toLowerCase()}}_${axis}`;
       sheet.label(at((start + end) / 2, -8), `$${name}$`, 'ink', [0, 0], 15);
     }

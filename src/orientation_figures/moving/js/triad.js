@@ -2,12 +2,12 @@ import { AXES, bodyFixedFromDcm, dcmFromAxisAngle, degrees, dot, gimbalLockMargi
   multiply, quaternionFromAxisAngle, radians, scale, SEQUENCES, simpleDcm, subtract, unit } from './mathematics.js';
 import { around } from './common_picture.js';
 import { KNOB, picture, REACH, SIZE } from './triad_picture.js';
-import { button, change, choice, element, fixed, follow, followSphere, followTurn, group, hats,
-  liveText, numberField, numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage,
-  turned, wrapped } from './shared.js';
+import { button, change, choice, element, fixed, follow, followSphere, followTurn, group, liveText,
+  numberField, numberTable, onceAFrame, open, plain, readout, Sheet, slider, stage, wrapped } from './shared.js';
+import { hatted, turned } from './words_picture.js';
 
 const ANGLES = ['$\\psi$', '$\\theta$', '$\\varphi$'];
-const [N, A] = ['n', 'a'].map(hats);
+const [N, A] = ['n', 'a'].map(hatted);
 const number = (value, digits = 3) => fixed(value, digits).trim();
 const inDegrees = (angle) => `${number(degrees(angle), 1)}°`;
 

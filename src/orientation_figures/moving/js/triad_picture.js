@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/triad.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/triad.py.
 import { around } from './common_picture.js';
 import { IDENTITY, scale } from './mathematics.js';
 export const REACH = 1.25;

@@ -1,4 +1,4 @@
-// Written by `python -m orientation_figures.moving.javascript` from pictures/workbench.py.
+// Written by `python -m orientation_figures.moving.javascript` from moving/pictures/workbench.py.
 import { IDENTITY, enumerate, scale } from './mathematics.js';
 export const REACH = 1.25;
 export const APART = 165;

@@ -4,7 +4,7 @@ import math
 
 from orientation.quaternions import dcm_from_quaternion
 
-from ..vectors import IDENTITY, add, dot, scale
+from ...vectors import IDENTITY, add, dot, scale
 
 SIZE = 96
 LENGTH = 3.0

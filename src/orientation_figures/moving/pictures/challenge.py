@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import IDENTITY
+from ...vectors import IDENTITY
 
 REACH = 1.25
 SIZE = 112

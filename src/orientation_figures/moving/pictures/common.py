@@ -4,7 +4,7 @@ import math
 
 from orientation.direction_cosines import simple_dcm
 
-from ..vectors import dot, length, multiply, scale, subtract
+from ...vectors import dot, length, multiply, scale, subtract
 
 
 def around(sheet, axis, angle, start, *, colour="muted", head=False, kind=""):

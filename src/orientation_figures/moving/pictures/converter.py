@@ -1,6 +1,6 @@
 """The picture of the converter: the orientation that both sides describe."""
 
-from ..vectors import IDENTITY
+from ...vectors import IDENTITY
 
 REACH = 1.25
 SIZE = 112

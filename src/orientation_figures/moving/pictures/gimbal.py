@@ -4,7 +4,7 @@ import math
 
 from orientation.direction_cosines import simple_dcm
 
-from ..vectors import AXES, IDENTITY, add, dot, length, multiply, scale
+from ...vectors import AXES, IDENTITY, add, dot, length, multiply, scale
 
 # Radii of the rings of B and C, the camera, where the axes end.
 OUTER = 1.05

@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import AXES, add, length, scale, subtract
+from ...vectors import AXES, add, length, scale, subtract
 
 SIZE = 96
 REACH = 0.5

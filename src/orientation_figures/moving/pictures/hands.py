@@ -1,6 +1,6 @@
 """The picture of a triad and its mirror image."""
 
-from ..vectors import IDENTITY, scale
+from ...vectors import IDENTITY, scale
 
 REACH = 1.0
 SIZE = 76

@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, times, transpose
+from ...vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, times, transpose
 
 #: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The
 #: racket's are those that Brody (1985) measured, rounded; its a_x runs along its handle and a_z out

@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import AXES, IDENTITY, add, cross, dot, length, scale, unit
+from ...vectors import AXES, IDENTITY, add, cross, dot, length, scale, unit
 
 REACH = 1.2
 SIZE = 116

@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import IDENTITY, add, dot, scale
+from ...vectors import IDENTITY, add, dot, scale
 
 BODY = (0.62, 1.24, 0.1)
 SCREEN = (0.27, 0.54)

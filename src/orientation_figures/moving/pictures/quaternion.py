@@ -6,7 +6,7 @@ import math
 
 from orientation.axis_angle import axis_angle_from_dcm
 
-from ..vectors import (
+from ...vectors import (
     AXES,
     IDENTITY,
     degrees,

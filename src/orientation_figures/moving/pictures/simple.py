@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import AXES, IDENTITY, add, scale
+from ...vectors import AXES, IDENTITY, add, scale
 
 REACH = 1.25
 SIZE = 112

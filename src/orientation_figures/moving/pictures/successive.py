@@ -4,7 +4,7 @@ import math
 
 from orientation.axis_angle import axis_angle_from_dcm
 
-from ..vectors import AXES, IDENTITY, multiply, scale, times, transpose
+from ...vectors import AXES, IDENTITY, multiply, scale, times, transpose
 from .common import around, chain, partly
 
 REACH = 1.25  # of the arrows of N

@@ -2,7 +2,7 @@
 
 import math
 
-from ..vectors import IDENTITY, scale
+from ...vectors import IDENTITY, scale
 from .common import around
 
 REACH = 1.25  # of the arrows of N

@@ -1,6 +1,6 @@
 """The picture of the workbench: the last pose of each side, as its numbers are read."""
 
-from ..vectors import IDENTITY, scale
+from ...vectors import IDENTITY, scale
 
 REACH = 1.25
 APART = 165  # pixels

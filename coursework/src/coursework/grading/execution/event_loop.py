@@ -6,25 +6,26 @@ through a pipe.
 
 import asyncio
 import os
+from collections.abc import Callable
 
 
 class _End:
     """One end of a pipe, with the few methods of a socket that a loop uses."""
 
-    def __init__(self, handle):
+    def __init__(self, handle: int) -> None:
         self.handle = handle
         os.set_blocking(handle, False)
 
-    def fileno(self):
+    def fileno(self) -> int:
         return self.handle
 
-    def recv(self, size):
+    def recv(self, size: int) -> bytes:
         return os.read(self.handle, size)
 
-    def send(self, data):
+    def send(self, data: bytes) -> int:
         return os.write(self.handle, data)
 
-    def close(self):
+    def close(self) -> None:
         os.close(self.handle)
 
 
@@ -39,7 +40,12 @@ class PipeEventLoop(asyncio.SelectorEventLoop):
     >>> loop.close()
     """
 
-    def _make_self_pipe(self):
+    # Of the loop itself, which names these nowhere in its public face.
+    _internal_fds: int
+    _add_reader: Callable[[int, Callable[[], None]], None]
+    _read_from_self: Callable[[], None]
+
+    def _make_self_pipe(self) -> None:
         self._ssock, self._csock = map(_End, os.pipe())
         self._internal_fds += 1
         self._add_reader(self._ssock.fileno(), self._read_from_self)

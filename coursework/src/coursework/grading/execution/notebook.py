@@ -21,6 +21,8 @@ come the arguments of the secret calls: what knows them then can hand in no answ
 they would be shown.
 """
 
+from __future__ import annotations
+
 import ast
 import base64
 import contextlib
@@ -39,10 +41,19 @@ import threading
 import time
 import types
 import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NotRequired, TypedDict
 
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.checking.variants import Given
 from coursework.grading.execution.event_loop import PipeEventLoop
+from coursework.grading.execution.isolation import LimitsOfChild, Time
+
+if TYPE_CHECKING:
+    from IPython.core.inputtransformer2 import TransformerManager
+
+    from coursework.checking.fields import Json
+    from coursework.grading.execution.records import Record, Step
 
 LONGEST_ERROR = 500
 WAIT_FOR_SECRET = 30  # seconds; whoever swallowed the records is not answered
@@ -51,7 +62,7 @@ MOST_TRIED = 10  # hints of one notebook
 MAGICS_WITH_CODE = ("time", "capture", "prun")
 
 
-OURS = []  # the modules of this package, which a notebook is to find none of
+OURS: list[str] = []  # the modules of this package, which a notebook is to find none of
 AWAIT = ast.PyCF_ALLOW_TOP_LEVEL_AWAIT
 PROMPT = "In ["  # pasted with its prompt a line may pass for an annotation
 TICK = 0.5  # seconds by the clock between two looks at whether a step waits
@@ -90,6 +101,24 @@ SUSPICIOUS = {
 DEPTH, DEPTH_OF_NETWORK = 6, 40
 
 
+#: The arguments of each call to a function, and whether lists in them become arrays.
+Calls = TypedDict("Calls", {"arguments": list[list[object]], "as": str})
+
+
+class Job(TypedDict):
+    """A notebook, as this process is told of it."""
+
+    cells: list[str]
+    numbers: list[int | None]
+    order: list[int]
+    skip: list[Step]
+    variables: dict[str, str]
+    calls: dict[str, Calls]
+    given: NotRequired[dict[str, dict[str, Json]]]
+    files: dict[str, str]
+    seed: int
+
+
 class OutOfTime(BaseException):
     """Raised in the student's code when its time is up; not an Exception, so that few catch it."""
 
@@ -97,14 +126,14 @@ class OutOfTime(BaseException):
 class Shell:
     """What `get_ipython()` gives: enough of a shell that magics and `!commands` break nothing."""
 
-    def __init__(self, execute):
+    def __init__(self, execute: Callable[[str], None]) -> None:
         self._execute = execute
 
-    def run_line_magic(self, name, line, *rest):
+    def run_line_magic(self, name: str, line: str, *rest: object) -> None:
         if name in MAGICS_WITH_CODE:
             self._execute(line)
 
-    def run_cell_magic(self, name, line, cell):
+    def run_cell_magic(self, name: str, line: str, cell: str) -> None:
         if name in MAGICS_WITH_CODE:
             self._execute(cell)
         elif name in ("writefile", "file") and line.strip():
@@ -116,47 +145,48 @@ class Shell:
             ) as file:
                 file.write(cell)
 
-    def system(self, command):
+    def system(self, command: str) -> None:
         return None
 
-    def getoutput(self, command, *rest, **options):
+    def getoutput(self, command: str, *rest: object, **options: object) -> list[str]:
         return []
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Callable[..., None]:
         if name.startswith("__"):
             raise AttributeError(name)
-        return lambda *arguments, **options: None
+        return nothing
 
 
 class Reply:
     """What `check` gives here. Marks are not decided in this process."""
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "The answer is recorded."
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> None:
         if name.startswith("__"):
             raise AttributeError(name)
         return None  # neither right nor wrong
 
 
-def nothing(*arguments, **options):
+def nothing(*arguments: object, **options: object) -> None:
     """Stands for what only shows something."""
 
 
-def arguments_of(calls):
+def arguments_of(calls: Calls) -> list[list[object]]:
     """The arguments of each call to a function, made anew: it may change them."""
-    arguments = json.loads(json.dumps(calls["arguments"]))
+    arguments: list[list[object]] = json.loads(json.dumps(calls["arguments"]))
     if calls["as"] == "arrays":
         import numpy
 
         arguments = [
-            [numpy.array(a) if isinstance(a, list) else a for a in call] for call in arguments
+            [numpy.array(part) if isinstance(part, list) else part for part in call]
+            for call in arguments
         ]
     return arguments
 
 
-def warm_up():
+def warm_up() -> None:
     """Load what is imported on first use, before the children are forked."""
     import IPython.display  # noqa: F401
 
@@ -169,52 +199,55 @@ def warm_up():
     OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
 
 
-def transformer():
+def transformer() -> TransformerManager:
     from IPython.core.inputtransformer2 import TransformerManager
 
     return TransformerManager()
 
 
-def run(job, records, secret, limits, folder):
+def run(job: int, records: int, secret: int, limits: LimitsOfChild, folder: str) -> None:
     """Run the job that is read from the handle `job`; write records to the handle `records`.
 
     The secret calls are read from the handle `secret` at the end.
     """
     with open(job, "rb") as file:
-        job = json.load(file)
-    random.seed(job["seed"])
+        given: Job = json.load(file)
+    random.seed(given["seed"])
     gc.set_threshold(
         20_000, 20, 50
     )  # a short life: what goes round in circles is seldom worth looking for
-    sys.modules["numpy"].random.seed(job["seed"])
-    _Notebook(job, records, secret, limits, folder).run()
+    sys.modules["numpy"].random.seed(given["seed"])
+    _Notebook(given, records, secret, limits, folder).run()
 
 
 class _Notebook:
-    def __init__(self, job, records, secret, limits, folder):
+    def __init__(
+        self, job: Job, records: int, secret: int, limits: LimitsOfChild, folder: str
+    ) -> None:
         self.job = job
         self.records = records
         self.secret = secret
-        self.functions = {}
-        self.number = None
-        self.loop = None
-        self.tried = set()
+        self.functions: dict[str, tuple[object, dict[str, object]]] = {}
+        self.number: int | None = None
+        self.loop: PipeEventLoop | None = None
+        self.tried: set[str] = set()
         self.noticing = False
         self.limits = limits
         self.folder = folder
         self.encode = json.JSONEncoder(check_circular=False, allow_nan=False).encode
         self.write = os.write
         self.writing = False
-        self.cell = None
-        self.answered = set()
-        self.wall_left, self.looked = 0, (0, 0, 0)
+        self.cell: int | None = None
+        self.answered: set[str] = set()
+        self.wall_left = 0.0
+        self.looked: tuple[float, float, int] = (0, 0, 0)
         self.skipped = {tuple(step) for step in job["skip"]}
         self.recursion_limit = sys.getrecursionlimit()
         self.module = types.ModuleType("__main__")
         self.names = self.module.__dict__
         self.transformer = transformer()
 
-    def run(self):
+    def run(self) -> None:
         self.prepare()
         for index in self.job["order"]:
             if ("cell", index) not in self.skipped:
@@ -233,12 +266,12 @@ class _Notebook:
         for question, variable in self.job["variables"].items():
             if question not in self.answered and variable in self.names:
                 self.record(question, self.names[variable], "variable")
-        if self.package.check != self.check:
+        if getattr(self.package, "check", None) != self.check:
             self.hint("replaced the check")
         self.emit({"done": True})
         self.call_secretly()
 
-    def call_secretly(self):
+    def call_secretly(self) -> None:
         """Call the functions that are answers with arguments that nobody could prepare them for."""
         if not self.functions or not select.select([self.secret], [], [], WAIT_FOR_SECRET)[0]:
             return
@@ -253,31 +286,33 @@ class _Notebook:
             # something else.
             self.names.clear()
             self.names.update(names)
-            found = {"secret": question}
+            record: Record = {"secret": question}
 
-            def read(function=function, about=about, found=found):
+            def read(
+                function: object = function, about: Calls = about, record: Record = record
+            ) -> None:
                 try:
-                    found["plain"] = to_plain(function, arguments_of(about))
+                    record["plain"] = to_plain(function, arguments_of(about))
                 except NotPlain as error:
-                    found["unreadable"] = str(error)[:LONGEST_ERROR]
+                    record["unreadable"] = str(error)[:LONGEST_ERROR]
 
             end = self.step(["answer", question], read, self.limits["answer"])
             if end["outcome"] != "done":
-                found = {"secret": question, "unreadable": end["error"]}
-            self.emit(found)
+                record = {"secret": question, "unreadable": end["error"]}
+            self.emit(record)
 
-    def prepare(self):
+    def prepare(self) -> None:
         sys.modules["__main__"] = self.module
         shell = Shell(self.execute)
         self.names.update(get_ipython=lambda: shell, display=nothing, In={}, Out={})
         for name in OURS:
             sys.modules.pop(name, None)
         package = self.package = types.ModuleType("coursework")
-        package.check = self.check
-        package.hint = package.progress = package.student = package.me = package.worked_solution = (
-            nothing
+        vars(package).update(
+            dict.fromkeys(("hint", "progress", "student", "me", "worked_solution"), nothing),
+            check=self.check,
+            variant=lambda question: Given("", self.job.get("given", {}).get(question, {})),
         )
-        package.variant = lambda question: Given("", self.job.get("given", {}).get(question, {}))
         sys.modules["coursework"] = package
         for name, data in self.job["files"].items():
             path = os.path.normpath(os.path.join(self.folder, name))
@@ -291,23 +326,25 @@ class _Notebook:
         warnings.resetwarnings()
         warnings.simplefilter("ignore")
 
-    def execute(self, source):
+    def execute(self, source: str) -> None:
         """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and
         ``Out[number]``.
         """
         name = f"<cell {self.cell}>"
         tree = self.parsed(source, name)
-        last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
+        last = tree.body[-1] if tree.body else None
+        if isinstance(last, ast.Expr):
+            tree.body.pop()
         self.evaluate(compile(tree, name, "exec", AWAIT, dont_inherit=True))
         # What ends in a semicolon is shown neither, and is a value all the same.
-        if last is not None:
+        if isinstance(last, ast.Expr):
             value = self.evaluate(
                 compile(ast.Expression(last.value), name, "eval", AWAIT, dont_inherit=True)
             )
             if value is not None:
                 self.keep(value)
 
-    def parsed(self, source, name):
+    def parsed(self, source: str, name: str) -> ast.Module:
         """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched
         for them.
         """
@@ -316,7 +353,7 @@ class _Notebook:
                 return ast.parse(source, name)
         return ast.parse(self.transformer.transform_cell(source), name)
 
-    def evaluate(self, code):
+    def evaluate(self, code: types.CodeType) -> object:
         """Run code, to the end of what it awaits if it awaits something."""
         value = eval(code, self.names)
         if code.co_flags & inspect.CO_COROUTINE:
@@ -325,43 +362,46 @@ class _Notebook:
             return self.loop.run_until_complete(value)
         return value
 
-    def keep(self, value):
+    def keep(self, value: object) -> None:
         names = self.names
         names["___"], names["__"], names["_"] = names.get("__", ""), names.get("_", ""), value
         if isinstance(names.get("Out"), dict) and self.number is not None:
             names["Out"][self.number] = names[f"_{self.number}"] = value
 
-    def check(self, question, answer=None, *rest, **options):
+    def check(
+        self, question: object, answer: object = None, *rest: object, **options: object
+    ) -> Reply:
         """Stands for `coursework.checking.check` here: records the answer and tells nothing."""
         self.record(str(question)[:200], answer, "check")
         return Reply()
 
-    def record(self, question, answer, source):
+    def record(self, question: str, answer: object, source: str) -> None:
         if ("answer", question) in self.skipped:
             return
-        found = {"answer": question, "from": source, "cell": self.cell}
+        record: Record = {"answer": question, "from": source, "cell": self.cell}
 
-        def read():
+        def read() -> None:
             try:
-                found["plain"] = to_plain(answer, self.calls(question))
+                record["plain"] = to_plain(answer, self.calls(question))
             except NotPlain as error:
-                found["unreadable"] = str(error)[:LONGEST_ERROR]
-            self.emit(found)
+                record["unreadable"] = str(error)[:LONGEST_ERROR]
+            self.emit(record)
 
         end = self.step(["answer", question], read, self.limits["answer"])
         if end["outcome"] != "done":
-            found.pop("plain", None)
-            self.emit(found | {"unreadable": end["error"]})
-        elif "plain" in found and found["plain"]["value"] != ["blank"]:
+            record.pop("plain", None)
+            record["unreadable"] = end["error"]
+            self.emit(record)
+        elif "plain" in record and record["plain"]["value"] != ["blank"]:
             self.answered.add(question)
-            if found["plain"]["value"][0] == "function":
+            if record["plain"]["value"][0] == "function":
                 self.functions[question] = answer, dict(self.names)
 
-    def calls(self, question):
+    def calls(self, question: str) -> list[list[object]] | None:
         calls = self.job["calls"].get(question)
         return None if calls is None else arguments_of(calls)
 
-    def notice(self, event, arguments):
+    def notice(self, event: str, arguments: tuple[object, ...]) -> None:
         """Hear of what the interpreter is asked to do, and note what no exercise needs."""
         if self.noticing or (event != "open" and event not in SUSPICIOUS):
             return
@@ -371,10 +411,10 @@ class _Notebook:
         finally:
             self.noticing = False
 
-    def note_event(self, event, arguments):
+    def note_event(self, event: str, arguments: tuple[object, ...]) -> None:
         if event == "open":
-            path, mode, _ = arguments
-            if not isinstance(path, str) or not self.is_elsewhere(path, mode):
+            path, _, _ = arguments
+            if not isinstance(path, str) or not self.is_elsewhere(path):
                 return
             said = f"opened {path[:100]}"
         elif event == "socket.__new__" and arguments[1] not in (socket.AF_INET, socket.AF_INET6):
@@ -385,13 +425,13 @@ class _Notebook:
             return
         self.hint(said)
 
-    def hint(self, said):
+    def hint(self, said: str) -> None:
         """Note once what a person may want to know."""
         if said not in self.tried and len(self.tried) < MOST_TRIED:
             self.tried.add(said)
             self.emit({"tried": said, "cell": self.cell})
 
-    def is_elsewhere(self, path, mode):
+    def is_elsewhere(self, path: str) -> bool:
         """Whether a file is none of the notebook's own and none of Python's."""
         if not os.path.isabs(path):
             return ".." in path.split("/") and self.is_from_a_cell()
@@ -401,9 +441,10 @@ class _Notebook:
             return False
         return self.is_from_a_cell()
 
-    def is_from_a_cell(self, most=DEPTH):
+    def is_from_a_cell(self, most: int = DEPTH) -> bool:
         """Whether the code of a cell asks for it itself, and no library on its behalf."""
-        frame, depth = sys._getframe(2), 0
+        frame: types.FrameType | None = sys._getframe(2)
+        depth = 0
         while frame is not None and depth < most:
             if frame.f_code.co_filename.startswith("<cell "):
                 return True
@@ -412,11 +453,11 @@ class _Notebook:
 
     # -- one step: a cell, or the reading of an answer
 
-    def step(self, step, action, seconds):
+    def step(self, step: Step, action: Callable[[], object], seconds: Time) -> Record:
         """Do one thing within its time. Steps may be nested: a check within a cell."""
         self.emit({"begin": step})
         outer = self.time_left()
-        end = {"end": step, "outcome": "done"}
+        end: Record = {"end": step, "outcome": "done"}
         try:
             try:
                 self.start_timers(seconds["processor"], seconds["wall"])
@@ -429,7 +470,8 @@ class _Notebook:
         except MemoryError:
             end |= {"outcome": "memory", "error": "It took more memory than it may."}
         except BaseException as error:
-            end |= {"outcome": "error", **self.described(error)}
+            end["outcome"] = "error"
+            end |= self.described(error)
         if step[0] == "cell" and threading.active_count() > 1:
             end["threads"] = True
         self.emit(end)
@@ -437,7 +479,7 @@ class _Notebook:
             self.start_timers(*outer)
         return end
 
-    def start_timers(self, processor, wall):
+    def start_timers(self, processor: float, wall: float) -> None:
         # Afresh each time: an earlier cell may have ignored or blocked them.
         for number in (signal.SIGPROF, signal.SIGALRM):
             signal.signal(number, self.time_is_up)
@@ -447,7 +489,7 @@ class _Notebook:
         signal.setitimer(signal.ITIMER_REAL, min(wall, TICK), TICK)
 
     @staticmethod
-    def moment():
+    def moment() -> tuple[float, float, int]:
         """The time by the clock and of the processor, and how often this process gave it away by
         itself.
         """
@@ -457,17 +499,17 @@ class _Notebook:
             resource.getrusage(resource.RUSAGE_SELF).ru_nvcsw,
         )
 
-    def time_left(self):
+    def time_left(self) -> tuple[float, float]:
         """What is left of the processor's time and of the clock's, with both stopped."""
         signal.setitimer(signal.ITIMER_REAL, 0)
         return signal.setitimer(signal.ITIMER_PROF, 0)[0], self.wall_left
 
     @staticmethod
-    def stop_timers():
+    def stop_timers() -> None:
         signal.setitimer(signal.ITIMER_PROF, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
 
-    def time_is_up(self, number, frame):
+    def time_is_up(self, number: int, frame: types.FrameType | None) -> None:
         if self.writing:  # half a record would be worse than being late
             signal.setitimer(signal.ITIMER_REAL, 0.02, TICK)
             self.wall_left = self.wall_left if number == signal.SIGALRM else 0
@@ -487,7 +529,7 @@ class _Notebook:
                 return
         raise OutOfTime
 
-    def emit(self, record):
+    def emit(self, record: Record) -> None:
         # Each record has a line of its own even after other bytes that a student may have written.
         data = b"\n" + self.encode(record).encode() + b"\n"
         self.writing = True
@@ -497,7 +539,7 @@ class _Notebook:
         finally:
             self.writing = False
 
-    def described(self, error):
+    def described(self, error: BaseException) -> Record:
         """An error as text: its type, its message, and the line of the cell. May run student
         code.
         """
@@ -519,4 +561,7 @@ class _Notebook:
         # The same text on every run: no addresses, no name of this folder.
         text = re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text[: 4 * LONGEST_ERROR])
         text = text.replace(self.folder, "scratch")[:LONGEST_ERROR]
-        return {"error": text} | ({"line": line} if line is not None else {})
+        described: Record = {"error": text}
+        if line is not None:
+            described["line"] = line
+        return described

@@ -30,7 +30,9 @@ import select
 import signal
 import socket
 import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import NoReturn, TypedDict
 
 from coursework.checking.plugins import packages
 from coursework.grading.execution import isolation, scratch
@@ -40,6 +42,10 @@ from coursework.grading.execution.isolation import (
     NAMESPACES,
     PRIVILEGES,
     IsolationError,
+    Layer,
+    LimitsOfChild,
+    Report,
+    Target,
 )
 
 # The handles that a notebook's process has, beside input and output to nowhere; the last is where
@@ -50,8 +56,51 @@ LOOK_EVERY = 0.05  # seconds between two looks at how full a scratch folder on d
 LONGEST_MESSAGE = 1 << 16
 LARGE_PAGE, MADV_COLLAPSE = 2 << 20, 25
 
+#: How to isolate, and what to try.
+Start = TypedDict(
+    "Start",
+    {
+        "without": list[str],
+        "target": Target,
+        "base": str,
+        "threads in use": int,
+        "user": int,
+        "namespaces made by": str | None,
+        "why no namespaces": str,
+    },
+)
 
-def into_namespaces(control, readable):
+
+class Run(TypedDict):
+    """A notebook that is to be run."""
+
+    limits: LimitsOfChild
+
+
+class Copy(TypedDict):
+    """What is particular to a copy of this process."""
+
+    user: int
+    target: Target
+
+
+class Tried(TypedDict, total=False):
+    """What came of trying the layers: one of these."""
+
+    succeeded: list[str]
+    failed: str
+
+
+class Message(TypedDict, total=False):
+    """What comes in: one of these."""
+
+    start: Start
+    run: Run
+    copy: Copy
+    kill: bool
+
+
+def into_namespaces(control: socket.socket, readable: Iterable[str]) -> str | None:
     """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot
     be.
     """
@@ -91,7 +140,7 @@ def into_namespaces(control, readable):
     return said.decode(errors="replace") or "it ended without a word"
 
 
-def load_libraries():
+def load_libraries() -> None:
     """Import what notebooks import, once for all of them."""
     import numpy
     import sympy
@@ -106,9 +155,9 @@ def load_libraries():
         import matplotlib.pyplot  # noqa: F401
     # What SymPy and the answers' reader import only when first used.
     angle = sympy.Symbol("angle")
-    one, other = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
-    other.orient_axis(one, one.z, angle)
-    sympy.simplify(sympy.trigsimp(other.dcm(one) * other.dcm(one).T))
+    source, target = mechanics.ReferenceFrame("N"), mechanics.ReferenceFrame("A")
+    target.orient_axis(source, source.z, angle)
+    sympy.simplify(sympy.trigsimp(target.dcm(source) * target.dcm(source).T))
     third = sympy.Rational(1, 3)
     for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
         inverse(
@@ -119,7 +168,7 @@ def load_libraries():
     notebook.warm_up()
 
 
-def about_itself(processes, name):
+def about_itself(processes: int, name: str) -> str:
     """A file of this process's own in /proc, which is a handle here: the folder may be out of
     sight.
     """
@@ -127,7 +176,7 @@ def about_itself(processes, name):
         return file.read()
 
 
-def into_large_pages(maps):
+def into_large_pages(maps: str) -> None:
     """Have the kernel gather this process's memory in large pages, of which it copies one entry for
     each to a child.
 
@@ -150,7 +199,15 @@ def into_large_pages(maps):
 class WarmParent:
     """What the children need to be started, and how they are tried out, watched and ended."""
 
-    def __init__(self, control, processes, start, readable, made_by, why_no_namespaces):
+    def __init__(
+        self,
+        control: socket.socket,
+        processes: int,
+        start: Start,
+        readable: Sequence[str],
+        made_by: str | None,
+        why_no_namespaces: str | None,
+    ) -> None:
         self.control = control
         self.off = set(start["without"])
         self.target = start["target"]
@@ -174,12 +231,12 @@ class WarmParent:
         )
         os.close(processes)
         self.own_scratch = made_by is not None
-        self.layers = []
+        self.layers: list[str] = []
         self.count = 0
 
     # -- one child
 
-    def new_scratch(self, layers):
+    def new_scratch(self, layers: Collection[str]) -> str:
         """The next child's scratch folder: memory that it mounts over the base, or a folder in
         it.
         """
@@ -192,11 +249,11 @@ class WarmParent:
             os.chown(folder, self.user, self.user)
         return folder
 
-    def remove_scratch(self, folder):
+    def remove_scratch(self, folder: str) -> None:
         if folder != self.base:  # memory went with its process
             scratch.remove_folder(folder)
 
-    def confine(self, layers, limits, folder):
+    def confine(self, layers: Collection[str], limits: LimitsOfChild, folder: str) -> None:
         isolation.confine(
             layers,
             limits=limits,
@@ -208,7 +265,7 @@ class WarmParent:
             threads_in_use=self.threads_in_use,
         )
 
-    def end_all(self, child):
+    def end_all(self, child: int) -> int:
         """Kill the child and everything it may have left behind. The only one who reaps."""
         with contextlib.suppress(ProcessLookupError):
             os.kill(child, signal.SIGKILL)
@@ -227,13 +284,15 @@ class WarmParent:
                 return status
 
     @staticmethod
-    def children():
+    def children() -> list[int]:
         path = Path(f"/proc/self/task/{os.getpid()}/children")
         return [int(number) for number in path.read_text().split()] if path.exists() else []
 
     # -- trying the layers
 
-    def tried(self, layers, attempts, target):
+    def tried(
+        self, layers: Collection[str], attempts: Sequence[str] | None, target: Target
+    ) -> list[str]:
         """Confine a child by `layers`; give the names of the attempts that succeeded there."""
         folder = self.new_scratch(layers)
         reading, writing = os.pipe()
@@ -242,9 +301,10 @@ class WarmParent:
             try:
                 os.close(reading)
                 self.confine(layers, target["limits"], folder)
-                answer = {"succeeded": isolation.attempt_all(target, attempts)}
+                succeeded = isolation.attempt_all(target, attempts)
                 if attempts is None:
-                    answer["succeeded"] += self.cannot_work()
+                    succeeded += self.cannot_work()
+                answer: Tried = {"succeeded": succeeded}
             except Exception as error:
                 answer = {"failed": str(error) or type(error).__name__}
             os.write(writing, json.dumps(answer).encode())
@@ -256,20 +316,22 @@ class WarmParent:
         os.close(reading)
         self.end_all(child)
         self.remove_scratch(folder)
-        answer = json.loads(said) if said else {"failed": "the process that tried it ended early"}
+        answer = {"failed": "the process that tried it ended early"}
+        if said:
+            answer = json.loads(said)
         if "failed" in answer:
             raise IsolationError(errno.EPERM, answer["failed"])
         return answer["succeeded"]
 
     @staticmethod
-    def cannot_work():
+    def cannot_work() -> list[str]:
         """What a notebook needs and does not have under all layers together."""
         import sympy
 
         problems = []
         try:
-            for module in (os, sympy):
-                Path(module.__file__).read_bytes()
+            for file in (os.__file__, sympy.__file__):
+                Path(file).read_bytes()
         except OSError as error:
             problems.append(
                 f"the isolated process cannot read Python's own libraries ({error}). Root runs it "
@@ -285,20 +347,21 @@ class WarmParent:
             problems.append(f"the isolated process cannot write in its scratch folder ({error})")
         return problems
 
-    def report(self):
+    def report(self) -> Report:
         """Try every layer alone, then all that are in force together."""
         self.target["threads in use"] = self.threads_in_use
         with self.file_within() as own:
-            everywhere = self.target | {"files": [*self.target["files"], own]}
-            layers = {}
+            everywhere = self.target_with(own)
+            layers: dict[str, Layer] = {}
             for layer in LAYERS:
                 why_not = self.why_not(layer, self.target if layer == NAMESPACES else everywhere)
                 layers[layer] = {"in force": why_not is None, "why not": why_not or ""}
                 if why_not is None:
                     self.layers.append(layer)
-            layers[NAMESPACES]["made by"] = self.made_by if layers[NAMESPACES]["in force"] else ""
+            in_force = layers[NAMESPACES]["in force"]
+            layers[NAMESPACES]["made by"] = (self.made_by or "") if in_force else ""
             not_stopped = self.not_stopped(everywhere)
-        self.said = {
+        self.said: Report = {
             "layers": layers,
             "not stopped": not_stopped,
             "landlock version": isolation.landlock_version(),
@@ -307,7 +370,7 @@ class WarmParent:
         return self.said
 
     @contextlib.contextmanager
-    def file_within(self):
+    def file_within(self) -> Iterator[str]:
         """A file that everybody may change. Namespaces hide the other one that it is tried on from
         all layers.
         """
@@ -320,14 +383,19 @@ class WarmParent:
         yield own
         scratch.remove_folder(outside)
 
-    def not_stopped(self, target):
+    def target_with(self, file: str) -> Target:
+        target = self.target.copy()
+        target["files"] = [*self.target["files"], file]
+        return target
+
+    def not_stopped(self, target: Target) -> list[str]:
         """What the layers in force do not stop together."""
         try:
             return self.tried(self.layers, None, target)
         except IsolationError as error:
             return [f"the layers do not work together: {error}"]
 
-    def why_not(self, layer, target):
+    def why_not(self, layer: str, target: Target) -> str | None:
         if layer in self.off:
             return "switched off"
         if layer == NAMESPACES and self.made_by is None:
@@ -340,12 +408,12 @@ class WarmParent:
             if layer == NAMESPACES and self.own_scratch:
                 self.own_scratch = False
                 return self.why_not(layer, target)
-            return error.strerror
+            return str(error.strerror)
         return f"it did not stop these attempts: {', '.join(succeeded)}" if succeeded else None
 
     # -- serving
 
-    def serve(self):
+    def serve(self) -> None:
         while True:
             message, handles = receive(self.control)
             if message is None:
@@ -357,7 +425,7 @@ class WarmParent:
                 continue  # a late "kill": what it was meant for has ended
             send(self.control, self.run(message["run"], handles))
 
-    def copy(self, about, handle):
+    def copy(self, about: Copy, handle: int) -> None:
         """Have a copy of this process serve at another handle, as the first process of a namespace
         of its own.
         """
@@ -370,7 +438,7 @@ class WarmParent:
             os._exit(0)
         os.close(handle)
 
-    def be_copy(self, about, handle):
+    def be_copy(self, about: Copy, handle: int) -> None:
         isolation.die_with_parent()
         self.control.close()
         self.control = socket.socket(fileno=handle)
@@ -381,19 +449,17 @@ class WarmParent:
             os.waitpid(inner, 0)
             return
         isolation.die_with_parent()
-        self.user, self.target = (
-            about["user"],
-            about["target"] | {"threads in use": self.threads_in_use},
-        )
+        self.user, self.target = about["user"], about["target"]
+        self.target["threads in use"] = self.threads_in_use
         with self.file_within() as own:
-            not_stopped = self.not_stopped(self.target | {"files": [*self.target["files"], own]})
+            not_stopped = self.not_stopped(self.target_with(own))
         gc.collect()
         gc.freeze()
         with contextlib.suppress(ConnectionError):
-            send(self.control, {"ready": self.said | {"not stopped": not_stopped}})
+            send(self.control, {"ready": {**self.said, "not stopped": not_stopped}})
             self.serve()
 
-    def run(self, run, handles):
+    def run(self, run: Run, handles: Sequence[int]) -> dict[str, object]:
         folder = self.new_scratch(self.layers)
         parent = os.getpid()
         child = os.fork()
@@ -413,24 +479,23 @@ class WarmParent:
         )
         return {"ended": how, "scratch full": full}
 
-    def wait(self, child, folder, most_bytes):
+    def wait(self, child: int, folder: str | None, most_bytes: int) -> bool:
         """Wait until the child has ended, must be killed, or has filled its folder on disk (then:
         True).
         """
         handle = os.pidfd_open(child)
+        watched = [handle, self.control.fileno()]
         try:
             while True:
-                ready, _, _ = select.select(
-                    [handle, self.control], [], [], LOOK_EVERY if folder else None
-                )
+                ready, _, _ = select.select(watched, [], [], LOOK_EVERY if folder else None)
                 if ready:
                     return False  # it ended, or whatever came in, or nobody is there: it is to end
-                if scratch.used_bytes(folder, most_bytes) > most_bytes:
+                if folder and scratch.used_bytes(folder, most_bytes) > most_bytes:
                     return True
         finally:
             os.close(handle)
 
-    def be_notebook(self, parent, run, handles, folder):
+    def be_notebook(self, parent: int, run: Run, handles: Sequence[int], folder: str) -> NoReturn:
         """In the child: give up all that a notebook must not have, and run it. Does not return."""
         code = NOT_CONFINED
         try:
@@ -455,24 +520,25 @@ class WarmParent:
             os._exit(code)
 
 
-def receive(control):
+def receive(control: socket.socket) -> tuple[Message | None, list[int]]:
     """The next message and its handles; (None, []) when the other side is gone."""
     data, handles, _, _ = socket.recv_fds(control, LONGEST_MESSAGE, 3)
     return (json.loads(data) if data else None), handles
 
 
-def send(control, message):
+def send(control: socket.socket, message: Mapping[str, object]) -> None:
     control.send(json.dumps(message).encode())
 
 
-def main():
+def main() -> None:
     control = socket.socket(fileno=int(sys.argv[1]))
     message, _ = receive(control)
     if message is None:
         return  # whoever started it has ended
     start = message["start"]
     readable = isolation.readable_paths()
-    made_by, why_not = start["namespaces made by"], start["why no namespaces"]
+    made_by = start["namespaces made by"]
+    why_not: str | None = start["why no namespaces"]
     if made_by == "unshare":
         why_not = into_namespaces(control, readable)
         made_by = None if why_not else "unshare"

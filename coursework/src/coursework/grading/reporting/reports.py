@@ -460,7 +460,7 @@ def _oddities(record: Record) -> dict[str, None]:
         found.update(dict.fromkeys(notebook.notes))
         found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))
         if notebook.unknown_questions:
-            found["it checks an answer to a question that there is not"] = None
+            found["it checks an answer to a question that the assignment does not have"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
         found.update(
             dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)

@@ -163,14 +163,17 @@ class Page {
     return all;
   }
 
+  // A text for code that has changed is offered where that stands; one for a question that is gone, at the end, and
+  // for no other cell. Names that are made of the code say it themselves (see nameCells).
   offer(name, entry) {
-    const cell = this.cells.find(({ id }) => id === name)
-      ?? this.cells[Math.min(Math.max(entry.number, 1), this.cells.length) - 1];
+    const own = this.cells.find(({ id }) => id === name);
+    const gone = !own && !name.startsWith(`${entry.original}-`) && !name.startsWith("old-");
+    const cell = own ?? this.cells[gone ? this.cells.length - 1 : Math.min(Math.max(entry.number, 1), this.cells.length) - 1];
     const choose = (text, action) => {
       const button = element("button", "", text);
       button.type = "button";
       button.addEventListener("click", () => {
-        this.answers.setAside(cell.id, entry.code, entry.at);
+        this.answers.setAside(gone ? name : cell.id, entry.code, entry.at);
         this.answers.remove(name);
         action();
         this.reread();
@@ -178,13 +181,16 @@ class Page {
       return button;
     };
     this.edit();
+    const putAway = () => this.bar.say("It is put away. “Back up everything” still saves it.");
     const box = element("div", "live-note live-choice",
-      element("p", "", "The book’s code here has changed since you edited it. This was yours:"),
+      element("p", "", gone ? `You wrote this for “${name}”, which this page does not ask any more:`
+        : "The book’s code here has changed since you edited it. This was yours:"),
       preformatted("stream", entry.code),
-      choose("Use mine", () => cell.write(entry.code)), " ", choose("Keep the book’s", () => {}));
+      ...(gone ? [choose("Put it away", putAway)]
+        : [choose("Use mine", () => cell.write(entry.code)), " ", choose("Keep the book’s", () => {})]));
     box.setAttribute("role", "group");
-    box.setAttribute("aria-label", `An older edit of ${cell.name}`);
-    cell.input.after(box);
+    box.setAttribute("aria-label", gone ? `Your answer to ${name}` : `An older edit of ${cell.name}`);
+    (gone ? cell.box : cell.input).after(box);
     this.offers.set(name, box);
   }
 

@@ -225,7 +225,7 @@
       if (shown[number]) said = name && `Run this cell: you get the numbers of ${name}.`;
       else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
       else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and that stays known. ${now}: run the question and this cell to see how you stand.`;
-      else if (known.outcome === "correct") said = `✓ Correct, when you checked it last. ${run}`;
+      else if (known.outcome === "correct") said = "✓ Correct, in an earlier check. Run this cell to see the reply to what stands above it now.";
       else said = `You have tried this one before. ${run}`;
       if (!said) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();

@@ -1,11 +1,12 @@
-"""What answers ``import numpy`` on a page until the real NumPy is there: small arrays, in plain
-Python.
+"""What answers ``import numpy`` on a page, and in its notebook in the browser, until the real NumPy
+is there: small arrays, in plain Python.
 
 It does what the book's cells do with a handful of orientations, with NumPy's results and in NumPy's
 way of writing them; ``tests/test_plain_numpy.py`` holds each function against the real one. What it
 does not do exactly so, it does not do: whatever is asked beyond it (another function, another
 option, a shape or a value that calls for a warning, or more work than plain Python gets through in
-a moment) is handed to the real NumPy, which the page then fetches.
+a moment) is handed to the real NumPy. The page then fetches it; a notebook does so for a cell that
+imports it.
 """
 
 import functools
@@ -36,7 +37,11 @@ def real():
     """The real NumPy; where it is not here, the error that makes the page fetch it."""
     found = importlib.import_module("numpy")
     if found is STAND_IN:
-        raise ModuleNotFoundError("this needs the real NumPy", name="numpy")
+        raise ModuleNotFoundError(
+            "this needs the real NumPy: `import numpy` in the same cell has it fetched, where it "
+            "can be",
+            name="numpy",
+        )
     return found
 
 
@@ -152,6 +157,32 @@ def step_aside(names):
         names[name] = handed_on(value)
 
 
+def load_ipython_extension(shell):
+    """Stand in for NumPy in a notebook, until its kernel has fetched the real one for a cell."""
+
+    def look(info):
+        if is_fetched():
+            shell.events.unregister("pre_run_cell", look)
+            names = {
+                name: value
+                for name, value in shell.user_ns.items()
+                if name not in shell.user_ns_hidden
+            }
+            step_aside(names)
+            shell.user_ns.update(names)
+
+    stand_in()
+    shell.events.register("pre_run_cell", look)
+
+
+def is_fetched():
+    """Whether the real NumPy could be imported."""
+    try:
+        return any(finder.find_spec("numpy", None) for finder in sys.meta_path)
+    except ModuleNotFoundError:  # in the words of whoever knows where it could come from
+        return False
+
+
 def is_at_fault(error):
     """Whether an error speaks of what stands in for NumPy: with the real one there may be none, or
     another.
@@ -227,6 +258,11 @@ class Scalar:
         return self
 
     mean = max = min = sum
+
+    def all(self):
+        return Truth(self)
+
+    any = all
 
     def reshape(self, *shape):
         return array(self).reshape(*shape)

@@ -1,0 +1,309 @@
+"""The words in which pictures are described: arrows, triads, turns, circles, bodies.
+
+They say where lines and areas lie, in paths on a sheet, with its ``view``, ``size``, ``on_sheet``,
+``path`` and ``text``. ``python -m orientation_figures.moving.javascript`` translates them for the
+sheets of the page. What is hidden shrinks to nothing instead of being left out, so that an
+``Animation`` finds the same marks at every moment.
+"""
+
+import math
+
+from .vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, unit
+
+# Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their
+# strokes, without colour.
+BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
+TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
+DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))
+HEADS = {
+    "A": TRIANGLE,
+    "B": TRIANGLE,
+    "C": DIAMOND,
+    "D": TRIANGLE,
+    "E": TRIANGLE,
+    "F": DIAMOND,
+    "Z": TRIANGLE,
+}
+ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
+STEEP = 1.6  # radians that one cubic of a turn can have
+
+
+def hatted(letter):
+    """Return the symbols of three unit vectors, as labels."""
+    return [rf"$\hat{{{letter}}}_{axis}$" for axis in AXES]
+
+
+def turned(axis, angle, vector):
+    """Return a vector turned about ``axis`` through ``angle``."""
+    normal = unit(axis)
+    along, beside = scale(dot(normal, vector), normal), cross(normal, vector)
+    rest = subtract(vector, along)
+    return add(along, scale(math.cos(angle), rest), scale(math.sin(angle), beside))
+
+
+def layers(kind):
+    """Return the looks of a line that is drawn, one above the other: a tube has a core."""
+    return [kind, f"{kind} core"] if kind.startswith("tube") else [kind]
+
+
+def half_round(u, v):
+    """Return the points of half an ellipse from ``u`` by ``v`` to the other side."""
+    return [
+        u,
+        add(u, scale(ROUND, v)),
+        add(scale(ROUND, u), v),
+        v,
+        subtract(v, scale(ROUND, u)),
+        subtract(scale(ROUND, v), u),
+        scale(-1, u),
+    ]
+
+
+class Words:
+    """What can be drawn on a sheet; each word returns the sheet, so that they can be chained."""
+
+    def depth_of(self, points):
+        """Return how near the middle of ``points`` is to the reader."""
+        return dot(self.view[2], add(*points)) / len(points)
+
+    # Lines, areas and words.
+
+    def line(self, points, colour="ink", kind=""):
+        """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or
+        'tube'.
+        """
+        places, depth = [self.on_sheet(point) for point in points], self.depth_of(points)
+        for k, layer in enumerate(layers(kind)):
+            self.path(f"M{'L' * (len(points) - 1)}", places, f"{layer} {colour}", depth + 1e-6 * k)
+        return self
+
+    def area(self, points, colour="ink", fill=16, edge=True):
+        """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the
+        colour.
+        """
+        places = [self.on_sheet(point) for point in points]
+        kind = f"fill-{fill} {'' if edge else 'bare '}{colour}"
+        return self.path(f"M{'L' * (len(points) - 1)}Z", places, kind, self.depth_of(points))
+
+    def ellipse(self, middle, u, v, kind, depth=0):
+        """Draw an ellipse on the sheet, with the conjugate half diameters ``u`` and ``v``."""
+        points = [*half_round(u, v), *half_round(scale(-1, u), scale(-1, v))[1:]]
+        return self.path("MCCCCZ", [add(middle, point) for point in points], kind, depth)
+
+    def dot(self, point, colour="ink", radius=4):
+        """Draw a dot with a radius in pixels."""
+        depth = self.depth_of([point])
+        return self.ellipse(self.on_sheet(point), [radius, 0], [0, radius], f"head {colour}", depth)
+
+    def ring(self, point, colour="ink", radius=5):
+        """Draw a small circle with a radius in pixels."""
+        depth = self.depth_of([point]) + 1e-6
+        place = self.on_sheet(point)
+        return self.ellipse(place, [radius, 0], [0, radius], f"paper {colour}", depth)
+
+    def label(self, point, text, colour="ink", shift=(0, 0), size=20):
+        """Write ``text``, its middle on a point."""
+        return self.text(text, add(self.on_sheet(point), shift), colour, size)
+
+    def label_beyond(self, point, text, colour="ink", pixels=17):
+        """Write a label beyond a point as seen from the origin."""
+        return self.label(point, text, colour, scale(pixels, unit(self.on_sheet(point))))
+
+    def shadow(self, vector, direction, colour="accent"):
+        """Draw the part of one vector that lies along another: its shadow, the line that drops it,
+        and a right angle.
+        """
+        along = unit(direction)
+        foot = scale(dot(vector, along), along)
+        down = subtract(foot, vector)
+        self.line([[0, 0, 0], foot], colour, "shadow")
+        if length(down) > 0.02:
+            self.line([vector, foot], colour, "guide")
+            if length(foot) > 0.1:
+                self.right_angle(scale(-1, foot), scale(-1, down), origin=foot, size=0.07)
+        return self
+
+    # Arrows and frames.
+
+    def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, size=20, kind=""):
+        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
+        the tip.
+
+        An arrow that points straight at the reader is a circle with a dot, one that points straight
+        away a circle with a cross.
+        """
+        reach, depth = subtract(end, start), self.depth_of([start, end])
+        tail, tip = self.on_sheet(start), self.on_sheet(end)
+        across = subtract(tip, tail)
+        pixels, along = length(across), unit(across)
+        outward = scale(17, along)
+        if pixels < 0.05 * self.size * length(reach):
+            self.ellipse(tip, [9, 0], [0, 9], f"paper {colour}", depth)
+            if dot(self.view[2], reach) > 0:
+                self.ellipse(tip, [3, 0], [0, 3], f"head {colour}", depth + 1e-6)
+            else:
+                strokes = [[-6.4, -6.4], [6.4, 6.4], [-6.4, 6.4], [6.4, -6.4]]
+                self.path("MLML", [add(tip, point) for point in strokes], colour, depth + 1e-6)
+            outward = [15, 15]
+        else:
+            part = min(1, pixels / 28)
+            line = [tail, subtract(tip, scale(10 * part, along))]
+            self.path("ML", line, f"axis {colour} {kind}", depth)
+            self.head(tip, along, part, colour, depth + 1e-6)
+        if label:
+            self.text(label, add(tip, outward if shift is None else shift), colour, size)
+        return self
+
+    def head(self, tip, along, size, colour, depth=0):
+        """Draw the head of an arrow on the sheet."""
+        right, down = along
+        corners = [
+            add(tip, scale(size, [x * right - y * down, x * down + y * right]))
+            for x, y in HEADS.get(colour, BARB)
+        ]
+        return self.path("MLLLZ", corners, f"head {colour}", depth)
+
+    def triad(
+        self, letter, dcm, origin=(0, 0, 0), length=1.0, labels=None, shifts=(None, None, None)
+    ):
+        """Draw the unit vectors of the frame ``letter``.
+
+        ``dcm``, shape ``(3, 3)``, is the direction cosine matrix of that frame with respect to N:
+        its rows are the frame's unit vectors. ``labels`` are three strings, by default the hatted
+        symbols; an empty string leaves that arrow without a label, and None leaves that arrow out.
+        """
+        texts = hatted(letter.lower()) if labels is None else labels
+        for row, label, shift in zip(dcm, texts, shifts, strict=True):
+            if label is not None:
+                end = add(origin, scale(length, row))
+                self.arrow(end, start=origin, colour=letter, label=label, shift=shift)
+        return self
+
+    # Angles and circles.
+
+    def turn(
+        self,
+        axis,
+        angle,
+        start,
+        radius=0.5,
+        label="",
+        origin=(0, 0, 0),
+        colour="ink",
+        shift=(0, 0),
+        kind="",
+        head=True,
+    ):
+        """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about
+        ``axis``.
+        """
+        normal, arm = unit(axis), scale(radius, unit(start))
+        swept, pieces = abs(angle) * radius * self.size, max(4, math.ceil(abs(angle) / STEEP))
+        size = min(0.8, swept / 28) if head else 0
+        last = 1 - (9 * size / swept if swept else 0)
+        reach = 4 / 3 * math.tan(last * angle / pieces / 4)
+
+        def at(part):
+            return turned(normal, part * angle, arm)
+
+        def place(point):
+            return self.on_sheet(add(origin, point))
+
+        points = [place(arm)]
+        for k in range(pieces):
+            near, far = at(last * k / pieces), at(last * (k + 1) / pieces)
+            points.append(place(add(near, scale(reach, cross(normal, near)))))
+            points.append(place(subtract(far, scale(reach, cross(normal, far)))))
+            points.append(place(far))
+        middle, tip = place(at(0.5)), place(at(1))
+        depth = self.depth_of([add(origin, at(0.5))])
+        self.path(f"M{'C' * pieces}", points, f"{kind} {colour}", depth)
+        if head:
+            self.head(tip, unit(subtract(tip, place(at(last)))), size, colour, depth + 1e-6)
+        if label:
+            outward = scale(15, unit(subtract(middle, self.on_sheet(origin))))
+            shown = min(1, abs(angle) / 0.2)  # it fades where there is no angle
+            self.text(label, add(middle, outward, shift), colour, 20, shown)
+        return self
+
+    def arc(
+        self,
+        start,
+        end,
+        radius=0.5,
+        label="",
+        origin=(0, 0, 0),
+        colour="ink",
+        shift=(0, 0),
+        kind="",
+        head=True,
+    ):
+        """Draw the angle from the direction ``start`` to the direction ``end``, the short way
+        round.
+        """
+        axis = cross(start, end)
+        return self.turn(
+            axis,
+            math.atan2(length(axis), dot(start, end)),
+            start,
+            radius=radius,
+            label=label,
+            origin=origin,
+            colour=colour,
+            shift=shift,
+            kind=kind,
+            head=head,
+        )
+
+    def right_angle(self, first, second, origin=(0, 0, 0), size=0.12, colour="muted"):
+        """Mark the right angle between two directions at ``origin``."""
+        u, v = scale(size, unit(first)), scale(size, unit(second))
+        return self.line([add(origin, point) for point in [u, add(u, v), v]], colour)
+
+    def circle(self, normal, radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide", half=""):
+        """Draw the circle about ``normal``, or the half of it that is nearer to the reader
+        ('front') or farther ('back'); ``kind`` as in ``line``, or 'fill-8', 'fill-16', ...
+        """
+        axis = unit(normal)
+        sizes = [abs(entry) for entry in axis]
+        level, other = cross(axis, self.view[2]), IDENTITY[sizes.index(min(sizes))]
+        across = scale(radius, unit(level if half and length(level) > 1e-6 else cross(axis, other)))
+        u, v = self.on_sheet(across), self.on_sheet(cross(axis, across))
+        middle, depth = self.on_sheet(origin), self.depth_of([origin])
+        for k, layer in enumerate(layers(kind)):
+            look = f"{layer} {colour}"
+            if half:
+                points = half_round(u, scale(-1, v) if half == "front" else v)
+                self.path("MCC", [add(middle, point) for point in points], look, depth + 1e-6 * k)
+            else:
+                self.ellipse(middle, u, v, look, depth + 1e-6 * k)
+        return self
+
+    # Solid bodies. On paper, draw what lies farther from the reader first.
+
+    def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
+        """Draw a box with edges ``size`` along the rows of ``dcm``, its middle at ``origin``."""
+        half = [scale(size[k] / 2, row) for k, row in enumerate(dcm)]
+        for i, fill in enumerate([26, 16, 8]):
+            u, v = half[(i + 1) % 3], half[(i + 2) % 3]
+            corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)]
+            for outward in [half[i], scale(-1, half[i])]:
+                seen = 1 if dot(outward, self.view[2]) > 0 else 0
+                face = [add(origin, outward, scale(seen, corner)) for corner in corners]
+                self.area(face, colour, fill)
+        return self
+
+    def cylinder(self, start, end, radius, colour="ink", fill=26):
+        """Draw a cylinder between the middles of its two round ends."""
+        facing, depth = dot(unit(subtract(end, start)), self.view[2]), self.depth_of([start, end])
+        near, far, pixels = self.on_sheet(start), self.on_sheet(end), radius * self.size
+        along = unit(subtract(far, near)) if abs(facing) < 0.9999 else [1, 0]
+        bulge, side = scale(pixels * abs(facing), along), scale(pixels, [-along[1], along[0]])
+        front = [add(far, point) for point in half_round(side, bulge)]
+        back = [add(near, one) for one in half_round(scale(-1, side), scale(-1, bulge))]
+        self.path("MCCLCCZ", [*front, *back], f"fill-{fill} {colour}", depth)
+        for place, seen in [[near, facing < 0], [far, facing > 0]]:
+            shown = 1 if seen else 0
+            u, v = scale(shown, bulge), scale(shown, side)
+            self.ellipse(place, u, v, f"fill-8 {colour}", depth + 1e-6)
+        return self
