@@ -121,8 +121,8 @@ anywhere: $(VENV)/ready-test setup
 
 # What survives is told as it is found: a test that notices it is missing, or it is no change (ONLY="quaternions metrics").
 mutants: $(VENV)/ready-mutants setup
-	@$(RUN) -m tools.mutants orientation $(ONLY)
-	@$(if $(ONLY),,$(RUN) -m tools.mutants coursework.checking)
+	@$(RUN) -m tools.mutants orientation $(ONLY) && code=0 || code=1; \
+		$(if $(ONLY),,$(RUN) -m tools.mutants coursework.checking || code=1;) exit $$code
 
 # The programs of the convention card, each in its newest version: what they answer otherwise than stored. It fetches
 # some gigabytes.

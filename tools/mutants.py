@@ -4,7 +4,8 @@ mutmut says what can be changed. The tests are collected once, and run once to s
 of them reaches. For every change a copy of that process (a fork) gets the changed function in place
 of the right one, and runs the tests that reach the changed statement, those first that noticed
 something there before, then the quick ones, until one fails. A change that all of them pass
-survives, and is printed: a test is missing, or it is no change.
+survives, and is printed: a test is missing, or it is no change. Those that are none stand in
+``mutants.txt``, each with the reason, and are passed over.
 
     python -m tools.mutants orientation [MODULE...] [--jobs 2]
     python -m tools.mutants coursework.checking [MODULE...]
@@ -48,6 +49,8 @@ PARTS = {
         ),
     ),
 }
+#: Changes that change nothing, with the reasons.
+KNOWN = Path(__file__).with_name("mutants.txt")
 #: Seconds of the processor, and how many times its own, that a test has before it counts as
 #: endless.
 PATIENCE, TIMES = 2.0, 10.0
@@ -71,6 +74,11 @@ class Mutant(NamedTuple):
     shown : str
         The lines that differ.
     """
+
+    def told(self):
+        """As it stands among those that are known."""
+        owner = f"{self.owner}." if self.owner else ""
+        return f"{self.module}.{owner}{self.function}\n{self.shown}"
 
     module: str
     owner: str | None
@@ -124,10 +132,14 @@ def _source(function, owner):
 def _difference(before, after):
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     return "\n".join(
-        f"    {line[0]} {line[2:].strip()}"
-        for line in lines
-        if line[0] in "-+" and line[2:].strip()
+        f"{line[0]} {line[2:].strip()}" for line in lines if line[0] in "-+" and line[2:].strip()
     )
+
+
+def known():
+    """What is told of the changes that change nothing."""
+    blocks = KNOWN.read_text("utf8").split("\n\n")
+    return {"\n".join(line for line in b.splitlines() if line[:1] != "#") for b in blocks} - {""}
 
 
 def _statements(text):
@@ -154,7 +166,7 @@ class Run:
     def __init__(self, folder, package, wanted, jobs):
         self.folder, self.package, self.wanted, self.jobs = folder, package, wanted, jobs
         self.in_child = False
-        self.survivors, self.counts = [], Counter()
+        self.known, self.counts = known(), Counter()
         self.noticed_by = defaultdict(Counter)  # tests, by function
         self.busy = {}
 
@@ -228,11 +240,13 @@ class Run:
         )
 
     def _try(self, path, mutant, tests):
-        place = f"{path}:{mutant.lines.start} {mutant.function}"
+        place = f"{path}:{mutant.lines.start}"
+        if mutant.told() in self.known:
+            self.counts["explained"] += 1
+            return None
         if not tests:
             self.counts["no test"] += 1
-            self.survivors.append(mutant)
-            return say(f"NO TEST {place}\n{mutant.shown}")
+            return say(f"NO TEST {place}\n{mutant.told()}")
         noticed_by = self.noticed_by[mutant.module, mutant.owner, mutant.function]
         order = sorted(tests, key=lambda test: (-noticed_by[test], self.seconds[test]))
         reading, writing = os.pipe()
@@ -270,8 +284,7 @@ class Run:
         code = os.waitstatus_to_exitcode(status)
         if code == PASSED:
             self.counts["survived"] += 1
-            self.survivors.append(mutant)
-            say(f"SURVIVED {place}, {len(tests)} tests\n{mutant.shown}")
+            say(f"SURVIVED {place}, {len(tests)} tests\n{mutant.told()}")
         elif code == NO_FUNCTION:
             self.counts["out of reach"] += 1
         else:
@@ -333,7 +346,9 @@ def main():
     run = Run(Path(folder), options.part, options.modules, options.jobs)
     left_out = [f"-pno:{name}" for name in ("cacheprovider", "times")]
     arguments = ["-q", "-s", "-n0", *left_out, "-m", "not long", *(options.tests or tests)]
-    return pytest.main(arguments, plugins=[run]) or bool(run.survivors)
+    return pytest.main(arguments, plugins=[run]) or any(
+        run.counts[told] for told in ("survived", "no test")
+    )
 
 
 if __name__ == "__main__":
