@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sm
+from forms_by_chance import mutant, random_form, roots_for_cosines
 from seed import SEED
 from sympy.core.function import AppliedUndef
 from sympy.physics.mechanics import dynamicsymbols
@@ -15,7 +16,7 @@ from test_release import COURSE
 from coursework.authoring import source as sources
 from coursework.authoring.attack import At, Family, attack, families, fingerprints_of, really_attack
 from coursework.authoring.author import question
-from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
+from coursework.authoring.forms import flat
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
 from coursework.checking.plain import NotPlain, to_plain
