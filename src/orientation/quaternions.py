@@ -51,9 +51,7 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
     raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
 
-def demand_unit_length(
-    entries: Sequence[complex], name: str = "quaternion", tolerance: float = TOLERANCE
-) -> None:
+def demand_unit_length(entries: Sequence[complex], name: str, tolerance: float) -> None:
     """Raise the error of a quaternion that is not of unit length, for four numbers."""
     real = [entry.real for entry in entries]
     if not _length_excess(NUMBERS, *real) <= tolerance:

@@ -32,6 +32,7 @@ def families(public, at):
     elif kind == "matrix" and public.shape == (3, 3):
         yield from _of_orientations(public, at, _dcm_of, 9)
     elif kind == "vector" and public.length in (None, 3):
+        yield from _of_rates(public, at)
         yield from _of_turned(public, at)
 
 
@@ -232,6 +233,40 @@ def _of_turned(public, at):
         return one_sign(public, numbers.reshape(len(choices), -1), 3)
 
     yield Family("a unit vector, turned", (len(scales), 3, 2, *inner), evaluate)
+
+
+def _of_rates(public, at):
+    """Angular velocities of frames turned one after another, through the symbols whose rates are
+    among the question's.
+    """
+    names = [name for name in at.angular if f"{name}'" in at.symbols]
+    if not names:
+        return
+    count = len(names)
+    angles, rates = (
+        np.array([at.values[f"{name}{end}"] for name in names]).reshape(count, -1)
+        for end in ("", "'")
+    )
+    orders = np.array(list(itertools.permutations(range(count)))[:120])
+
+    def evaluate(choices):
+        order, axes = orders[choices[:, 1]], choices[:, 2 : 2 + count]
+        signs = 1 - 2 * choices[:, 2 + count :]
+        omega = np.zeros((len(choices), len(at.ones), 3))
+        dcm = np.broadcast_to(np.eye(3), (*omega.shape, 3))
+        for place in range(count):
+            which = order[:, place]
+            sign = np.take_along_axis(signs, which[:, None], axis=1)
+            turn = _dcm_of(_about(axes[:, place], sign * angles[which])).reshape(dcm.shape)
+            omega = (turn @ omega[..., None])[..., 0]
+            omega += (sign * rates[which])[..., None] * np.eye(3)[axes[:, place]][:, None]
+            dcm = turn @ dcm
+        along_the_first = (np.swapaxes(dcm, -1, -2) @ omega[..., None])[..., 0]
+        numbers = np.where(choices[:, :1, None] == 0, omega, along_the_first)
+        return one_sign(public, numbers.reshape(len(choices), -1), 3)
+
+    sizes = (2, len(orders), *[3] * count, *[2] * count)
+    yield Family("the angular velocity of turns", sizes, evaluate)
 
 
 def _of_library(public):

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sympy as sm
+from forms_by_chance import mutant, random_form, roots_for_cosines
 from seed import SEED
 from sympy.core.function import AppliedUndef
 from sympy.physics.mechanics import dynamicsymbols
@@ -15,7 +16,7 @@ from test_release import COURSE
 from coursework.authoring import source as sources
 from coursework.authoring.attack import At, Family, attack, families, fingerprints_of, really_attack
 from coursework.authoring.author import question
-from coursework.authoring.forms import flat, mutant, random_form, roots_for_cosines
+from coursework.authoring.forms import flat
 from coursework.authoring.selftest import try_question
 from coursework.checking.evaluate import MP
 from coursework.checking.plain import NotPlain, to_plain
@@ -65,6 +66,23 @@ def test_what_the_author_counts_is_what_a_student_would_spend(one):
 
 def test_an_answer_that_can_be_guessed_is_found():
     assert try_question(ABOUT_X).attack.tries <= 6
+
+
+def test_the_angular_velocity_of_successive_turns_is_found_along_both_frames():
+    psi, elevation = dynamicsymbols("psi theta")
+    psi_dot, up = psi.diff(), elevation.diff()
+    along_the_last = [up, psi_dot * sm.sin(elevation), psi_dot * sm.cos(elevation)]
+    along_the_first = [up * sm.cos(psi), up * sm.sin(psi), psi_dot]
+    for answer in (along_the_last, along_the_first):
+        one = question(
+            "trial/radar",
+            "vector",
+            answer,
+            frames=("C",),
+            symbols="psi theta psi' theta'",
+            length=3,
+        )
+        assert attack(one, budget=3000).way.startswith("the angular velocity of turns")
 
 
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():

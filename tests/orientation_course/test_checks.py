@@ -14,13 +14,14 @@ from types import ModuleType
 import numpy as np
 import pytest
 import sympy as sm
+from forms_by_chance import random_form
 from seed import SEED
 from sympy.physics import units
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
 import coursework
 from coursework.authoring.author import AuthorError, question
-from coursework.authoring.forms import equivalent_forms, flat, random_form
+from coursework.authoring.forms import equivalent_forms, flat
 from coursework.checking import plugins, questions, sealing
 from coursework.checking.catalogue import message
 from coursework.checking.kinds import Fault, Undecidable

@@ -246,6 +246,21 @@ def test_page_is_handed_in_and_graded(context, site, tmp_path):
     assert (float(row["points"]), row["simple-orientations/crank: outcome"]) == (2, "correct")
 
 
+def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
+    """On a laptop the numbers of its questions are the ones that its reader had on the page."""
+    tab = Tab(context, site).edit()
+    before = tab.text(1)
+    tab.page.evaluate("bookStore.put('coursework me.txt', { text: 'Ada O\\'Hara', at: 1 })")
+    tab.write(ANSWER, "mine = 1")
+    tab.take().save_as(tmp_path / "mine.ipynb")
+    cells = nbformat.read(tmp_path / "mine.ipynb", as_version=4).cells
+    codes = [cell.source for cell in cells if cell.cell_type == "code"]
+    assert 'student("Ada O\'Hara")' in codes[0] and "student('')" in before
+    assert codes[ANSWER - 1] == "mine = 1" and "1 cell of this page" in tab.words()
+    tab.bring(tmp_path / "mine.ipynb")
+    assert "Nothing is different" in tab.words() and tab.text(1) == before and tab.errors == []
+
+
 def test_notebook_is_loaded_back(context, site, tmp_path):
     tab = Tab(context, site).edit()
     tab.write(1, "imports = 'mine'")

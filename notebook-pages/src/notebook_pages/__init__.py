@@ -4,6 +4,8 @@ Each module has one purpose and a ``setup`` of its own; none of them knows
 what the book is about.
 """
 
+import gc
+
 from . import (
     accessible,
     alternative_text,
@@ -34,6 +36,9 @@ from . import (
 
 
 def setup(app):
+    # Pages that are read back are large trees: to look through them for memory to be freed as often
+    # as Python does takes longer than to read them.
+    gc.set_threshold(50_000, 20, 50)
     pages = (
         execution,
         fonts,

@@ -96,6 +96,17 @@ def as_mathml(formula):
     formula.replace_with(math)
 
 
+def written_out(styles):
+    """Style sheets with each ``:is(...)`` in full: older reading programs do not know it, nor does
+    their checker.
+    """
+    return re.sub(
+        r"([^{},]*):is\(([^()]*)\)([^{},]*)",
+        lambda found: ",".join(found[1] + one + found[3] for one in found[2].split(",")),
+        styles,
+    )
+
+
 def in_xml(text):
     """What HTML allows and XML does not, put right."""
     for element in text.find_all(ALIVE.split(", ")[:5]):
@@ -186,7 +197,7 @@ def files(site, title, author):
     entries = f'<li><a href="index.xhtml">About this book</a></li>{entries}'
     contents = f'<nav epub:type="toc" id="toc"><h1>Contents</h1><ol>{entries}</ol></nav>'
     written["nav.xhtml"] = PAGE.format(title="Contents", body=contents)
-    written["book.css"] = STYLE.read_text("utf8") + "\n".join(sorted(styles))
+    written["book.css"] = STYLE.read_text("utf8") + written_out("\n".join(sorted(styles)))
     for name, text in written.items():
         if name.endswith(".xhtml"):
             try:

@@ -1,8 +1,13 @@
 """Noise and bias of a gyroscope that lies still: its Allan deviation, and what is read off it."""
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from .table import Array
 
 
 class StillNoise(NamedTuple):
@@ -19,12 +24,12 @@ class StillNoise(NamedTuple):
         Seconds at which that is.
     """
 
-    angle_random_walk: np.ndarray
-    bias_instability: np.ndarray
-    time: np.ndarray
+    angle_random_walk: Array
+    bias_instability: Array
+    time: Array
 
 
-def allan_deviation(rates, step):
+def allan_deviation(rates: Array, step: float) -> tuple[Array, Array]:
     """Allan deviation of an instrument that lies still, from all stretches of each length.
 
     ``sigma(tau)**2`` is half the mean square of the difference between the means of neighbouring
@@ -58,7 +63,7 @@ def allan_deviation(rates, step):
     return sizes * step, np.array(deviations)
 
 
-def noise_of(times, deviations):
+def noise_of(times: Array, deviations: Array) -> StillNoise:
     """Read angle random walk and bias instability off an Allan deviation.
 
     Parameters

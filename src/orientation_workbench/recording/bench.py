@@ -2,7 +2,10 @@
 evidence.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +13,7 @@ from orientation import dcm_from_body_fixed
 
 from .allan import allan_deviation, noise_of
 from .content import DEGREES, places_by_name, read_content, unit_of_field, unit_of_gravity
+from .examined import GREEN, RED, UNKNOWN, YELLOW, Examined, Verdict
 from .field import FieldFit, fit_ellipsoid, fit_field
 from .judged import filter_inputs, judge, too_sure
 from .motion import (
@@ -22,76 +26,24 @@ from .motion import (
     written,
 )
 
-#: What a light says.
-GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
+if TYPE_CHECKING:
+    from .content import Content, Group
+    from .examined import Facts
+    from .judged import Judgement
+    from .motion import Fit, Reading, Stretch
+    from .table import Array, Source
+
 #: Above this margin the best of 48 assignments is believed.
 BELIEVED = 1.3
 
 
-class Verdict(NamedTuple):
-    """An answer of the bench.
-
-    Attributes
-    ----------
-    about : str
-    light : str
-        ``as it should be``, ``look``, ``wrong`` or ``cannot tell``.
-    words : str
-        The answer.
-    evidence : dict
-        Numbers that it rests on, by what they are.
-    advice : str
-        What to do, or what would let it tell.
-    """
-
-    about: str
-    light: str
-    words: str
-    evidence: dict
-    advice: str = ""
-
-
-class Examined(NamedTuple):
-    """A recording, examined.
-
-    Attributes
-    ----------
-    name : str
-    verdicts : list of Verdict
-    time : array of shape ``(n,)``
-    rates, forces, field : arrays of shape ``(n, 3)`` or None
-        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity,
-        and multiples of the field's own length.
-    orientation : tuple or None
-        Times, and the file's orientations as ``B_C_N``.
-    judgements : list of Judgement
-    still : list of Stretch
-    facts : dict
-        What was found, as numbers: assignments, scale, bias, offset, shape.
-    """
-
-    name: str
-    verdicts: list
-    time: np.ndarray
-    rates: np.ndarray | None
-    forces: np.ndarray | None
-    field: np.ndarray | None
-    orientation: tuple | None
-    judgements: list
-    still: list
-    facts: dict
-
-    def light(self, about):
-        """The light of one verdict, or ``cannot tell``."""
-        return next((verdict.light for verdict in self.verdicts if verdict.about == about), UNKNOWN)
-
-    def __str__(self):
-        from .report import as_text
-
-        return as_text(self)
-
-
-def examine(source, name=None, rate=None, judged=True, progress=None):
+def examine(
+    source: Source,
+    name: str | None = None,
+    rate: float | None = None,
+    judged: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> Examined:
     """Put a recording on the bench.
 
     Parameters
@@ -133,9 +85,12 @@ def examine(source, name=None, rate=None, judged=True, progress=None):
 class _Bench:
     """The questions, in the order in which one needs the answers of others."""
 
-    def __init__(self, content, name):
+    def __init__(self, content: Content, name: str) -> None:
         self.content, self.name = content, name.splitlines()[0][:80] if "\n" in name else name
-        self.verdicts, self.facts, self.judgements, self.still = [], {}, [], []
+        self.verdicts: list[Verdict] = []
+        self.facts: Facts = {}
+        self.judgements: list[Judgement] = []
+        self.still: list[Stretch] = []
         groups = content.groups
         first = next(
             groups[kind]
@@ -149,14 +104,24 @@ class _Bench:
             if kind in groups
         }
         self.rate = 0.0 if content.counted else float(1 / max(np.median(np.diff(self.time)), 1e-9))
-        self.rates = self.forces = self.field = self.oriented = None
+        self.rates: Array | None = None
+        self.forces: Array | None = None
+        self.field: Array | None = None
+        self.oriented: tuple[Array, Array] | None = None
 
-    def say(self, about, light, words, evidence=None, advice=""):
-        self.verdicts.append(Verdict(about, light, words, evidence or {}, advice))
+    def say(
+        self,
+        about: str,
+        light: str,
+        words: str,
+        evidence: Mapping[str, object] | None = None,
+        advice: str = "",
+    ) -> None:
+        self.verdicts.append(Verdict(about, light, words, dict(evidence or {}), advice))
 
     # --- what is in it --------------------------------------------------------------------------
 
-    def clock(self):
+    def clock(self) -> None:
         groups, time = self.content.groups, self.time
         for remark in self.content.remarks:
             self.say("rows", YELLOW, remark)
@@ -250,7 +215,7 @@ class _Bench:
 
     # --- the gyroscope --------------------------------------------------------------------------
 
-    def gyroscope(self):
+    def gyroscope(self) -> None:
         if "gyroscope" not in self.raw:
             self.say("gyroscope", UNKNOWN, "there is none in the file")
             return
@@ -328,7 +293,6 @@ class _Bench:
                 {"95 %": float(fast)},
                 "Turn it about all axes.",
             )
-        self.unit = unit
         self.facts["unit of the gyroscope"] = unit
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
         if most > 10_000:
@@ -339,9 +303,9 @@ class _Bench:
             self.say(
                 "size of the gyroscope", RED, words, {}, "Is it another column, or another unit?"
             )
-        self._axes(fits, raw * unit, usual * unit)
+        self._axes(fits, raw * unit)
 
-    def _quiet(self, raw):
+    def _quiet(self, raw: Array) -> slice | None:
         """Samples in which the numbers of a gyroscope vary least, whatever their unit."""
         size = (
             max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6)))
@@ -357,7 +321,7 @@ class _Bench:
         best = int(spread.argmin())
         return slice(best * size, (best + 1) * size)
 
-    def _rate(self, fit, said):
+    def _rate(self, fit: Fit | None, said: str) -> None:
         if fit is None or fit.margin < BELIEVED or not said:
             self.say("rate", UNKNOWN, "the turns do not tell it", {}, "Name it: --rate 100.")
             return
@@ -374,11 +338,10 @@ class _Bench:
         )
         self.facts["rate"] = float(rate)
 
-    def _axes(self, fits, rates, usual):
+    def _axes(self, fits: Mapping[str, Fit], rates: Array) -> None:
         """Bring the gyroscope into the axes of the accelerometer, if they differ, and find its
         scale and bias.
         """
-        reference = "accelerometer" if fits.get("accelerometer") is not None else None
         fit = fits.get("accelerometer")
         plain = np.eye(3)
         if fit is not None and fit.margin > BELIEVED:
@@ -400,7 +363,7 @@ class _Bench:
                     f"Take ({written(best)}) of the gyroscope for its x, y, z.",
                 )
             self.facts["axes of the gyroscope"] = best
-            rates, usual = rates @ best.T, best @ usual
+            rates = rates @ best.T
         elif fit is not None:
             ways = [written(one) for one in ASSIGNMENTS[np.argsort(fit.shares)[:3]]]
             self.say(
@@ -410,12 +373,11 @@ class _Bench:
                 {"margin": round(fit.margin, 2)},
                 "Turn the instrument slowly about all three axes.",
             )
-        self.reference, self.fits = reference, fits
         self.rates = rates
         self.still = stretches(self.time, rates)
-        self._scale_and_bias(usual)
+        self._scale_and_bias()
 
-    def _scale_and_bias(self, usual):
+    def _scale_and_bias(self) -> None:
         lying = [one for one in self.still if one.still]
         held = [one for one in self.still if not one.still]
         seconds = sum(self.time[one.last - 1] - self.time[one.first] for one in lying)
@@ -536,7 +498,7 @@ class _Bench:
         if scale != 1.0:
             self.still = stretches(self.time, self.rates)
 
-    def _noise(self, one):
+    def _noise(self, one: Stretch) -> None:
         """What the Allan deviation of the longest still stretch says."""
         step = float(np.median(np.diff(self.time)))
         times, deviations = allan_deviation(np.degrees(self.rates[one.first : one.last]), step)
@@ -566,7 +528,7 @@ class _Bench:
 
     # --- the accelerometer ----------------------------------------------------------------------
 
-    def accelerometer(self):
+    def accelerometer(self) -> None:
         if "accelerometer" not in self.raw:
             self.say("accelerometer", UNKNOWN, "there is none in the file")
             return
@@ -620,7 +582,7 @@ class _Bench:
 
     # --- the magnetometer -----------------------------------------------------------------------
 
-    def magnetometer(self):
+    def magnetometer(self) -> None:
         if "magnetometer" not in self.raw:
             return
         raw = self.raw["magnetometer"]
@@ -775,7 +737,7 @@ class _Bench:
             else "Something of iron was near for a while: leave the field out then.",
         )
 
-    def _unevenness(self, field):
+    def _unevenness(self, field: Array) -> float:
         """By how much the length of a field varies, second by second, but for its wildest
         moments.
         """
@@ -784,7 +746,7 @@ class _Bench:
         smooth = [np.median(part) for part in np.array_split(own, max(4, len(own) // per_second))]
         return float(np.percentile(smooth, 97) - np.percentile(smooth, 3))
 
-    def _dips(self, values):
+    def _dips(self, values: Array) -> tuple[float, float] | None:
         """Usual dip of a field in the still poses, and by how much it varies, degrees."""
         if self.forces is None or len(self.still) < 3:
             return None
@@ -797,7 +759,7 @@ class _Bench:
 
     # --- the orientation ------------------------------------------------------------------------
 
-    def orientation(self):
+    def orientation(self) -> None:
         groups = self.content.groups
         if self.rates is None:
             return
@@ -824,7 +786,13 @@ class _Bench:
                 continue
             self._reading(kind, group, candidates, found)
 
-    def _reading(self, kind, group, candidates, found):
+    def _reading(
+        self,
+        kind: str,
+        group: Group,
+        candidates: Mapping[str, Array],
+        found: Sequence[Reading],
+    ) -> None:
         best = found[0].disagreement
         equal = [one for one in found if one.disagreement < best * 1.02 + 0.003]
         other = next((one for one in found if one.disagreement > best * 1.02 + 0.003), found[-1])
@@ -898,7 +866,7 @@ class _Bench:
                 advice.strip(),
             )
 
-    def _level(self, time, matrices):
+    def _level(self, time: Array, matrices: Array) -> tuple[float | None, int | None, bool]:
         """How nearly up is along an axis of the ground, which, and whether against it."""
         if self.forces is None:
             return None, None, False
@@ -912,7 +880,7 @@ class _Bench:
 
     # --- the filter -----------------------------------------------------------------------------
 
-    def filter(self, progress):
+    def filter(self, progress: Callable[[float], None] | None) -> None:
         if self.rates is None or self.forces is None or self.content.counted:
             self.say("filter", UNKNOWN, "it needs a gyroscope and an accelerometer, and a clock")
             return
@@ -981,7 +949,7 @@ class _Bench:
         }
         self.say("filter", light, words, evidence, advice)
 
-    def examined(self):
+    def examined(self) -> Examined:
         return Examined(
             self.name,
             self.verdicts,
@@ -996,7 +964,7 @@ class _Bench:
         )
 
 
-def _by_lengths(raw):
+def _by_lengths(raw: Array) -> FieldFit | None:
     """A magnetometer's offset and shape from the lengths alone, if they are much the better for
     it.
     """
@@ -1020,14 +988,14 @@ def _by_lengths(raw):
     )
 
 
-def _at(time, source, values):
+def _at(time: Array, source: Array, values: Array) -> Array:
     """Values at other times, between samples along a straight line."""
     if len(source) == len(time) and np.allclose(source, time, atol=1e-9):
         return values
     return np.stack([np.interp(time, source, column) for column in values.T], axis=-1)
 
 
-def _said_unit(names):
+def _said_unit(names: Sequence[str]) -> str:
     text = " ".join(names).lower()
     if "rad" in text:
         return "mrad/s" if "mrad" in text else "rad/s"
@@ -1036,7 +1004,7 @@ def _said_unit(names):
     return ""
 
 
-def _centre(field):
+def _centre(field: Array) -> Array:
     """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values, or
     zero.
     """
@@ -1047,27 +1015,27 @@ def _centre(field):
     return centre if ways[0] > 0.03 and spread.std() < 0.3 * radius else np.zeros(3)
 
 
-def _sphere(points):
+def _sphere(points: Array) -> tuple[Array, float]:
     """Middle and radius of the sphere nearest to points."""
     rows = np.concatenate([2 * points, np.ones((len(points), 1))], axis=1)
     solution, *_ = np.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)
     return solution[:3], float(np.sqrt(max(solution[3] + (solution[:3] ** 2).sum(), 0.0)))
 
 
-def _explained(points, centre):
+def _explained(points: Array, centre: Array) -> float:
     """The share of the unevenness of lengths that goes when they are counted from the middle."""
     before, after = (np.linalg.norm(values, axis=1).std() for values in (points, points - centre))
     return max(0.0, 1 - after / max(before, 1e-12))
 
 
-def _matrices(candidates, reading):
+def _matrices(candidates: Mapping[str, Array], reading: Reading) -> Array:
     """``B_C_N``, the body taken along the gyroscope's axes."""
     dcms = candidates[reading.order]
     dcms = dcms.swapaxes(-1, -2) if reading.conjugate else dcms
     return reading.mounting.T @ dcms
 
 
-def _angle_readings(group):
+def _angle_readings(group: Group) -> dict[str, Array]:
     """Three angles as orientations: which is which, about which axes, in degrees or radians."""
     degrees = np.abs(group.values).max() > 6.5
     values = np.radians(group.values) if degrees else group.values
@@ -1089,7 +1057,9 @@ def _angle_readings(group):
     return found
 
 
-def _parts_to_judge(time, rates, longest=60.0, count=3):
+def _parts_to_judge(
+    time: Array, rates: Array, longest: float = 60.0, count: int = 3
+) -> list[tuple[int, int]]:
     """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle
     parts.
     """

@@ -1,7 +1,10 @@
 """What ``orientation recording FILE`` does."""
 
+from __future__ import annotations
+
 import sys
 from pathlib import Path
+from typing import Protocol
 
 from .bench import examine
 from .report import as_csv, as_html
@@ -9,11 +12,22 @@ from .report import as_csv, as_html
 BAD_INPUT = 3
 
 
-def run(chosen):
+class Chosen(Protocol):
+    """What the command was asked for."""
+
+    files: list[str | Path]
+    rate: float | None
+    quick: bool
+    html: Path | None
+    csv: Path | None
+    convention: str
+
+
+def run(chosen: Chosen) -> int:
     """Examine a recording, print what was found, and write what was asked for."""
     shown = sys.stderr.isatty() and not chosen.quick
 
-    def progress(share):
+    def progress(share: float) -> None:
         print(
             f"\rfilter {'#' * round(30 * share):30} {share:4.0%}",
             end="",
@@ -25,15 +39,15 @@ def run(chosen):
         source = chosen.files if len(chosen.files) > 1 else chosen.files[0]
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
-        name = ", ".join(Path(one).name for one in chosen.files)
-        found = examine(source, name, chosen.rate, not chosen.quick, progress if shown else None)
+        name = ", ".join(Path(file).name for file in chosen.files)
+        examined = examine(source, name, chosen.rate, not chosen.quick, progress if shown else None)
         if shown:
             print(f"\r{'':45}\r", end="", file=sys.stderr)
-        print(found)
+        print(examined)
         if chosen.html:
-            chosen.html.write_text(as_html(found), "utf8")
+            chosen.html.write_text(as_html(examined), "utf8")
         if chosen.csv:
-            chosen.csv.write_text(as_csv(found, chosen.convention), "utf8")
+            chosen.csv.write_text(as_csv(examined, chosen.convention), "utf8")
     except (ValueError, OSError) as error:
         print(f"orientation: {error}", file=sys.stderr)
         return BAD_INPUT

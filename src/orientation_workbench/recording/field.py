@@ -2,11 +2,16 @@
 gyroscope says it turns.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from .motion import pieces, steps_of, turned
+
+if TYPE_CHECKING:
+    from .table import Array
 
 
 class FieldFit(NamedTuple):
@@ -32,12 +37,12 @@ class FieldFit(NamedTuple):
         Longest over shortest axis of the rest.
     """
 
-    shape: np.ndarray
-    offset: np.ndarray
+    shape: Array
+    offset: Array
     strength: float
     uncertainty: float
-    fields: np.ndarray
-    axes: np.ndarray
+    fields: Array
+    axes: Array
     stretch: float
 
 
@@ -56,13 +61,13 @@ class EllipsoidFit(NamedTuple):
         worst.
     """
 
-    shape: np.ndarray
-    offset: np.ndarray
+    shape: Array
+    offset: Array
     strength: float
     uncertainty: float
 
 
-def fit_ellipsoid(values, most=0.1):
+def fit_ellipsoid(values: Array, most: float = 0.1) -> EllipsoidFit | None:
     """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
 
     First the ten coefficients of the quadric nearest to the values (in the book
@@ -154,7 +159,7 @@ def fit_ellipsoid(values, most=0.1):
     return EllipsoidFit(shape / size, middle + scale * centre, float(scale / size), uncertainty)
 
 
-def fit_field(time, rates, field, seconds=0.25):
+def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) -> FieldFit | None:
     """Fit offset and shape of a magnetometer.
 
     Parameters

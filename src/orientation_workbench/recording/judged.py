@@ -2,7 +2,10 @@
 backwards.
 """
 
-from typing import NamedTuple
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -10,10 +13,14 @@ from orientation import MultiplicativeKalmanFilter, dcm_from_two_directions
 
 from .motion import steps_of, to_rotation_vectors, turned
 
+if TYPE_CHECKING:
+    from .motion import Stretch
+    from .table import Array
+
 UP = np.array([0.0, 0, 1])
 
 
-def chi_square_bounds(freedom, share=0.95):
+def chi_square_bounds(freedom: int, share: float = 0.95) -> Array:
     """Bounds between which the mean of ``freedom`` squares of standard normal numbers lies (Wilson
     and Hilferty).
 
@@ -81,18 +88,18 @@ class Judgement(NamedTuple):
     last: float
     claimed: float
     found: float
-    heading: tuple | None
-    squares: dict
-    bounds: dict
-    likeness: dict
-    held_out: dict
-    times: np.ndarray
-    dcms: np.ndarray
-    apart: np.ndarray
-    claims: np.ndarray
+    heading: tuple[float, float] | None
+    squares: dict[str, float]
+    bounds: dict[str, Array]
+    likeness: dict[str, float]
+    held_out: dict[str, float]
+    times: Array
+    dcms: Array
+    apart: Array
+    claims: Array
 
 
-def too_sure(judgements):
+def too_sure(judgements: Sequence[Judgement]) -> tuple[float, float]:
     """How many times as large as claimed the doubt is that the data give, and the innovations'
     squares; above 5 is red.
 
@@ -114,7 +121,7 @@ def too_sure(judgements):
     return float(max(found / max(claimed, 1e-6) for claimed, found in claims)), float(max(squares))
 
 
-def _start(forces, field):
+def _start(forces: Array, field: Array | None) -> Array:
     up = forces.mean(axis=0)
     if field is None:
         other = np.eye(3)[np.abs(up).argmin()]
@@ -126,7 +133,9 @@ def _start(forces, field):
     return dcm_from_two_directions([up, other], [[0, 0, 1], [1, 0, 0]])
 
 
-def in_blocks(time, rates, vectors, seconds=0.05):
+def in_blocks(
+    time: Array, rates: Array, vectors: Sequence[Array], seconds: float = 0.05
+) -> tuple[Array, Array, Sequence[Array]]:
     """Fewer and longer steps: each of the same turn, its vectors carried to its end by the
     gyroscope and averaged.
 
@@ -160,7 +169,7 @@ def in_blocks(time, rates, vectors, seconds=0.05):
     return time[ends], means, found
 
 
-def _earth(forces, field):
+def _earth(forces: Array, field: Array) -> Array:
     """The field along a ground with x to magnetic north and z up, by its usual dip against
     gravity.
     """
@@ -189,15 +198,22 @@ class FilterInput(NamedTuple):
         By how much the direction of each force is less certain than at best, radians.
     """
 
-    time: np.ndarray
-    rates: np.ndarray
-    forces: np.ndarray
-    field: np.ndarray | None
+    time: Array
+    rates: Array
+    forces: Array
+    field: Array | None
     noise: Noise
-    doubt: np.ndarray
+    doubt: Array
 
 
-def filter_inputs(time, rates, forces, field, lying, parts=None):
+def filter_inputs(
+    time: Array,
+    rates: Array,
+    forces: Array,
+    field: Array | None,
+    lying: Sequence[Stretch],
+    parts: Sequence[tuple[int, int]] | None = None,
+) -> list[FilterInput]:
     """Make a recording ready for a filter: what its instruments are worth, and how far each force
     is to be believed.
 
@@ -221,7 +237,7 @@ def filter_inputs(time, rates, forces, field, lying, parts=None):
     step, noise = float(np.median(np.diff(time))), ASSUMED
     if lying:
 
-        def spread(values):
+        def spread(values: Array) -> float:
             quiet = [values[one.first : one.last] for one in lying]
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
@@ -261,7 +277,7 @@ def filter_inputs(time, rates, forces, field, lying, parts=None):
     return found
 
 
-def _lasting(values):
+def _lasting(values: Array) -> float:
     """By how much less the samples of something that lasts tell than as many that know nothing of
     each other.
     """
@@ -271,7 +287,9 @@ def _lasting(values):
     return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
-def judge(inputs, progress=None):
+def judge(
+    inputs: Sequence[FilterInput], progress: Callable[[float], None] | None = None
+) -> list[Judgement]:
     """Run a filter forwards, backwards and with one sensor held out, and compare.
 
     Parameters
@@ -326,7 +344,7 @@ def judge(inputs, progress=None):
     no_field = np.array([0, 0, blind, 0])[:runs]
     dcms = np.empty((len(inputs), runs, count, 3, 3))
     covariances = np.empty_like(dcms)
-    said = {"accelerometer": [], "magnetometer": []}
+    said: dict[str, list[tuple[Array, Array]]] = {"accelerometer": [], "magnetometer": []}
     up = np.broadcast_to(UP, (len(inputs), runs, 3))
     if magnetic:
         earth = np.array([_earth(*pair) for pair in zip(forces, field, strict=True)])
@@ -361,9 +379,11 @@ def judge(inputs, progress=None):
     ]
 
 
-def _compared(one, dcms, covariances, told):
+def _compared(
+    given: FilterInput, dcms: Array, covariances: Array, told: Mapping[str, Sequence[Array]]
+) -> Judgement:
     """What the runs on one input say of each other, and the innovations of the first of them."""
-    time, forces, field, count = one.time, one.forces, one.field, len(one.time)
+    time, forces, field, count = given.time, given.forces, given.field, len(given.time)
     difference = to_rotation_vectors(dcms[0] @ dcms[1].swapaxes(-1, -2))
     claim = covariances[0] + covariances[1]
     ups = dcms[0] @ UP
@@ -373,21 +393,24 @@ def _compared(one, dcms, covariances, told):
     claimed_around = np.einsum("ni,nij,nj->n", ups, claim, ups)
     claimed_tilt = np.trace(claim, axis1=1, axis2=2) - claimed_around
 
-    def rms(values):
+    def rms(values: Array) -> float:
         return float(np.degrees(np.sqrt(np.mean(values[inner]) / 2)))
 
-    squares, bounds, alike, held_out = {}, {}, {}, {}
+    squares: dict[str, float] = {}
+    bounds: dict[str, Array] = {}
+    alike: dict[str, float] = {}
+    held_out: dict[str, float] = {}
     for name, (differences, claims) in told.items():
-        one = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
-        squares[name] = float((one**2).sum(axis=1).mean() / 2)
-        bounds[name] = chi_square_bounds(2 * len(one))
-        alike[name] = float((one[1:] * one[:-1]).sum() / (one**2).sum())
+        normal = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
+        squares[name] = float((normal**2).sum(axis=1).mean() / 2)
+        bounds[name] = chi_square_bounds(2 * len(normal))
+        alike[name] = float((normal[1:] * normal[:-1]).sum() / (normal**2).sum())
     if field is not None:
         for name, run, seen in (("magnetometer", 2, field), ("accelerometer", 3, forces)):
-            expected = np.einsum("nij,j->ni", dcms[run, inner], UP) if run == 3 else None
             if run == 3:
-                found = seen[inner] / np.linalg.norm(seen[inner], axis=1, keepdims=True)
-                off = np.linalg.norm(np.cross(found, expected), axis=1)
+                expected = np.einsum("nij,j->ni", dcms[run, inner], UP)
+                measured = seen[inner] / np.linalg.norm(seen[inner], axis=1, keepdims=True)
+                off = np.linalg.norm(np.cross(measured, expected), axis=1)
             else:
                 level = np.einsum("nji,nj->ni", dcms[run, inner], seen[inner])
                 off = np.arctan2(level[:, 1], level[:, 0])

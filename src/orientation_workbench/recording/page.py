@@ -1,11 +1,14 @@
 """A recording judged where a reader drops it: the report, to be looked at and to be kept."""
 
+from __future__ import annotations
+
 import base64
 from html import escape
 from pathlib import Path
 
 from .bench import examine
-from .report import CONVENTIONS, as_csv, as_fragment, as_html, as_text
+from .examined import Examined, as_text
+from .report import CONVENTIONS, as_csv, as_fragment, as_html
 from .table import RecordingError
 
 #: Where the pages put what is dropped.
@@ -27,13 +30,15 @@ class Judged:
         Of the orientation in the corrected recording.
     """
 
-    def __init__(self, examined=None, words="", convention="wxyz"):
+    def __init__(
+        self, examined: Examined | None = None, words: str = "", convention: str = "wxyz"
+    ) -> None:
         self.examined, self.words, self.convention = examined, words, convention
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return self.words if self.examined is None else as_text(self.examined)
 
-    def _repr_html_(self):
+    def _repr_html_(self) -> str:
         if self.examined is None:
             return f"<p>{escape(self.words)}</p>"
         fragment = as_fragment(self.examined)
@@ -58,12 +63,14 @@ class Judged:
         return f"<p>{' · '.join(links)}</p>{fragment}"
 
 
-def _link(name, kind, text, words):
+def _link(name: str, kind: str, text: str, words: str) -> str:
     content = base64.b64encode(text.encode()).decode()
     return f'<a download="{name}" href="data:{kind};base64,{content}">{words}</a>'
 
 
-def judged(source=DROPPED, rate=None, convention="wxyz"):
+def judged(
+    source: str | Path = DROPPED, rate: float | None = None, convention: str = "wxyz"
+) -> Judged:
     """Put what was dropped, or a file of one's own, on the bench.
 
     Parameters
@@ -93,7 +100,7 @@ def judged(source=DROPPED, rate=None, convention="wxyz"):
     files = [path] if path.is_file() else sorted(path.iterdir()) if path.is_dir() else []
     if not files:
         return Judged(words="no recording yet")
-    name = ", ".join(one.name for one in files)
+    name = ", ".join(file.name for file in files)
     try:
         return Judged(examine(files if len(files) > 1 else files[0], name, rate), "", convention)
     except RecordingError as error:

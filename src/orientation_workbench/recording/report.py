@@ -1,43 +1,28 @@
-"""What the bench has found, as a text, as one page, and as the corrected recording."""
+"""What the bench has found, as one page, and as the corrected recording."""
+
+from __future__ import annotations
 
 import io
 import re
 from html import escape
-from textwrap import wrap
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .allan import noise_of
 
-WIDTH = 76  # of a line of the text
-LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike
+
+    from .examined import Examined
+
 #: Ways to write an orientation down, by what the command calls them.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
 
 
-def as_text(examined):
-    """The report as plain text: a line for each verdict, with its evidence and what to do."""
-    lines = [f"{examined.name}"]
-
-    def add(words, first, rest):
-        lines.extend(
-            wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False)
-        )
-
-    for verdict in examined.verdicts:
-        add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
-        if verdict.evidence and verdict.light != "as it should be":
-            add(
-                ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()),
-                "       ",
-                "       ",
-            )
-        if verdict.advice:
-            add(verdict.advice, "  -> ", "     ")
-    return "\n".join(lines)
-
-
-def as_csv(examined, convention="wxyz"):
+def as_csv(examined: Examined, convention: str = "wxyz") -> str:
     """The corrected recording as CSV.
 
     Parameters
@@ -77,26 +62,24 @@ def as_csv(examined, convention="wxyz"):
             names += ["yaw (deg)", "pitch (deg)", "roll (deg)"]
         else:
             names += [f"q{letter}" for letter in convention]
-        found = np.full(
-            (len(examined.time), len(names) - sum(part.shape[1] for part in columns)), np.nan
-        )
-        for one in examined.judgements:
-            inside = np.flatnonzero(
-                (examined.time >= one.times[0]) & (examined.time <= one.times[-1])
-            )
-            dcms = one.dcms[np.searchsorted(one.times, examined.time[inside])]
+        width = len(names) - sum(part.shape[1] for part in columns)
+        orientations = np.full((len(examined.time), width), np.nan)
+        for judgement in examined.judgements:
+            times = judgement.times
+            inside = np.flatnonzero((examined.time >= times[0]) & (examined.time <= times[-1]))
+            dcms = judgement.dcms[np.searchsorted(times, examined.time[inside])]
             if convention == "yaw-pitch-roll":
-                found[inside] = np.degrees(body_fixed_from_dcm(dcms, "zyx"))
+                orientations[inside] = np.degrees(body_fixed_from_dcm(dcms, "zyx"))
             else:
-                found[inside] = np.roll(
+                orientations[inside] = np.roll(
                     quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1
                 )
-        columns.append(found)
+        columns.append(orientations)
     lines = [",".join(f"{value:.9g}" for value in row) for row in np.concatenate(columns, axis=1)]
     return "\n".join([",".join(names), *lines]) + "\n"
 
 
-def as_code(examined):
+def as_code(examined: Examined) -> str:
     """Lines of NumPy that correct a recording of the same instrument as this one was.
 
     They take ``gyroscope``, ``accelerometer`` and ``magnetometer``, arrays of shape ``(n, 3)`` as
@@ -105,7 +88,7 @@ def as_code(examined):
     """
     facts, lines = examined.facts, ["import numpy as np", ""]
 
-    def array(values):
+    def array(values: ArrayLike) -> str:
         return f"np.array({np.asarray(values, float).tolist()})"
 
     if examined.rates is not None and "unit of the gyroscope" in facts:
@@ -131,7 +114,7 @@ def as_code(examined):
     return "\n".join(lines)
 
 
-def as_fragment(examined):
+def as_fragment(examined: Examined) -> str:
     """The report for a page of another's: verdicts, evidence, plots and code."""
     rows = "".join(
         f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td>'
@@ -162,19 +145,19 @@ def as_fragment(examined):
     )
 
 
-def _in_short(examined):
+def _in_short(examined: Examined) -> str:
     """Which lights are not green, the worst first."""
-    found = []
+    lines = []
     for light in ("wrong", "look", "cannot tell"):
         about = list(
             dict.fromkeys(verdict.about for verdict in examined.verdicts if verdict.light == light)
         )
         if about:
-            found.append(f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}.")
-    return " ".join(found) or "All is as it should be."
+            lines.append(f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}.")
+    return " ".join(lines) or "All is as it should be."
 
 
-def as_html(examined, fragment=None):
+def as_html(examined: Examined, fragment: str | None = None) -> str:
     """The report as one page that needs nothing else, and can be kept; ``fragment`` is its body
     where it is made.
     """
@@ -214,28 +197,28 @@ padding: .35rem .6rem .35rem 0; border: 0; border-top: 1px solid #8886; overflow
 """
 
 
-def plots(examined):
+def plots(examined: Examined) -> list[tuple[str, str]]:
     """Pairs of an SVG and of what it shows, in words; none where Matplotlib is missing."""
     try:
         from matplotlib.figure import Figure
     except ImportError:
         return []
-    found = []
+    pictures = []
     few = slice(None, None, max(1, len(examined.time) // 1500))
 
-    def drawing(height):
+    def drawing(height: float) -> tuple[Figure, Axes]:
         figure = Figure(
             figsize=(6.2, height), layout="constrained"
         )  # its words can be read on a telephone
         return figure, figure.subplots()
 
-    def kept(figure, words):
+    def kept(figure: Figure, words: str) -> None:
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None})
         svg = text.getvalue()
         svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
         svg = svg.replace("<svg", f'<svg role="img" aria-label="{escape(words, quote=True)}"', 1)
-        found.append((svg, words))
+        pictures.append((svg, words))
 
     if examined.rates is not None:
         figure, axes = drawing(2.6)
@@ -245,15 +228,15 @@ def plots(examined):
             linewidth=0.8,
             color="#1f5fbf",
         )
-        for one in examined.still:
+        for stretch in examined.still:
             axes.axvspan(
-                examined.time[one.first],
-                examined.time[one.last - 1],
-                color="#2e7d32" if one.still else "#a66300",
+                examined.time[stretch.first],
+                examined.time[stretch.last - 1],
+                color="#2e7d32" if stretch.still else "#a66300",
                 alpha=0.2,
             )
         axes.set(xlabel="time (s)", ylabel="rate (°/s)")
-        still = sum(one.still for one in examined.still)
+        still = sum(stretch.still for stretch in examined.still)
         kept(
             figure,
             f"How fast it turns. Shaded: {still} stretches in which it lies still, "
@@ -319,12 +302,12 @@ def plots(examined):
         )
     if examined.judgements:
         figure, axes = drawing(2.6)
-        for one in examined.judgements:
-            axes.plot(one.times, one.apart, linewidth=0.8, color="#1f5fbf")
-            axes.plot(one.times, one.claims, "--", linewidth=1, color="#c62828")
+        for judgement in examined.judgements:
+            axes.plot(judgement.times, judgement.apart, linewidth=0.8, color="#1f5fbf")
+            axes.plot(judgement.times, judgement.claims, "--", linewidth=1, color="#c62828")
         # At either end a run has seen little, and claims little: that would dwarf the rest.
         usual = np.concatenate(
-            [each for one in examined.judgements for each in (one.apart, one.claims)]
+            [each for judged in examined.judgements for each in (judged.apart, judged.claims)]
         )
         axes.set(
             xlabel="time (s)", ylabel="tilt (°)", ylim=(0, 1.5 * np.percentile(usual, 98) + 1e-3)
@@ -335,4 +318,4 @@ def plots(examined):
             "much they should by "
             "their own claims.",
         )
-    return found
+    return pictures

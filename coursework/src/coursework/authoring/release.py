@@ -297,7 +297,7 @@ def _answer_of(question: AuthoredQuestion) -> str:
     return reading.text or " ".join(MP.nstr(number, 9) for number in numbers)
 
 
-def _demand_answers(name: str, answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
+def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
     """Variants with one answer are one question: what a classmate has found is right for
     everybody.
     """
@@ -490,7 +490,7 @@ def release(
             for (path, *_), more in zip(wanted, found, strict=True):
                 answers[path].append(more)
         for path in paths:
-            _demand_answers(path.name, answers[path])
+            _demand_answers(answers[path])
         _demand_later(
             course, {question: later for one in made for question, later in one.after.items()}
         )

@@ -111,6 +111,11 @@ def entries_of(value: Value) -> list[int]:
     return cast(list[int], value[3])
 
 
+def size_of(value: Value) -> tuple[int, int]:
+    """Rows and columns of a matrix."""
+    return cast(tuple[int, int], tuple(value[1:3]))
+
+
 def by_frame(value: Value) -> dict[str, Value]:
     """The matrices of a reference frame, or the components of a vector, by the other frame."""
     return cast(dict[str, Value], value[-1])

@@ -293,7 +293,7 @@ def grade(
             )
         work = sort_work(notebooks, course, refused)
         _say_whose(work, refused, people, store, show)
-        foreign = _say_foreign(work, course, show)
+        foreign = _say_foreign(work, show)
         _demand_a_class(work, people, student)
         questions = course.questions(
             sorted({one.assignment for one in work}), store.folder / "questions"
@@ -475,7 +475,7 @@ def _say_whose(
                 print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
 
 
-def _say_foreign(work: Sequence[Work], course: Course, show: TextIO) -> list[Foreign]:
+def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     """Say which notebooks say that they are of somebody else than whose they are graded as; give
     these.
     """

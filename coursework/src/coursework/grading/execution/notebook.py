@@ -151,7 +151,7 @@ class Shell:
     def getoutput(self, command: str, *rest: object, **options: object) -> list[str]:
         return []
 
-    def __getattr__(self, name: str) -> Callable[..., None]:
+    def __getattr__(self, name: str) -> object:
         if name.startswith("__"):
             raise AttributeError(name)
         return nothing

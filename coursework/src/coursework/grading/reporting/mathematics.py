@@ -6,9 +6,19 @@ is in an answer is not written here, but shown as text.
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import Any
 
-from ...checking.plain import Plain
+from ...checking.plain import (
+    Node,
+    Plain,
+    Value,
+    by_frame,
+    entries_of,
+    node_of,
+    operands,
+    parts_of,
+    size_of,
+    text_of,
+)
 from .pages import formula
 
 LONGEST = 4_000  # of the TeX of one answer
@@ -44,34 +54,33 @@ def answer_as_mathematics(plain: Plain | None) -> str:
     return found if found.startswith("<math") else ""
 
 
-def _value(value: Sequence[Any], nodes: Sequence[Any]) -> str:
-    kind, *rest = value
-    writer = _Writer(nodes)
+def _value(value: Value, nodes: Sequence[Node]) -> str:
+    kind, writer = value[0], _Writer(nodes)
     if kind == "expression":
-        return writer.node(rest[0], 0)
+        return writer.node(node_of(value), 0)
     if kind == "matrix":
-        rows, columns, entries = rest
+        (rows, columns), entries = size_of(value), entries_of(value)
         if not entries:
             raise NoMathematics
         lines = [entries[row * columns : (row + 1) * columns] for row in range(rows)]
         return _table([[writer.node(entry, 0) for entry in line] for line in lines])
-    if kind == "list" and rest[0] and all(part[0] == "expression" for part in rest[0]):
-        return _table([[writer.node(part[1], 0) for part in rest[0]]])
-    if (
-        kind == "list"
-        and rest[0]
-        and all(
-            part[0] == "list" and part[1] and all(inner[0] == "expression" for inner in part[1])
-            for part in rest[0]
-        )
-    ):
-        return _table([[writer.node(inner[1], 0) for inner in part[1]] for part in rest[0]])
-    if kind == "frame" and len(rest[1]) == 1:
-        ((other, inner),) = rest[1].items()
-        return rf"{{}}^{{{_name(rest[0])}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(
+    if kind == "list" and _are_expressions(parts_of(value)):
+        return _table([[writer.node(node_of(part), 0) for part in parts_of(value)]])
+    if kind == "list" and parts_of(value):
+        rows_of = [parts_of(part) if part[0] == "list" else [] for part in parts_of(value)]
+        if all(map(_are_expressions, rows_of)):
+            return _table([[writer.node(node_of(inner), 0) for inner in row] for row in rows_of])
+    if kind == "frame" and len(by_frame(value)) == 1:
+        ((other, inner),) = by_frame(value).items()
+        return rf"{{}}^{{{_name(text_of(value))}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(
             inner, nodes
         )
     raise NoMathematics
+
+
+def _are_expressions(values: Sequence[Value]) -> bool:
+    """Whether there are some, and each is an expression."""
+    return bool(values) and all(value[0] == "expression" for value in values)
 
 
 def _table(lines: Iterable[Iterable[str]]) -> str:
@@ -97,7 +106,7 @@ def _in_brackets(text: str) -> str:
 
 
 class _Writer:
-    def __init__(self, nodes: Sequence[Any]) -> None:
+    def __init__(self, nodes: Sequence[Node]) -> None:
         self.nodes = nodes
         self.left = LONGEST
 
@@ -108,7 +117,8 @@ class _Writer:
         self.left -= 1
         if self.left <= 0 or depth > 30:
             raise NoMathematics
-        operation, *rest = self.nodes[order]
+        operation = str(self.nodes[order][0])
+        text, children = str(self.nodes[order][-1]), operands(self.nodes[order])
 
         def inner(child: int, binding: int = 0) -> str:
             return self.node(child, binding, depth + 1)
@@ -117,52 +127,51 @@ class _Writer:
             return _in_brackets(text) if around > binding else text
 
         if operation == "symbol":
-            dots = len(rest[0]) - len(rest[0].rstrip("'"))
-            return _name(rest[0].rstrip("'")) + "'" * dots
+            dots = len(text) - len(text.rstrip("'"))
+            return _name(text.rstrip("'")) + "'" * dots
         if operation == "constant":
-            if rest[0] not in CONSTANTS:
+            if text not in CONSTANTS:
                 raise NoMathematics
-            return CONSTANTS[rest[0]]
+            return CONSTANTS[text]
         if operation == "integer":
-            return bracketed(rest[0], 1 if rest[0].startswith("-") else 9)
+            return bracketed(text, 1 if text.startswith("-") else 9)
         if operation == "rational":
-            sign = "-" if rest[0].startswith("-") else ""
-            return bracketed(
-                rf"{sign}\frac{{{rest[0].lstrip('-')}}}{{{rest[1]}}}", 1 if sign else 2
-            )
+            above = str(self.nodes[order][1])
+            sign = "-" if above.startswith("-") else ""
+            return bracketed(rf"{sign}\frac{{{above.lstrip('-')}}}{{{text}}}", 1 if sign else 2)
         if operation == "float":
-            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(rest[0]):.10g}")
+            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(text):.10g}")
             if not found:
                 raise NoMathematics
             power = rf" \cdot 10^{{{int(found[2])}}}" if found[2] else ""
             return bracketed(found[1] + power, 1 if power or found[1].startswith("-") else 9)
         if operation == "Add":
-            text = " + ".join(inner(child, 1) for child in rest).replace("+ -", "- ")
-            return bracketed(text, 0)
+            terms = " + ".join(inner(child, 1) for child in children)
+            return bracketed(terms.replace("+ -", "- "), 0)
         if operation == "Mul":
-            return self.product(rest, around, depth)
+            return self.product(children, around, depth)
         if operation == "Pow":
-            base, exponent = rest
+            base, exponent = children
             if self.nodes[exponent] == ["rational", "1", "2"]:
                 return rf"\sqrt{{{inner(base)}}}"
             if self.nodes[exponent] == ["integer", "-1"]:
                 return bracketed(rf"\frac{{1}}{{{inner(base)}}}", 2)
             return bracketed(rf"{{{inner(base, 3)}}}^{{{inner(exponent)}}}", 2)
         if operation == "Abs":
-            return rf"\left|{inner(rest[0])}\right|"
-        if operation in FUNCTIONS and rest:
-            return FUNCTIONS[operation] + _in_brackets(", ".join(map(inner, rest)))
+            return rf"\left|{inner(children[0])}\right|"
+        if operation in FUNCTIONS and children:
+            return FUNCTIONS[operation] + _in_brackets(", ".join(map(inner, children)))
         raise NoMathematics
 
     def product(self, factors: Sequence[int], around: int, depth: int) -> str:
         above, below = list[str](), list[str]()
         sign = ""
         for factor in factors:
-            operation, *rest = self.nodes[factor]
-            if [operation, *rest] == ["integer", "-1"] and not above:
+            node, children = self.nodes[factor], operands(self.nodes[factor])
+            if node == ["integer", "-1"] and not above:
                 sign = "-"
-            elif operation == "Pow" and self.nodes[rest[1]] == ["integer", "-1"]:
-                below.append(self.node(rest[0], 2 if len(factors) > 2 else 0, depth + 1))
+            elif node[0] == "Pow" and self.nodes[children[1]] == ["integer", "-1"]:
+                below.append(self.node(children[0], 2 if len(factors) > 2 else 0, depth + 1))
             else:
                 above.append(self.node(factor, 2, depth + 1))
         top = r" \, ".join(above) or "1"
