@@ -2,10 +2,12 @@
 
 :func:`examine` takes a file as it came, finds out what is in it, in which units, axes and
 conventions, how wrong its instruments are, and whether a filter that uses them tells the truth
-about itself. Each answer is a :class:`~.bench.Verdict` with its evidence; ``print`` shows them all.
+about itself. Each answer is a :class:`~.examined.Verdict` with its evidence; ``print`` shows them
+all.
 """
 
-from .bench import Examined, Verdict, examine
+from .bench import examine
+from .examined import Examined, Verdict
 from .table import RecordingError
 
 __all__ = ["Examined", "RecordingError", "Verdict", "examine"]

@@ -5,7 +5,7 @@ evidence.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, TypedDict
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from orientation import dcm_from_body_fixed
 
 from .allan import allan_deviation, noise_of
 from .content import DEGREES, places_by_name, read_content, unit_of_field, unit_of_gravity
+from .examined import GREEN, RED, UNKNOWN, YELLOW, Examined, Verdict
 from .field import FieldFit, fit_ellipsoid, fit_field
 from .judged import filter_inputs, judge, too_sure
 from .motion import (
@@ -27,101 +28,13 @@ from .motion import (
 
 if TYPE_CHECKING:
     from .content import Content, Group
+    from .examined import Facts
     from .judged import Judgement
     from .motion import Fit, Reading, Stretch
     from .table import Array, Source
 
-#: What a light says.
-GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
 #: Above this margin the best of 48 assignments is believed.
 BELIEVED = 1.3
-
-
-#: What was found, as numbers: what corrects a recording of the same instrument.
-Facts = TypedDict(
-    "Facts",
-    {
-        "rate": float,
-        "unit of the gyroscope": float,
-        "axes of the gyroscope": "Array",
-        "scale of the gyroscope": float,
-        "bias of the gyroscope": "Array",
-        "multiplied": float,
-        "Allan deviation": "tuple[Array, Array]",
-        "angle random walk": "Array",
-        "gravity": float,
-        "offset of the accelerometer": "Array",
-        "axes of the magnetometer": "Array",
-        "offset of the magnetometer": "Array",
-        "shape of the magnetometer": "Array",
-        "strength of the field": float,
-        "convention of the quaternion": "Reading",
-        "convention of the angles": "Reading",
-    },
-    total=False,
-)
-
-
-class Verdict(NamedTuple):
-    """An answer of the bench.
-
-    Attributes
-    ----------
-    about : str
-    light : str
-        ``as it should be``, ``look``, ``wrong`` or ``cannot tell``.
-    words : str
-        The answer.
-    evidence : dict
-        Numbers that it rests on, by what they are.
-    advice : str
-        What to do, or what would let it tell.
-    """
-
-    about: str
-    light: str
-    words: str
-    evidence: dict[str, object]
-    advice: str = ""
-
-
-class Examined(NamedTuple):
-    """A recording, examined.
-
-    Attributes
-    ----------
-    name : str
-    verdicts : list of Verdict
-    time : array of shape ``(n,)``
-    rates, forces, field : arrays of shape ``(n, 3)`` or None
-        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity,
-        and multiples of the field's own length.
-    orientation : tuple or None
-        Times, and the file's orientations as ``B_C_N``.
-    judgements : list of Judgement
-    still : list of Stretch
-    facts : Facts
-    """
-
-    name: str
-    verdicts: list[Verdict]
-    time: Array
-    rates: Array | None
-    forces: Array | None
-    field: Array | None
-    orientation: tuple[Array, Array] | None
-    judgements: list[Judgement]
-    still: list[Stretch]
-    facts: Facts
-
-    def light(self, about: str) -> str:
-        """The light of one verdict, or ``cannot tell``."""
-        return next((verdict.light for verdict in self.verdicts if verdict.about == about), UNKNOWN)
-
-    def __str__(self) -> str:
-        from .report import as_text
-
-        return as_text(self)
 
 
 def examine(

@@ -6,8 +6,9 @@ import base64
 from html import escape
 from pathlib import Path
 
-from .bench import Examined, examine
-from .report import CONVENTIONS, as_csv, as_fragment, as_html, as_text
+from .bench import examine
+from .examined import Examined, as_text
+from .report import CONVENTIONS, as_csv, as_fragment, as_html
 from .table import RecordingError
 
 #: Where the pages put what is dropped.

@@ -1,11 +1,10 @@
-"""What the bench has found, as a text, as one page, and as the corrected recording."""
+"""What the bench has found, as one page, and as the corrected recording."""
 
 from __future__ import annotations
 
 import io
 import re
 from html import escape
-from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,34 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike
 
-    from .bench import Examined
+    from .examined import Examined
 
-WIDTH = 76  # of a line of the text
-LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
 #: Ways to write an orientation down, by what the command calls them.
 CONVENTIONS = ("wxyz", "xyzw", "yaw-pitch-roll")
-
-
-def as_text(examined: Examined) -> str:
-    """The report as plain text: a line for each verdict, with its evidence and what to do."""
-    lines = [f"{examined.name}"]
-
-    def add(words: str, first: str, rest: str) -> None:
-        lines.extend(
-            wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False)
-        )
-
-    for verdict in examined.verdicts:
-        add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
-        if verdict.evidence and verdict.light != "as it should be":
-            add(
-                ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()),
-                "       ",
-                "       ",
-            )
-        if verdict.advice:
-            add(verdict.advice, "  -> ", "     ")
-    return "\n".join(lines)
 
 
 def as_csv(examined: Examined, convention: str = "wxyz") -> str:

@@ -18,15 +18,12 @@ import math
 import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..checking.plugins import packages, plugins
-
-if TYPE_CHECKING:
-    from .attack import At
 
 Values: TypeAlias = NDArray[np.float64]
 #: What the data that a value uses is called: a number whose bits stand for it, or one for each.
@@ -72,6 +69,19 @@ ROWS = re.compile(r"(?:^\|.*\|[ ]*\n?){2,}", re.M)
 AXES = re.compile(r"\b([xyz])[-–, ]*([xyz])[-–, ]*([xyz])\b")
 #: Numbers that stand in no text.
 CONSTANTS = (0, 1, 2, np.pi, 3, np.sqrt(2), np.sqrt(3), 4, 60, 90, 180, 360, 1000, 9.81)
+
+
+class Symbols(Protocol):
+    """The symbols of a question, and the values of each at its points."""
+
+    @property
+    def points(self) -> Sequence[object]: ...
+
+    @property
+    def symbols(self) -> Sequence[str]: ...
+
+    @property
+    def values(self) -> Mapping[str, Values]: ...
 
 
 class Step(NamedTuple):
@@ -192,7 +202,7 @@ OF_ENTRIES = (np.sum, np.mean, np.max, np.min, np.median, np.prod, np.std, len, 
 
 
 def beginning(
-    at: "At", given: Mapping[str, object], text: str, code: str, wanted: Sequence[Shape]
+    at: Symbols, given: Mapping[str, object], text: str, code: str, wanted: Sequence[Shape]
 ) -> Pool:
     """The pool of what a student holds: symbols, the numbers of a variant, of the text and of the
     open code.

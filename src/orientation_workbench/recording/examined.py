@@ -1,0 +1,121 @@
+"""What the bench has found, and the same as a text."""
+
+from __future__ import annotations
+
+from textwrap import wrap
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
+
+if TYPE_CHECKING:
+    from .judged import Judgement
+    from .motion import Reading, Stretch
+    from .table import Array
+
+#: What a light says.
+GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
+WIDTH = 76  # of a line of the text
+LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}
+#: What was found, as numbers: what corrects a recording of the same instrument.
+Facts = TypedDict(
+    "Facts",
+    {
+        "rate": float,
+        "unit of the gyroscope": float,
+        "axes of the gyroscope": "Array",
+        "scale of the gyroscope": float,
+        "bias of the gyroscope": "Array",
+        "multiplied": float,
+        "Allan deviation": "tuple[Array, Array]",
+        "angle random walk": "Array",
+        "gravity": float,
+        "offset of the accelerometer": "Array",
+        "axes of the magnetometer": "Array",
+        "offset of the magnetometer": "Array",
+        "shape of the magnetometer": "Array",
+        "strength of the field": float,
+        "convention of the quaternion": "Reading",
+        "convention of the angles": "Reading",
+    },
+    total=False,
+)
+
+
+class Verdict(NamedTuple):
+    """An answer of the bench.
+
+    Attributes
+    ----------
+    about : str
+    light : str
+        ``as it should be``, ``look``, ``wrong`` or ``cannot tell``.
+    words : str
+        The answer.
+    evidence : dict
+        Numbers that it rests on, by what they are.
+    advice : str
+        What to do, or what would let it tell.
+    """
+
+    about: str
+    light: str
+    words: str
+    evidence: dict[str, object]
+    advice: str = ""
+
+
+class Examined(NamedTuple):
+    """A recording, examined.
+
+    Attributes
+    ----------
+    name : str
+    verdicts : list of Verdict
+    time : array of shape ``(n,)``
+    rates, forces, field : arrays of shape ``(n, 3)`` or None
+        Corrected: along the axes of the accelerometer, in radians per second, multiples of gravity,
+        and multiples of the field's own length.
+    orientation : tuple or None
+        Times, and the file's orientations as ``B_C_N``.
+    judgements : list of Judgement
+    still : list of Stretch
+    facts : Facts
+    """
+
+    name: str
+    verdicts: list[Verdict]
+    time: Array
+    rates: Array | None
+    forces: Array | None
+    field: Array | None
+    orientation: tuple[Array, Array] | None
+    judgements: list[Judgement]
+    still: list[Stretch]
+    facts: Facts
+
+    def light(self, about: str) -> str:
+        """The light of one verdict, or ``cannot tell``."""
+        return next((verdict.light for verdict in self.verdicts if verdict.about == about), UNKNOWN)
+
+    def __str__(self) -> str:
+        return as_text(self)
+
+
+def as_text(examined: Examined) -> str:
+    """The report as plain text: a line for each verdict, with its evidence and what to do."""
+    lines = [f"{examined.name}"]
+
+    def add(words: str, first: str, rest: str) -> None:
+        lines.extend(
+            wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False)
+        )
+
+    for verdict in examined.verdicts:
+        add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
+        if verdict.evidence and verdict.light != "as it should be":
+            add(
+                ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()),
+                "       ",
+                "       ",
+            )
+        if verdict.advice:
+            add(verdict.advice, "  -> ", "     ")
+    return "\n".join(lines)
