@@ -10,7 +10,7 @@ survives, and is printed: a test is missing, or it is no change. Those that are 
     python -m tools.mutants orientation [MODULE...] [--jobs 2]
     python -m tools.mutants coursework.checking [MODULE...]
 
-Texts with spaces are left as they are: no test asks for exact wording.
+Texts with spaces, or in pieces, are left as they are: no test asks for exact wording.
 """
 
 import __future__
@@ -34,6 +34,7 @@ from typing import NamedTuple
 import coverage
 import libcst as cst
 import pytest
+from libcst import matchers
 from libcst.metadata import MetadataWrapper, PositionProvider
 from mutmut.mutation.file_mutation import create_mutations
 
@@ -98,11 +99,17 @@ def mutants_of(path, module):
         if isinstance(statement, cst.ClassDef)
         for method in statement.body.body
     }
+    pieces = {
+        id(piece)
+        for text in matchers.findall(tree, matchers.ConcatenatedString())
+        for piece in (text.left, text.right)
+    }
     lines = MetadataWrapper(tree, unsafe_skip_copy=True).resolve(PositionProvider)
     statements = _statements(text)
     for mutation in mutations:
         function, node = mutation.contained_by_top_level_function, mutation.original_node
-        if not isinstance(function, cst.FunctionDef) or _is_wording(node):
+        wording = isinstance(node, cst.SimpleString) and (" " in node.value or id(node) in pieces)
+        if not isinstance(function, cst.FunctionDef) or wording:
             continue
         owner = owners.get(id(function))
         changed = function.deep_replace(node, mutation.mutated_node)
@@ -116,10 +123,6 @@ def mutants_of(path, module):
             statements(place.start.line),
             _difference(before, after),
         )
-
-
-def _is_wording(node):
-    return isinstance(node, cst.SimpleString) and " " in node.value
 
 
 def _source(function, owner):
