@@ -170,8 +170,12 @@ class Drawing(Words):
         size=20,
         kind="",
     ):
-        """Draw an arrow, as :meth:`Words.arrow`; one with a ``bow`` curves to its left by so many
-        pixels, and carries its label at its middle.
+        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
+        the tip.
+
+        An arrow that points straight at the reader is a circle with a dot, one that points straight
+        away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
+        and carries its label at its middle.
         """
         if not bow:
             return super().arrow(end, start, colour, label, shift, size, kind)
