@@ -528,7 +528,7 @@ TAUGHT = {
     ),
     "inverse matrix": (
         _THE_WAY_BACK,
-        ("exercises/orientation-with-sympy.html#the-maker-s-table", "The maker's table"),
+        ("exercises/orientation-with-sympy.html#two-makers-tables", "Two makers' tables"),
     ),
     "inverse quaternion": (
         _FOUR_QUESTIONS,
