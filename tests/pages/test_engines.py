@@ -30,7 +30,8 @@ def compare(engine, site, name):
     """
     engine.go(site + name)
     engine.run("() => { localStorage.clear(); sessionStorage.clear(); }")
-    before = engine.run(RESULTS)
+    # What a check says where nobody has answered yet is shown only once somebody has asked it.
+    before = [result.replace(' hidden=""', "") for result in engine.run(RESULTS)]
     engine.run(RUN_ALL)
     words = engine.wait(IS_DONE)
     assert "ran." in words or "there already" in words, words
