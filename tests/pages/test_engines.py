@@ -2,7 +2,7 @@
 
 import pytest
 from engines import ENGINES
-from test_live import PAGES, PLAYABLE, QUIET, RESULTS, kinds
+from test_live import PAGES, PLAYABLE, QUIET, RESULTS, all_shown, kinds
 from test_servers import SIZE
 from test_site import stand_as_katex_sets_them
 
@@ -30,8 +30,7 @@ def compare(engine, site, name):
     """
     engine.go(site + name)
     engine.run("() => { localStorage.clear(); sessionStorage.clear(); }")
-    # What a check says where nobody has answered yet is shown only once somebody has asked it.
-    before = [result.replace(' hidden=""', "") for result in engine.run(RESULTS)]
+    before = all_shown(engine.run(RESULTS))
     engine.run(RUN_ALL)
     words = engine.wait(IS_DONE)
     assert "ran." in words or "there already" in words, words

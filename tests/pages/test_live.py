@@ -228,12 +228,16 @@ def test_every_notebook_is_a_page_with_code():
     }  # whose figures need no code on the page
 
 
+def all_shown(results):
+    """What a check says where nobody has answered yet is shown only once somebody has asked it."""
+    return [result.replace(' hidden=""', "") for result in results]
+
+
 def equal_the_stored_ones(page, name, before, after, notes):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not
     run.
     """
-    # What a check says where nobody has answered yet is shown only once somebody has asked it.
-    before = [result.replace(' hidden=""', "") for result in before]
+    before = all_shown(before)
     for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
         if not kind["needs"]:
             assert after[number - 1] == before[number - 1], f"cell {number}"
