@@ -67,6 +67,13 @@ def test_signs_that_look_alike_are_one_unit(text, same):
         ("J/\u00b0F", "\u00b0F"),
         ("m & s", " & s"),
         ("furlong", "furlong"),
+        ("m& 45678901234567890123", "& 456789012345678901"),
+        ("m abcdefghijklmnopqrstuvwxyz", "abcdefghijklmnopqrst"),
+        ("m^13", "m^13"),
+        ("s m^-13", "m^-13"),
+        ("kh", "kh"),
+        ("xm", "xm"),
+        ("\u00b0C m", "\u00b0C"),
     ],
 )
 def test_what_is_no_unit_is_quoted(text, quoted):
@@ -78,3 +85,30 @@ def test_what_is_no_unit_is_quoted(text, quoted):
 def test_an_angle_times_a_unit_is_no_temperature():
     assert unit("\u00b0 C").exponents == unit("C").exponents
     assert len(unit("rad").exponents) == len(BASE)
+
+
+@pytest.mark.parametrize(
+    ("text", "size", "exponents"),
+    [
+        ("", "1", ()),
+        ("1", "1", ()),
+        ("m^12/s^-12", "1", (12, 0, 12)),
+        ("kg**2 m\u207b\u00b2", "1", (-2, 2)),
+        ("mg", "1e-6", (0, 1)),
+        ("mm2*h", "0.0036", (2, 0, 1)),
+        ("cm^(3)/min", str(sm.Rational(1, 60_000_000).n(45)), (3, 0, -1)),
+        ("N/m s", "1", (0, 1, -1)),
+        ("m/s/s", "1", (1, 0, -2)),
+        ("J/(kg K) m", "1", (3, 0, -2, 0, -1)),
+        ("m/(s A)/(kg K)", "1", (1, -1, -1, -1, -1)),
+        ("(m s)/A", "1", (1, 0, 1, -1)),
+        ("%/cd mol", "0.01", (0, 0, 0, 0, 0, 1, -1)),
+        ("\u00b0", str((sm.pi / 180).n(45)), ()),
+        ("turn", str((2 * sm.pi).n(45)), ()),
+    ],
+)
+def test_a_unit_is_read_as_its_size_and_its_exponents(text, size, exponents):
+    found = unit(text)
+    whole = (*exponents, *[0] * (len(BASE) - len(exponents)))
+    assert str(found.exponents) == str(whole)  # whole numbers, as is said of them
+    assert abs(found.size / evaluate.MP.mpf(size) - 1) < evaluate.MP.mpf(10) ** -38

@@ -9,7 +9,7 @@ from dataclasses import replace
 from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
 from .progress import Entry, Progress
-from .question import Locker, Question, Sealed
+from .question import Locker, Place, Question
 from .questions import (
     OTHER_NUMBERS,
     code_text,
@@ -77,12 +77,12 @@ def check(name: str, answer: object) -> Reply:
         reply.solution = solution_on(sealed, reply.opened.solution)
     entry = _remember(name, student, sealed.question, reply)
     if reply.outcome == "wrong" and reply.note != OTHER_NUMBERS:
-        _show_next_hint(sealed, student, reply, entry)
+        _show_next_hint(student, reply, entry)
     if reply.outcome == "correct":
         reply.help = entry.help
         _offer_sibling(reply, sealed.question, reply.help)
-    if reply.outcome != "not attempted" and forgotten(student, sealed.question):
-        reply.messages.append(forgotten(student, sealed.question))
+    if reply.outcome != "not attempted":
+        reply.messages += filter(None, [forgotten(student, sealed.question)])
     reply.tries = len(entry.answers) + (entry.outcome == "correct")
     reply.tried = [answer[:DIGITS] for answer in entry.answers[-MOST_TOLD:]]
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
@@ -99,14 +99,13 @@ def hint(name: str) -> Reply:
     """
     student = identity()
     entry = _entry(Progress.read(), name, student)
-    steps, earned = _steps(find_question(name, student), entry), _earned(entry)
+    steps, earned = _steps(name, student, entry), _earned(entry)
     if steps[:earned]:
         _note_help(name, student, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, place in entry.after:
-        with suppress(ValueError, LookupError):  # of an earlier release of that question
-            locker = Locker.from_json(open_page(find_question(other, student), place), other)
-            lines += [f"Hint: {step}" for step in locker.after.get(name, ())]
+        opens = _page(other, student, place).after
+        lines += [f"Hint: {step}" for step in opens.get(name, ())]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]
@@ -145,11 +144,8 @@ def _note_help(name: str, student: str, kind: str) -> Entry:
     progress = Progress.read()
     entry = _entry(progress, name, student)
     if entry.outcome != "correct":
-        kinds = list(HELP)
-        entry = replace(
-            entry,
-            help=max(kind, entry.help, key=lambda one: kinds.index(one) if one in kinds else -1),
-        )
+        most = next(one for one in reversed(HELP) if one in (kind, entry.help))
+        entry = replace(entry, help=most)
         progress.put({name: entry})
     return entry
 
@@ -180,15 +176,23 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
         )
 
 
-def _steps(sealed: Sealed, entry: Entry) -> list[str]:
+def _page(name: str, student: str, place: Place) -> Locker:
+    """What stands on a page of a question; nothing on one of an earlier release."""
+    with suppress(ValueError, LookupError):
+        return Locker.from_json(open_page(find_question(name, student), place), "A page")
+    return Locker()
+
+
+def _steps(name: str, student: str, entry: Entry) -> list[str]:
     """All hints of a question: those of the last mistake, and then the ladder."""
-    steps: list[str] = []
-    if entry.page:
-        with suppress(ValueError, LookupError):  # the page is of an earlier release of the question
-            locker = Locker.from_json(open_page(sealed, entry.page), "A page")
-            steps = next((list(known.hints) for known in locker.answers if known.hints), [])
-    return steps + [
-        unseal(step, rung_key(sealed.question, number)) for number, step in enumerate(sealed.ladder)
+    sealed = find_question(name, student)
+    known = _page(name, student, entry.page).answers if entry.page else ()
+    return [
+        *next((answer.hints for answer in known if answer.hints), ()),
+        *(
+            unseal(step, rung_key(sealed.question, number))
+            for number, step in enumerate(sealed.ladder)
+        ),
     ]
 
 
@@ -197,8 +201,8 @@ def _earned(entry: Entry) -> int:
     return max(0, len(entry.answers) - 1)
 
 
-def _show_next_hint(sealed: Sealed, student: str, reply: Reply, entry: Entry) -> None:
-    steps, earned = _steps(sealed, entry), _earned(entry)
+def _show_next_hint(student: str, reply: Reply, entry: Entry) -> None:
+    steps, earned = _steps(reply.question, student, entry), _earned(entry)
     if steps[:earned]:
         _note_help(reply.question, student, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
@@ -230,7 +234,7 @@ def progress() -> Reply:
         lines = [
             f"The one question that you have tried is {'right' if right else 'not right yet'}."
         ]
-    for notebook in sorted({name.partition("/")[0] for name in record}):
+    for notebook in sorted({name.split("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
     lines += others
     lines += _right_with_help(known, right, student)
@@ -239,10 +243,10 @@ def progress() -> Reply:
 
 
 def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) -> str:
-    questions: dict[str, float] = {}
+    questions: dict[str, float] = {name: 1 for name in record if name.startswith(f"{notebook}/")}
     with suppress(RuntimeError):  # of another release
-        questions = {name: sealed.worth for name, sealed in notebook_questions(notebook).items()}
-    questions = questions or {name: 1 for name in record if name.startswith(f"{notebook}/")}
+        known = notebook_questions(notebook)
+        questions = {name: sealed.worth for name, sealed in known.items()} or questions
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {
@@ -267,7 +271,11 @@ def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) 
     """The questions whose points are not all earned, since they were right with help and no sibling
     without.
     """
-    alone = {without_sibling(name)[0] for name, entry in known.items() if _is_alone(name, entry)}
+    alone = {
+        without_sibling(name)[0]
+        for name, entry in known.items()
+        if entry.outcome == "correct" and not entry.help
+    }
     found = []
     for name in sorted(right - alone):
         try:
@@ -281,16 +289,11 @@ def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) 
     )
 
 
-def _is_alone(name: str, entry: Entry) -> bool:
-    """Whether this is a sibling that was solved without help."""
-    return without_sibling(name)[1] > 0 and entry.outcome == "correct" and not entry.help
-
-
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
     today = time.time()
     found: list[str] = []
     for name, entry in sorted(record.items()):
-        days = int((today - (entry.mistake_at or today)) // DAY)
+        days = int((today - (entry.mistake_at or today)) / DAY)
         if days >= REVIEW_AFTER and entry.mistake:
             found.append(f"`{name}` ({days} days ago: {entry.mistake})")
     return (

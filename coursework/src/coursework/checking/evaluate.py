@@ -25,15 +25,13 @@ Node: TypeAlias = Sequence[str | int]
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
-#: Below ten to this power a number is not worked with: what is done with it takes memory in the
+#: Below two to this power a number is not worked with: what is done with it takes memory in the
 #: size of the exponent.
-SMALLEST = -1_000_000
+SMALLEST = -3_333_333
 #: The smaller part of a complex number of which the larger one is this many powers of two larger is
 #: taken for nothing: no digit depends on it, and some functions would write out every place between
 #: the two.
 APART = 20_000
-#: A decimal exponent beyond which a number is not read by writing it out.
-LONG_EXPONENT = 400
 #: Work on one answer at one point, in additions of real numbers; others cost as many as they take.
 #: An honest answer of thousands of nodes stays far below; a hostile one would take a minute.
 MOST_WORK = 100_000
@@ -100,15 +98,15 @@ def number(result: Result) -> Number:
     return result
 
 
-def real(result: Result, rest: Number = 0) -> Number:
+def real(result: Result, absolute: Number = ROUNDING, relative: Number = ROUNDING) -> Number:
     """The real number that a result is; raises ``ValueError`` where its imaginary part is more than
-    ``rest``.
+    rounding, or what else is allowed: so much, and such a share of the real part.
     """
     result = number(result)
     if result in (MP.inf, -MP.inf):
         raise Undefined("infinite")
     if isinstance(result, MP.mpc):
-        if abs(result.imag) > max(rest, ROUNDING * (1 + abs(result.real))):
+        if abs(result.imag) > absolute + relative * abs(result.real):
             raise ValueError("complex")
         return result.real
     return result
@@ -149,9 +147,7 @@ def _value(node: Node, results: Sequence[Result], point: Mapping[str, Number]) -
     return _bounded(FUNCTIONS[operation](*map(number, arguments)))
 
 
-def _leaf(
-    operation: str, text: str, denominator: str = "1", *, point: Mapping[str, Number]
-) -> Result:
+def _leaf(operation: str, text: str, *denominator: str, point: Mapping[str, Number]) -> Result:
     if operation == "symbol":
         if text not in point:
             raise UnknownSymbol(text)
@@ -159,9 +155,9 @@ def _leaf(
     if operation == "integer":
         return MP.mpf(int(text))
     if operation == "rational":
-        return MP.mpf(int(text)) / int(denominator)
+        return MP.mpf(int(text)) / int(denominator[0])
     if operation == "float":
-        return _bounded(_float(text))
+        return _bounded(MP.mpf(text))
     if text in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
         raise Undefined("division by zero")
     if text not in CONSTANTS:
@@ -169,35 +165,21 @@ def _leaf(
     return CONSTANTS[text]
 
 
-def _float(text: str) -> Number:
-    """The number that digits with a point and an exponent stand for."""
-    digits, _, exponent = text.lower().partition("e")
-    if len(exponent.lstrip("+-0")) <= 3 and abs(int(exponent or 0)) <= LONG_EXPONENT:
-        return MP.mpf(text)
-    number = MP.mpf(digits)
-    if number and not exponent.startswith("-") and int(exponent) > 2 * LONG_EXPONENT:
-        raise TooLarge("the value is beyond 10^60")
-    if number and int(exponent) < 2 * SMALLEST:
-        raise NotSupported(SMALL)
-    return number * MP.power(10, int(exponent)) if number else number
-
-
-SMALL = "a number below 10^-1000000"
-
-
 def _bounded(result: Number) -> Number:
-    if isinstance(result, MP.mpc) and result.real and result.imag:
+    if isinstance(result, MP.mpc):
         between = MP.mag(result.real) - MP.mag(result.imag)
-        if abs(between) > APART:
-            result = MP.mpc(result.real, 0) if between > 0 else MP.mpc(0, result.imag)
+        if between > APART:
+            result = MP.mpc(result.real)
+        elif between < -APART:
+            result = MP.mpc(0, result.imag)
     if MP.isnan(result):
         raise Undefined("no number")
     if MP.isinf(result):
         raise Undefined("infinite")
     if abs(result) > LARGEST:
         raise TooLarge("the value is beyond 10^60")
-    if result and MP.mag(result) < SMALLEST * 10 // 3:
-        raise NotSupported(SMALL)
+    if result and MP.mag(result) < SMALLEST:
+        raise NotSupported("a number below 10^-1000000")
     return result
 
 
@@ -206,7 +188,7 @@ def _first_that_holds(pairs: Iterable[Result]) -> Number:
         if isinstance(pair, Exception):
             raise pair
         if not isinstance(pair, tuple):
-            raise TypeError("no case of a Piecewise")
+            raise TypeError
         value, condition = pair
         if isinstance(condition, Exception):
             raise condition
@@ -230,22 +212,14 @@ def _power(base: Number, exponent: Number) -> Number:
             return MP.one
         raise Undefined("division by zero")
     # Judged before it is worked out: a power of a power of ten would fill the memory.
-    if abs(exponent) > 10_000 or MP.re(exponent * MP.log(base)) > 150:
-        raise TooLarge("a power is beyond 10^60")
+    if abs(exponent) > 10_000:
+        raise TooLarge("an exponent is beyond ten thousand")
     return MP.power(base, exponent)
 
 
-def _exponential(argument: Number) -> Number:
-    if MP.re(argument) > 150 or abs(argument) > 10**6:
-        raise TooLarge("an exponential is beyond 10^60")
-    return MP.exp(argument)
-
-
-def _moderate(
-    function: Callable[[Number], Number], largest: int = 10**6
-) -> Callable[[Number], Number]:
+def _moderate(function: Callable[[Number], Number]) -> Callable[[Number], Number]:
     def bounded(argument: Number) -> Number:
-        if abs(argument) > largest:
+        if abs(argument) > 10**6:
             raise TooLarge("an argument is beyond a million")
         return function(argument)
 
@@ -254,15 +228,6 @@ def _moderate(
 
 def _real_only(function: Callable[..., Number]) -> Callable[..., Number]:
     return lambda *arguments: function(*map(_ordered, arguments))
-
-
-def _sinc(argument: Number) -> Number:
-    return MP.one if argument == 0 else MP.sin(argument) / argument
-
-
-def _sign(argument: Number) -> Number:
-    argument = _ordered(argument)
-    return MP.mpf((argument > 0) - (argument < 0))
 
 
 CONSTANTS = {
@@ -280,7 +245,7 @@ FUNCTIONS: dict[str, Callable[..., Number]] = {
     "Add": lambda *terms: sum(terms, MP.zero),
     "Mul": lambda *factors: MP.fprod(factors),
     "Pow": _power,
-    "exp": _exponential,
+    "exp": _moderate(MP.exp),
     "log": lambda argument, base=None: (
         MP.log(argument) if base is None else MP.log(argument) / MP.log(base)
     ),
@@ -290,7 +255,7 @@ FUNCTIONS: dict[str, Callable[..., Number]] = {
     "cot": _moderate(MP.cot),
     "sec": _moderate(MP.sec),
     "csc": _moderate(MP.csc),
-    "sinc": _moderate(_sinc),
+    "sinc": _moderate(MP.sinc),
     "asin": MP.asin,
     "acos": MP.acos,
     "atan": MP.atan,
@@ -298,17 +263,17 @@ FUNCTIONS: dict[str, Callable[..., Number]] = {
     "asec": MP.asec,
     "acsc": MP.acsc,
     "atan2": _real_only(MP.atan2),
-    "sinh": _moderate(MP.sinh, 150),
-    "cosh": _moderate(MP.cosh, 150),
-    "tanh": _moderate(MP.tanh, 150),
-    "coth": _moderate(MP.coth, 150),
-    "sech": _moderate(MP.sech, 150),
-    "csch": _moderate(MP.csch, 150),
+    "sinh": _moderate(MP.sinh),
+    "cosh": _moderate(MP.cosh),
+    "tanh": _moderate(MP.tanh),
+    "coth": _moderate(MP.coth),
+    "sech": _moderate(MP.sech),
+    "csch": _moderate(MP.csch),
     "asinh": MP.asinh,
     "acosh": MP.acosh,
     "atanh": MP.atanh,
     "Abs": abs,
-    "sign": _sign,
+    "sign": _real_only(MP.sign),
     "re": MP.re,
     "im": MP.im,
     "conjugate": MP.conj,
@@ -318,9 +283,11 @@ FUNCTIONS: dict[str, Callable[..., Number]] = {
     "floor": _real_only(MP.floor),
     "ceiling": _real_only(MP.ceil),
     "Mod": _real_only(lambda argument, modulus: argument - modulus * MP.floor(argument / modulus)),
-    "Heaviside": lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero, 0: middle}[
-        int(_sign(argument))
-    ],
+    "Heaviside": _real_only(
+        lambda argument, middle=MP.mpf(1) / 2: {1: MP.one, -1: MP.zero}.get(
+            int(MP.sign(argument)), middle
+        )
+    ),
 }
 
 CONDITIONS: dict[str, Callable[[Sequence[Number]], bool]] = {

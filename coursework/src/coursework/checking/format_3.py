@@ -43,7 +43,7 @@ NONE = 0xFFFF
 
 def mistakes_in(inside: bytes, question: Question) -> list[Note]:
     """The mistakes, each with its details, whose places stand in a locker without a page."""
-    places = [int.from_bytes(inside[start : start + 2], "big") for start in (0, 2)]
+    places = [int.from_bytes(inside[start : start + 2]) for start in (0, 2)]
     known = numbered(question)
     return [known[place] for place in places if place != NONE]
 
@@ -57,8 +57,5 @@ def numbered(question: Question) -> list[Note]:
     found = []
     for note, details in (*CATALOGUE, *(OF_KINDS.get(kind) or catalogue_of_format_3(kind))):
         choices = (symbols if values == SYMBOLS else values for values in details.values())
-        found += [
-            Note(note, dict(zip(details, chosen, strict=True)))
-            for chosen in itertools.product(*choices)
-        ]
+        found += [Note(note, dict(zip(details, chosen))) for chosen in itertools.product(*choices)]
     return found

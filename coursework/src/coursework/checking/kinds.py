@@ -6,6 +6,7 @@ Plug-ins build their kinds from what stands here. An answer is the plain data of
 :mod:`coursework.checking.reading`.
 """
 
+import itertools
 import unicodedata
 from collections.abc import Iterable
 from types import SimpleNamespace
@@ -14,7 +15,7 @@ from typing import Any
 from . import mistakes
 from .evaluate import MP
 from .kind import Kind
-from .plain import Plain, Value, by_frame, entries_of, node_of, operands, parts_of, text_of
+from .plain import Plain, Value, by_frame, entries_of, node_of, operands, parts_of, size_of, text_of
 from .question import Question
 from .units import unit
 
@@ -61,11 +62,9 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
 
 
-def shape_fault(wanted: str, value: Value, got: str | None = None) -> Fault:
-    return Fault(
-        "shape",
-        f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {got or _describe(value)}.",
-    )
+def shape_fault(wanted: str, got: Value | str) -> Fault:
+    said = got if isinstance(got, str) else _describe(got)
+    return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {said}.")
 
 
 def _describe(value: Value) -> str:
@@ -96,7 +95,7 @@ def _describe(value: Value) -> str:
 
 def _holding(whole: Value, part: Value) -> str:
     """What a list is, one part of which is of another kind than is asked for."""
-    if part[0] == "blank" or is_blank(part):
+    if is_blank(part):
         return "a list that is still blank in part"
     if part[0] == "text":
         return "a list that holds a text"
@@ -105,7 +104,7 @@ def _holding(whole: Value, part: Value) -> str:
 
 def _fault_of_numbers(wanted: str, value: Value) -> Fault:
     return shape_fault(
-        wanted, value, "a text: write it without quotation marks" if value[0] == "text" else None
+        wanted, "a text: write it without quotation marks" if value[0] == "text" else value
     )
 
 
@@ -128,7 +127,7 @@ def _leaf_of(whole: Value, part: Value, wanted: str) -> int:
         return leaf(part, wanted)
     except Fault:
         said = ": numbers stand without quotation marks" if part[0] == "text" else ""
-        raise shape_fault(wanted, whole, _holding(whole, part) + said) from None
+        raise shape_fault(wanted, _holding(whole, part) + said) from None
 
 
 def _expression(question: Question, value: Value) -> list[int]:
@@ -188,13 +187,13 @@ def row_entries(value: Value, rows: int, columns: int, wanted: str) -> list[int]
 
 def _row(whole: Value, row: Value, columns: int, wanted: str) -> list[int]:
     length = len(parts_of(row)) if row[0] == "list" else columns
-    if length not in (1, columns) and not is_blank(row):
+    if length not in (1, columns):
         described = _describe(whole)
         uneven = f"a list of rows, one of which has {length} entries"
-        raise shape_fault(wanted, whole, described if "rows" in described else uneven)
-    if row[0] == "list" or row[0] == "matrix" and 1 in row[1:3]:
+        raise shape_fault(wanted, described if "rows" in described else uneven)
+    if row[0] == "list" or row[0] == "matrix" and 1 in size_of(row):
         return components(row, columns, wanted)
-    raise shape_fault(wanted, whole, _holding(whole, row))
+    raise shape_fault(wanted, _holding(whole, row))
 
 
 def _matrix(question: Question, value: Value) -> list[int]:
@@ -270,7 +269,7 @@ def _truths(question: Question, plain: Plain) -> str:
         elif part == ["truth", False] or said in ("false", ["integer", "0"]):
             letters += "F"
         else:
-            raise shape_fault(wanted, value, _holding(value, part))
+            raise shape_fault(wanted, _holding(value, part))
     return letters
 
 
@@ -281,7 +280,7 @@ def _words(question: Question, plain: Plain) -> str:
         raise shape_fault(wanted, value)
     if any(map(is_blank, parts_of(value))):
         said = ": `'none'` is a text, too" if "none" in options else ""
-        raise shape_fault(wanted, value, f"a list that is still blank in part{said}")
+        raise shape_fault(wanted, f"a list that is still blank in part{said}")
     return PARTS["words"].join(_choices(question, plain))
 
 
@@ -293,9 +292,7 @@ def _order(question: Question, plain: Plain) -> str:
     parts = _choices(question, plain)
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise shape_fault(
-            wanted, value, f"one in which `{twice}` stands {parts.count(twice)} times"
-        )
+        raise shape_fault(wanted, f"one in which `{twice}` stands {parts.count(twice)} times")
     return PARTS["order"].join(parts)
 
 
@@ -341,11 +338,8 @@ def short(number: Number) -> str:
 
 def length_in_words(length: Number) -> str:
     """A length that should be 1, with as many digits as show that it is not."""
-    for digits in range(3, 16):
-        text = str(MP.nstr(length, digits, strip_zeros=True))
-        if MP.mpf(text) != 1:
-            return text.removesuffix(".0")
-    return str(MP.nstr(length, 20))
+    texts = (str(MP.nstr(length, digits)) for digits in itertools.count(3))
+    return next(text for text in texts if MP.mpf(text) != 1).removesuffix(".0")
 
 
 def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | None:

@@ -125,17 +125,15 @@ def as_matrix(answer: Any) -> Any:
     return sympy.Matrix(answer)
 
 
-def _substitutions(answer: Any) -> Iterator[tuple[str, dict[str, Json], dict[Any, Any]]]:
-    """Mistakes that change a symbol for its negative, or two symbols for each other."""
+def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
+    """A symbol taken for its negative, or two symbols for each other."""
     free = sorted(_unknowns(answer), key=str)
     for symbol in free:
-        yield "sign of a symbol", {"symbol": _plain_name(symbol)}, {symbol: -symbol}
+        changed = answer.xreplace({symbol: -symbol})
+        yield Mistake("sign of a symbol", {"symbol": symbol.name}, changed)
     for first, second in itertools.combinations(free, 2):
-        yield (
-            "symbols interchanged",
-            {"first": _plain_name(first), "second": _plain_name(second)},
-            {first: second, second: first},
-        )
+        changed = answer.xreplace({first: second, second: first})
+        yield Mistake("symbols interchanged", {"first": first.name, "second": second.name}, changed)
 
 
 def _unknowns(answer: Any) -> set[Any]:
@@ -144,19 +142,6 @@ def _unknowns(answer: Any) -> set[Any]:
     functions = set(answer.atoms(AppliedUndef))
     times = {argument for function in functions for argument in function.args}
     return functions | (set(answer.free_symbols) - times)
-
-
-def _plain_name(symbol: Any) -> str:
-    return str(getattr(symbol, "name", None) or symbol.func.__name__)
-
-
-def _replace(answer: Any, changes: Mapping[Any, Any]) -> Any:
-    return answer.xreplace(changes)
-
-
-def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
-    for note, details, changes in _substitutions(answer):
-        yield Mistake(note, details, _replace(answer, changes))
 
 
 def of_matrix(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:

@@ -280,7 +280,7 @@ class _Writer:
         if isinstance(answer, numbers.Number):
             return ["expression", self.number(answer)]
         origin = _module(type(answer)).partition(".")[0]
-        if origin == "mpmath":
+        if origin == "mpmath" and hasattr(answer, "tolist"):
             return self.of_mpmath(answer)
         if origin != "sympy" and _is_array(answer):
             return self.array(answer, depth)
@@ -306,20 +306,13 @@ class _Writer:
             raise NotPlain(f"The array has {size} entries; no question asks for that many.")
         return self.value(answer.tolist(), depth)
 
-    def of_mpmath(self, answer: mpmath.matrix | mpmath.mpf | mpmath.mpc) -> Value:
-        if hasattr(answer, "tolist"):
-            if answer.rows * answer.cols > MOST_PARTS:
-                raise NotPlain(
-                    f"The matrix is {answer.rows} × {answer.cols}; no question asks for "
-                    "one that large."
-                )
-            return [
-                "matrix",
-                answer.rows,
-                answer.cols,
-                [self.number(entry) for row in answer.tolist() for entry in row],
-            ]
-        return ["expression", self.number(answer)]
+    def of_mpmath(self, answer: mpmath.matrix) -> Value:
+        if answer.rows * answer.cols > MOST_PARTS:
+            raise NotPlain(
+                f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large."
+            )
+        entries = [self.number(entry) for row in answer.tolist() for entry in row]
+        return ["matrix", answer.rows, answer.cols, entries]
 
     def of_frames(self, answer: FrameGraph, depth: int) -> Value:
         """The frames of the book's own graph: the matrix of every pair that is connected."""
@@ -331,10 +324,10 @@ class _Writer:
         matrices: dict[str, dict[str, Value]] = {}
         for target in names:
             for source in names:
-                with contextlib.suppress(ValueError, KeyError):
+                with contextlib.suppress(ValueError):
                     if target != source:
                         matrices.setdefault(_text(target), {})[_text(source)] = self.value(
-                            answer.dcm(target, source), depth + 1
+                            answer.dcm(target, source), depth
                         )
         return ["frames", matrices]
 
@@ -356,7 +349,7 @@ class _Writer:
                 "frame",
                 _text(answer.name),
                 {
-                    _text(other.name): self.value(answer.dcm(other), depth + 1)
+                    _text(other.name): self.value(answer.dcm(other), depth)
                     for other in _connected([answer])
                 },
             ]
@@ -366,7 +359,7 @@ class _Writer:
                 return [
                     "vector",
                     {
-                        _text(frame.name): self.value(answer.to_matrix(frame), depth + 1)
+                        _text(frame.name): self.value(answer.to_matrix(frame), depth)
                         for frame in frames
                     },
                 ]
@@ -378,17 +371,8 @@ class _Writer:
                 ) from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
-        if isinstance(answer, sympy.matrices.MatrixExpr) and not isinstance(
-            answer, sympy.MatrixBase
-        ):
+        if isinstance(answer, (sympy.matrices.MatrixExpr, sympy.MatrixBase)):
             return ["matrix", *self.matrix(answer)]
-        if isinstance(answer, sympy.MatrixBase):
-            rows, columns = answer.shape
-            if rows * columns > MOST_PARTS:
-                raise NotPlain(
-                    f"The matrix is {rows} × {columns}; no question asks for one that large."
-                )
-            return ["matrix", rows, columns, [self.expression(entry) for entry in answer.flat()]]
         if isinstance(answer, (sympy.Tuple, sympy.FiniteSet)):
             return self.parts(list(answer), depth)
         if isinstance(answer, sympy.NDimArray):
@@ -461,9 +445,7 @@ class _Writer:
             return rows, columns, [self.expression(entry) for entry in answer.flat()]
         if isinstance(answer, sympy.MatMul):
             factors = [
-                self.matrix(part)
-                if getattr(part, "is_Matrix", False)
-                else (0, 0, [self.expression(part)])
+                self.matrix(part) if part.is_Matrix else (0, 0, [self.expression(part)])
                 for part in answer.args
             ]
             return functools.reduce(self._product, factors)
@@ -572,8 +554,8 @@ class _Writer:
         return self.node("Add", *terms)
 
     def number(self, number: mpmath.mpf | sympy.Number | complex) -> int:
-        of_mpmath = _module(type(number)).partition(".")[0] == "mpmath"
-        if isinstance(number, complex) or of_mpmath and hasattr(number, "_mpc_"):
+        of_mpmath = _module(type(number)).startswith("mpmath")
+        if isinstance(number, numbers.Complex) and not isinstance(number, numbers.Real):
             real, imaginary = self.number(number.real), self.number(number.imag)
             unit = self.node("constant", "ImaginaryUnit")
             return self.node("Add", real, self.node("Mul", unit, imaginary))
@@ -581,7 +563,7 @@ class _Writer:
             return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, numbers.Rational):
             return self.rational(int(number.numerator), int(number.denominator))
-        return self.node("float", repr(float(number)))
+        return self.node("float", repr(float(cast(float, number))))
 
     def rational(self, numerator: int, denominator: int) -> int:
         for part in (numerator, denominator):
@@ -603,8 +585,6 @@ class _Writer:
             if part in self.written:
                 todo.pop()
                 continue
-            if len(todo) > MOST_NODES:
-                self.node()  # says that it is too large
             children = self.children(part)
             missing = [child for child in children if child not in self.written]
             if missing:
@@ -636,8 +616,8 @@ class _Writer:
             return ()
         if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
             return ()
-        if part.is_Atom and part.args:
-            return self.without_unit(part)
+        if _is_quantity(part):
+            return (self.without_unit(part),)
         if isinstance(part, PUT_OFF) and part not in self.put_off:
             worked_out = self.worked_out(part)
             if type(worked_out) is not type(part):
@@ -645,15 +625,15 @@ class _Writer:
             self.put_off.add(part)
         return () if part in self.put_off else tuple(part.args)
 
-    def without_unit(self, unit: sympy.Basic) -> tuple[sympy.Basic, ...]:
-        """What stands for a unit in a list or matrix of numbers: a radian is none, and a degree a
-        part of it.
+    def without_unit(self, unit: sympy.Basic) -> sympy.Expr:
+        """What stands for a unit in a matrix of numbers: a radian is none, and a degree a part of
+        it.
         """
-        units = sys.modules.get("sympy.physics.units")
-        if not units or not isinstance(unit, units.Quantity):
-            return tuple(unit.args)
-        if unit in (units.radian, units.degree):
-            return (sympy.S.One if unit == units.radian else sympy.pi / 180,)
+        units = sys.modules["sympy.physics.units"]
+        if unit == units.radian:
+            return sympy.S.One
+        if unit == units.degree:
+            return sympy.pi / 180
         raise NotPlain(
             f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the "
             "question names."
@@ -668,21 +648,19 @@ class _Writer:
             return self.node("symbol", _name_of(part.name))
         if isinstance(part, AppliedUndef):
             return self.node("symbol", _name_of(part.func.__name__))
-        if isinstance(part, sympy.Derivative):
-            if isinstance(part.expr, AppliedUndef):
-                return self.node(
-                    "symbol",
-                    _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9),
-                )
-            return self.written[children[0]]
+        if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
+            return self.node(
+                "symbol",
+                _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9),
+            )
         if (
             isinstance(part, sympy.UnevaluatedExpr)
             or children
-            and (part.is_Atom or isinstance(part, PUT_OFF))
+            and (_is_quantity(part) or isinstance(part, PUT_OFF))
         ):
             return self.written[children[0]]
         if not children:
-            return self.node("constant", type(part).__name__[:60])
+            return self.node("constant", type(part).__name__)
         return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
 
 
@@ -703,8 +681,7 @@ def _name_of(symbol: str) -> str:
     """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is
     ``theta_1``.
     """
-    name = unicodedata.normalize("NFKC", _text(symbol)) if not symbol.isascii() else symbol
-    return _text(re.sub(r"[^\x00-\x7f]", lambda letter: _spelled(letter[0]), name))
+    return _text("".join(map(_spelled, unicodedata.normalize("NFKC", symbol))))
 
 
 def _spelled(letter: str) -> str:
@@ -726,7 +703,7 @@ def _text(text: str) -> str:
 def _module(kind: type) -> str:
     # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no
     # module.
-    return kind.__module__ or ""
+    return str(kind.__module__)
 
 
 def _is_array(answer: object) -> TypeGuard[Array]:
@@ -738,11 +715,14 @@ def _is_array(answer: object) -> TypeGuard[Array]:
     )
 
 
+def _is_quantity(part: object) -> bool:
+    # Slow to import; whoever has a quantity has imported it.
+    units = sys.modules.get("sympy.physics.units")
+    return units is not None and isinstance(part, units.Quantity)
+
+
 def _has_unit(part: object) -> bool:
-    units = sys.modules.get(
-        "sympy.physics.units"
-    )  # slow to import; whoever has a quantity has imported it
-    if not units or not isinstance(part, sympy.Expr):
+    if not isinstance(part, sympy.Expr):
         return False
     # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be
     # printed.
@@ -750,7 +730,7 @@ def _has_unit(part: object) -> bool:
     waiting = [part]
     while waiting:
         inner = waiting.pop()
-        if isinstance(inner, units.Quantity):
+        if _is_quantity(inner):
             return True
         if id(inner) not in seen:
             seen.add(id(inner))
@@ -896,8 +876,9 @@ def _check_value(value: object, depth: int, nodes: int) -> None:
         _demand(all(_is_before(nodes, entry) for entry in entries))
     elif kind == "frames":
         _demand(isinstance(rest[0], dict) and len(rest[0]) <= 12)
-        for name, others in rest[0].items():
-            _demand(len(name) <= LONGEST_TEXT and isinstance(others, dict) and len(others) <= 12)
+        _demand(all(map(_is_text, rest[0])))
+        for others in rest[0].values():
+            _demand(isinstance(others, dict) and len(others) <= 12 and all(map(_is_text, others)))
             for inner in others.values():
                 _check_value(inner, depth + 1, nodes)
     elif kind in ("list", "function"):

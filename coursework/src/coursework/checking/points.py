@@ -96,11 +96,8 @@ def _column(seed: str, low: float, high: float) -> list[Any]:
     """One value for each point, in every quadrant that the range has a part in."""
     first, last = MP.mpf(low), MP.mpf(high)
     quarter = MP.pi / 2
-    inner = [
-        number * quarter
-        for number in range(int(MP.ceil(first / quarter)), int(MP.floor(last / quarter)) + 1)
-    ]
-    edges = [first, *(edge for edge in inner if first < edge < last), last]
+    inner = range(int(MP.floor(first / quarter)) + 1, int(MP.ceil(last / quarter)))
+    edges = [first, *(number * quarter for number in inner), last]
     parts = list(zip(edges, edges[1:]))
     parts.sort(key=lambda part: _share(f"{seed} part {MP.nstr(part[0], 8)}"))
     kinds: dict[int, tuple[Any, Any]] = {}
@@ -116,4 +113,4 @@ def _column(seed: str, low: float, high: float) -> list[Any]:
 
 
 def _share(seed: str) -> Any:
-    return int.from_bytes(hashlib.sha256(seed.encode()).digest()[:12], "big") / MP.mpf(2) ** 96
+    return int.from_bytes(hashlib.sha256(seed.encode()).digest()[:12]) / MP.mpf(2) ** 96

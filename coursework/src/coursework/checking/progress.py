@@ -205,7 +205,7 @@ class Progress:
         self.entries |= {name: entry.as_json() for name, entry in entries.items()}
         with suppress(OSError):
             KEPT.parent.mkdir(exist_ok=True)
-            draft = KEPT.with_name(f"progress-{os.getpid()}-{random.randrange(10**9)}.json")
+            draft = KEPT.with_name(f"progress-{os.getpid()}-{random.random()}.json")
             draft.write_text(json.dumps(self.entries, indent=1, sort_keys=True), "utf8")
             draft.replace(KEPT)
 

@@ -178,7 +178,7 @@ def find_question(name: str, student: str) -> Sealed:
                 if siblings
                 else "it has no other numbers"
             )
-            raise NoSuchQuestion(f"There is no '{name[:80]}': of '{asked}', {there}.")
+            raise NoSuchQuestion(f"There is no '{name}': of '{asked}', {there}.")
         number = own_variant(student, asked, questions[asked].question, order)
         return notebook_questions(notebook, number)[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]
@@ -203,7 +203,7 @@ def find_question(name: str, student: str) -> Sealed:
     import difflib  # needed here alone
 
     named = questions or notebook_questions(notebook.lower())
-    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], 1, 0.5)
+    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], cutoff=0.5)
     raise NoSuchQuestion(
         f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
     )
@@ -398,7 +398,7 @@ def compare(
     try:
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
-            words = len((reading.text or "").split())
+            words = len(str(reading.text).split())
             said = (
                 f"A person will read this text of {words} "
                 f"{'word' if words == 1 else 'words'} and decide."
@@ -460,9 +460,8 @@ def _compare(
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
     if wrong_form and (known is None or wrong_form.note in ALWAYS_WRONG):
         # What comes of rounding is not called a fault of geometry.
-        said = ""
-        if wrong_form.note != "stray symbol":
-            said = _decimals(question, plain, reading) or _coarse(question, reading)
+        stray = wrong_form.note == "stray symbol"
+        said = "" if stray else _decimals(question, plain, reading) or _coarse(question, reading)
         return Reply(
             name,
             "invalid",
@@ -470,11 +469,7 @@ def _compare(
             [said, wrong_form.message] if said else [wrong_form.message],
         )
     if known is None:
-        reply = _not_known(name, question, plain, reading, find, locker, for_others)
-        slip, _, mistake = reply.note.partition(", and ")
-        # What is right once a slip is undone twice is the right answer itself, but for the last
-        # digits.
-        return _close(name, question) if mistake and slip == mistake else reply
+        return _not_known(name, question, plain, reading, find, locker, for_others)
     if known.outcome == "correct":
         return Reply(name, "correct", opened=locker)
     note, details = known.notes[0]
@@ -538,7 +533,7 @@ def _not_known(
     # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known
     # mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
-    near = [fingerprint(question, reading, near=True)] if decimals and not precise else []
+    near = [fingerprint(question, reading, near=True)] if not precise else []
     others = [] if rounded else list(other_readings(question, reading))
     texts = near + [fingerprint(question, turned) for _, _, turned in others]
     lockers = _each(find, texts)
@@ -559,12 +554,16 @@ def _not_known(
         known = _known_in(question, turned, of_slip)
         if known and known.outcome != "correct":
             note, details = known.notes[0]
+            if note == slip:
+                # What is right once a slip is undone twice is the right answer itself, but for the
+                # last digits.
+                return _close(name, question)
             said = f"Two things at once: {why} {message(question, note, details)}"
             return Reply(name, "wrong", f"{slip}, and {note}", [said], details=details)
     # Whoever has rounded right work hears of that first, and not that the value is wrong.
-    few = "" if decimals else _few_digits(question, plain)
+    few = _few_digits(question, plain)
     right = what_can_be_said(question, plain)
-    lines = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few and right else right]
+    lines = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few else right]
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
@@ -630,10 +629,9 @@ def _few_digits(question: Question, plain: Plain) -> str:
     if question.tolerance is None:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
-    for node in plain["nodes"]:
-        digits = str(node[1]) if node[0] == "float" else "e"
+    for digits in (str(node[1]) for node in plain["nodes"] if node[0] == "float"):
         if "e" not in digits:
-            places = len(digits.partition(".")[2].rstrip("0"))
+            places = len(digits.partition(".")[2])
             allowed = absolute + relative * abs(float(digits))
             if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"

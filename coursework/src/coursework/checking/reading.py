@@ -222,7 +222,7 @@ def canonical(question: Question, reading: Reading) -> list[Number]:
 def fault(question: Question, reading: Reading) -> Fault | None:
     """Say what is wrong with the form of an answer that was read, or give ``None``."""
     find = kind_of_values(question).fault
-    if find and reading.text is None:
+    if find:
         for numbers in reading.numbers:
             found: Fault | None = find(question, numbers)
             if found:
@@ -245,7 +245,8 @@ def _entries(question: Question, value: Value) -> Sequence[int]:
 
 def _number(question: Question, result: Any) -> Number:
     try:
-        return real(result, _imaginary_rest(question, result))
+        # What may remain of exponentials that should cancel: as much as the answer may be off by.
+        return real(result, *(max(part, EXACT) for part in tolerances(question)))
     except UnknownSymbol as error:
         name = error.args[0][:40]
         given = list(question.symbols)
@@ -269,14 +270,6 @@ def _number(question: Question, result: Any) -> Number:
         raise Fault(
             "not real", "The answer has an imaginary part; the question asks for something real."
         ) from None
-
-
-def _imaginary_rest(question: Question, result: Any) -> Number:
-    """What may remain of exponentials that should cancel: as much as the answer may be off by."""
-    if not isinstance(result, MP.mpc):
-        return 0
-    absolute, relative = tolerances(question)
-    return max(absolute, EXACT) + max(relative, EXACT) * abs(result.real)
 
 
 def _with_units(

@@ -58,8 +58,8 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
         first.update(current)
         second.update(first.digest())
         current = second.digest()
-        total ^= as_number(current, "big")
-    return total.to_bytes(32, "big")
+        total ^= as_number(current)
+    return total.to_bytes(32)
 
 
 def _block(password: bytes) -> bytes:
@@ -111,7 +111,7 @@ def pages_filled_up(pages: Iterable[str], count: int, secret: str) -> list[str]:
     lengths = [len(base64.b85decode(page)) for page in pages] or [BLOCK + PAGE_TAG]
     for order in range(count - len(pages)):
         drawn = hashlib.shake_256(f"{secret} page {order}".encode()).digest(4 + max(lengths))
-        pages.append(_text(drawn[4:][: lengths[int.from_bytes(drawn[:4], "big") % len(lengths)]]))
+        pages.append(_text(drawn[4:][: lengths[int.from_bytes(drawn[:4]) % len(lengths)]]))
     return pages
 
 
@@ -216,7 +216,7 @@ def _name(key: bytes) -> bytes:
 def seal(content: object, key: bytes) -> str:
     """Lock up JSON content as a page."""
     data = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode("utf8"), 9)
-    data = len(data).to_bytes(4, "big") + data
+    data = len(data).to_bytes(4) + data
     data = data.ljust(-(-len(data) // BLOCK) * BLOCK, b"\0")
     hidden = _mask(data, key, "page")
     return _text(hidden + _tag(hidden, key, "page")[:PAGE_TAG])
@@ -235,7 +235,7 @@ def unseal(sealed: str, key: bytes) -> Any:
     if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
         raise ValueError("The sealed data does not fit this key, or was changed.")
     data = _mask(hidden, key, "page")
-    return json.loads(zlib.decompress(data[4 : 4 + int.from_bytes(data[:4], "big")]))
+    return json.loads(zlib.decompress(data[4:]))  # what follows its end fills up
 
 
 def shorten(text: str, words: str) -> str:
@@ -252,7 +252,7 @@ def shorten(text: str, words: str) -> str:
 def lengthen(short: str, words: str) -> str:
     """The text of which :func:`shorten` made a short one."""
     unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
-    return (unpacker.decompress(base64.b85decode(short)) + unpacker.flush()).decode("utf8")
+    return unpacker.decompress(base64.b85decode(short)).decode("utf8")
 
 
 def _derive(key: bytes, purpose: str) -> bytes:
@@ -265,7 +265,7 @@ def _mask(data: bytes, key: bytes, purpose: str) -> bytes:
 
 
 def _tag(hidden: bytes, key: bytes, purpose: str) -> bytes:
-    return hmac.digest(_derive(key, f"tag of the {purpose}"), hidden, "sha256")[:16]
+    return hmac.digest(_derive(key, f"tag of the {purpose}"), hidden, "sha256")
 
 
 def _text(data: bytes) -> str:

@@ -88,7 +88,8 @@ def unit(text: str) -> Unit:
             if abs(power) > 12:
                 raise UnknownUnit(found[0].strip())
             size *= one.size**power
-            exponents = [a + power * b for a, b in zip(exponents, one.exponents)]
+            for order, exponent in enumerate(one.exponents):
+                exponents[order] += power * exponent
             # What stands behind a stroke is one unit, or those in brackets.
             sign = 1 if inside is None else inside
     return Unit(size, tuple(exponents))
@@ -100,7 +101,7 @@ def _named(name: str) -> Unit:
     if name in whole:
         return _unit(whole[name])
     for prefix, power in PREFIXES.items():
-        if prefix and name.startswith(prefix) and name[len(prefix) :] in WITH_PREFIX:
+        if name.startswith(prefix) and name[len(prefix) :] in WITH_PREFIX:
             one = _unit(WITH_PREFIX[name[len(prefix) :]])
             return Unit(one.size * MP.mpf(10) ** power, one.exponents)
     raise UnknownUnit(name[:20])
@@ -109,4 +110,4 @@ def _named(name: str) -> Unit:
 def _unit(about: tuple[Any, tuple[int, ...]]) -> Unit:
     size, exponents = about
     size = MP.mpf(size.numerator) / size.denominator if isinstance(size, Fraction) else MP.mpf(size)
-    return Unit(size, (*exponents, *[0] * (len(BASE) - len(exponents))))
+    return Unit(size, exponents)

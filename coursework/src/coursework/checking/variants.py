@@ -42,7 +42,7 @@ def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
     # JSON and the like could be read in two ways only if a part held a line break: names and
     # editions hold none.
     digest = hashlib.sha256(f"{edition}\n{name}\n{student}".encode()).digest()
-    return int.from_bytes(digest[:8], "big") % count
+    return int.from_bytes(digest[:8]) % count
 
 
 def names_of_variants(variants: Iterable[Variant]) -> list[str]:

@@ -1,0 +1,578 @@
+"""What is said of an answer, to the letter, with lockers that are looked up without a slow hash."""
+
+import concurrent.futures
+import hashlib
+import json
+import threading
+
+import pytest
+import sympy as sm
+
+from coursework.checking import questions, sealing
+from coursework.checking.catalogue import by_short_name
+from coursework.checking.fields import Misread
+from coursework.checking.identity import FORGOTTEN
+from coursework.checking.kinds import Fault
+from coursework.checking.mistakes import short_name
+from coursework.checking.plain import to_plain
+from coursework.checking.plugins import kinds
+from coursework.checking.question import KnownAnswer, Locker, Note, Place, Question, Sealed, Variant
+from coursework.checking.questions import NoSuchQuestion, compare, find_question, judge
+from coursework.checking.reading import canonical, fingerprint, read
+
+x, y = sm.symbols("x y")
+
+
+def text_of(question, answer, near=False):
+    return fingerprint(question, read(question, to_plain(answer)), near)
+
+
+def numbers_of(question, answer):
+    return tuple(map(str, canonical(question, read(question, to_plain(answer)))))
+
+
+def mistake(words, **more):
+    return KnownAnswer("mistake", (Note("authored", {"text": words}),), **more)
+
+
+CORRECT = KnownAnswer("correct")
+
+
+def said(question, lockers, answer, for_others=None):
+    """The outcome, the note and the words of a reply."""
+    find = None if lockers is None else lockers.get
+    reply = compare("a/b", question, to_plain(answer), find, for_others)
+    assert reply.question == "a/b"
+    if reply.outcome in ("correct", "wrong", "recorded") and reply.note != "other numbers":
+        text = text_of(question, answer)
+        assert reply.answer == hashlib.sha256(text.encode()).hexdigest()[:12]
+    return reply.outcome, reply.note, *reply.messages
+
+
+# ---- exact answers -----------------------------------------------------------------------------
+
+EXACT = Question("vector", salt="s", symbols={"x": (1.0, 2.0)}, every_symbol=True)
+RIGHT = [x, sm.sqrt(2) / 3, 5]
+SLIP = [x, sm.sqrt(2) / 3, -5]
+LOCKERS = {
+    text_of(EXACT, RIGHT): Locker((CORRECT,)),
+    text_of(EXACT, SLIP): Locker((mistake("A sign."),)),
+    text_of(EXACT, [x, 0.4714, 5], near=True): Locker(),
+}
+DECIMALS = (
+    "It holds decimal fractions, but the question asks for an exact answer: write "
+    "`sm.Rational(1, 2)` and `sm.sqrt(3)`."
+)
+NEARLY = (
+    "This agrees with the exact answer to about three digits, but the question asks for an exact "
+    "answer."
+)
+BLANK = "Put your answer in place of the `...` and run the cells again."
+STRAY = "The answer holds `y`; this question has the symbols `x`."
+ALL_WRONG = questions.kind_of_values(EXACT).wrong
+FORM = "If not: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
+
+
+@pytest.mark.parametrize(
+    ("answer", "expected"),
+    [
+        (RIGHT, ("correct", "")),
+        ([x, float(sm.sqrt(2) / 3), 5], ("correct", "")),
+        (SLIP, ("wrong", "authored", "A sign.")),
+        ([x, 0.4714, 5], ("wrong", "rounded too far", NEARLY, DECIMALS)),
+        ([x, 0.47140452, 5], ("wrong", "rounded too far", NEARLY, DECIMALS)),
+        ([x, 0.3, 5], ("wrong", "", f"{DECIMALS} {ALL_WRONG}")),
+        ([x, sm.sqrt(2) / 3, 6], ("wrong", "", ALL_WRONG)),
+        ([x, sm.Rational(4714, 10000), 5], ("wrong", "", ALL_WRONG)),  # near, and not rounded
+        ([1, sm.sqrt(2) / 3, 6], ("wrong", "", ALL_WRONG)),  # no symbol at all: none is missed
+        (["x", 1, 2], ("invalid", "shape")),
+        (
+            ...,
+            ("not attempted", "", BLANK),
+        ),
+        (
+            [y, 1, 2],
+            ("invalid", "stray symbol", STRAY),
+        ),
+        ([sm.gamma(x), 1, 2], ("undecided", "undecidable")),
+    ],
+)
+def test_an_exact_answer(answer, expected):
+    found = said(EXACT, LOCKERS, answer)
+    assert found[: len(expected)] == expected
+    if expected[0] == "undecided":
+        assert found[2].endswith("here. Try another form, or ask your instructor to look at it.")
+
+
+def test_a_symbol_that_is_missing_is_named():
+    question = Question("expression", symbols={"x": (1, 2), "phi": (1, 2), "z": (1, 2)})
+    plain = to_plain(x + sm.Symbol("varphi"))
+    wrong = questions.kind_of_values(question).wrong
+    assert questions.what_can_be_said(question, plain) == wrong
+    asked = Question("expression", symbols=question.symbols, every_symbol=True)
+    assert questions.what_can_be_said(asked, plain) == f"{wrong} It holds no `z`."
+    holds = questions.what_can_be_said(asked, to_plain(sm.Symbol("z")))
+    assert holds == f"{wrong} It holds no `x` and no `phi`."
+    assert questions.what_can_be_said(asked, to_plain(3)) == wrong
+
+
+def test_a_reply_holds_what_was_opened():
+    known = LOCKERS[text_of(EXACT, SLIP)]
+    reply = compare("a/b", EXACT, to_plain(SLIP), LOCKERS.get)
+    assert (reply.opened, reply.known, reply.details) == (
+        known,
+        known.answers[0],
+        {"text": "A sign."},
+    )
+    reply = compare("a/b", EXACT, to_plain(RIGHT), LOCKERS.get)
+    assert (reply.opened, reply.known) == (LOCKERS[text_of(EXACT, RIGHT)], None)
+
+
+def test_what_is_right_for_others_is_said_before_anything_else():
+    other = [x, sm.sqrt(2) / 3, 7]
+    assert said(EXACT, LOCKERS, other, lambda: True) == ("wrong", "other numbers")
+    assert said(EXACT, LOCKERS, other, lambda: False)[1] == ""
+    for answer in (RIGHT, SLIP):
+        assert said(EXACT, LOCKERS, answer, lambda: True) == said(EXACT, LOCKERS, answer)
+
+
+# ---- answers with a tolerance ------------------------------------------------------------------
+
+ROUGH = Question("vector", salt="s", tolerance=0.01, length=2)
+CENTRE = [sm.Rational(1, 3), 2]
+OFF = "off by more than the 0.01 that is allowed. Was it rounded too far, here or on the way? Keep "
+
+
+def rough(*answers):
+    """One locker for answers whose numbers lie in one cell."""
+    known = [
+        KnownAnswer(one.outcome, one.notes, numbers=numbers_of(ROUGH, at)) for one, at in answers
+    ]
+    return type("Any", (dict,), {"get": lambda self, text: Locker(tuple(known))})()
+
+
+@pytest.mark.parametrize(
+    ("answer", "expected"),
+    [
+        ([0.333, 2], ("correct", "")),
+        ([0.3433, 2], ("correct", "")),
+        ([0.3434, 2], ("wrong", "rounded too far")),
+        ([0.3333, 2.29], ("wrong", "rounded too far")),
+        ([0.3333, 2.32], ("wrong", "")),
+        ([0.36, 2], ("wrong", "authored", "Near.")),
+    ],
+)
+def test_an_answer_is_the_nearest_that_is_known(answer, expected):
+    lockers = rough((CORRECT, CENTRE), (mistake("Near."), [sm.Rational(36, 100), 2]))
+    found = said(ROUGH, lockers, answer)
+    assert found[: len(expected)] == expected
+    if expected[1] == "rounded too far":
+        assert found[2].startswith(f"This is close, but {OFF}")
+    only = said(ROUGH, rough((mistake("Near."), CENTRE)), [0.3434, 2])
+    assert only[:2] == ("wrong", "") and said(ROUGH, {}, [0.3434, 2]) == only
+
+
+def test_numbers_with_fewer_places_than_count_may_be_rounded():
+    vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
+    few = {0.33: ("2 places", "0.004"), 1.3: ("1 place", "0.005"), 10.3: ("1 place", "0.01")}
+    enough = (-110.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
+    few[0.2] = ("1 place", "0.004")
+    for entry, (places, allowed) in few.items():
+        assert said(vector, {}, [entry, 1])[2] == (
+            f"Was this rounded? `{entry:g}` has {places} after the point, and an answer may be off "
+            f"by {allowed} at most: if so, keep all digits until the end. {FORM}"
+        )
+    assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
+
+
+def test_numbers_that_nearly_fit_together_may_be_rounded():
+    unit = Question("vector", salt="s", tolerance=1e-6, unit_vector=True)
+    third = [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
+    right, coarse, wrong = (said(unit, {}, answer) for answer in third)
+    assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
+    assert coarse[2].startswith("The numbers nearly fit together. Were they rounded too far? ")
+    assert "0.999" in coarse[3]
+    assert len(wrong) == 3 and wrong[2].endswith("this one has length 0.866.")
+    exact = Question("vector", salt="s", unit_vector=True)
+    assert said(exact, {}, [0.577] * 3)[1:3] == ("not unit length", DECIMALS)
+    assert said(exact, {}, [sm.Rational(1, 2)] * 3)[1:] == wrong[1:]
+    # A mistake that is known comes first, and what is right only with its length.
+    for known, outcome in ((mistake("Known."), "wrong"), (CORRECT, "invalid")):
+        locker = {text_of(exact, [1, 1, 0]): Locker((known,))}
+        assert said(exact, locker, [1, 1, 0])[0] == outcome
+
+
+def test_of_decimal_fractions_some_are_plainly_exact_and_some_plainly_rounded():
+    texts = {
+        "0.5": (True, False), "0.333": (False, True), "-0.333": (False, True),
+        "0.8660254037844386": (True, False), "0.3333333333333333": (True, False),
+        "0.015625": (True, False), "0.0078125": (False, True), "0.001": (False, True),
+        "0.0010010010010010010": (True, False), "0.0009990009990009990": (False, False),
+        "12345.333333333334": (True, False), "0.50000000000015": (False, False),
+        "0.1234567891234": (False, False), "0.12345678": (False, True), "1e10": (True, False),
+    }  # fmt: skip
+    found = {text: questions._precision({"nodes": [["float", text]]}) for text in texts}
+    assert found == texts
+    several = {"nodes": [["float", "0.333"], ["symbol", "x"], ["float", "0.1234567891234"]]}
+    assert questions._precision(several) == (False, True)
+    assert questions._precision({"nodes": [["integer", "3"]]}) == (True, False)
+
+
+def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
+    def fault(question, numbers):
+        return Fault(question.quantity, "A fault.")
+
+    monkeypatch.setitem(kinds(), "odd", kinds()["vector"]._replace(fault=fault))
+    for note, known, decimals in (
+        ("stray symbol", False, False), ("odd", False, True), ("not unit length", True, True),
+    ):  # fmt: skip
+        question = Question("odd", salt="s", quantity=note)
+        lockers = {text_of(question, [1, 2, 0.5]): Locker((CORRECT,))}
+        expected = ("invalid", note, *([DECIMALS] if decimals else []), "A fault.")
+        assert said(question, {}, [1, 2, 0.5]) == expected
+        found = said(question, lockers, [1, 2, 0.5])
+        assert found == (expected if known else ("correct", ""))
+
+
+def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
+    together = threading.Barrier(2, timeout=5)
+
+    def found(text):
+        together.wait()
+        return text * 2
+
+    assert questions._each(found, ["a", "b"]) == ["aa", "bb"]
+    assert questions._each(lambda text: threading.current_thread(), ["a"]) == [
+        threading.main_thread()
+    ]
+    asked = threading.Event()
+    answer = questions._begun(lambda: asked.wait(5))
+    asked.set()
+    assert answer() is True
+
+    class NoThreads(concurrent.futures.ThreadPoolExecutor):
+        def submit(self, *_, **__):
+            raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(concurrent.futures, "ThreadPoolExecutor", NoThreads)
+    assert questions._each(str.upper, ["a", "b"]) == ["A", "B"]
+    assert questions._begun(lambda: "done")() == "done"
+
+
+# ---- slips, exams, persons ---------------------------------------------------------------------
+
+
+def test_a_mistake_is_found_beside_a_slip():
+    matrix = Question("matrix", salt="s", shape=(2, 2))
+    right, other = sm.Matrix([[1, 2], [3, 4]]), sm.Matrix([[1, 5], [3, 4]])
+    lockers = {
+        text_of(matrix, right): Locker((CORRECT,)),
+        text_of(matrix, other): Locker((mistake("Known."),)),
+        text_of(matrix, other + right): Locker(
+            (KnownAnswer("mistake", (Note("transposed", {}),)),)
+        ),
+    }
+    said_of_slip = questions.kind_of_values(matrix).slips["transposed"][0]
+    assert said(matrix, lockers, other.T) == (
+        "wrong",
+        "transposed, and authored",
+        f"Two things at once: {said_of_slip} Known.",
+    )
+    twice = said(matrix, lockers, (other + right).T)
+    assert twice[:2] == ("wrong", "rounded too far") and "more than allowed" in twice[2]
+    assert said(matrix, lockers, right.T)[1] == ""  # the transpose of what is right is no mistake
+    assert said(matrix, lockers, 0.3333 * other.T)[1] == ""
+    reply = compare("a/b", matrix, to_plain(other.T), lockers.get)
+    assert reply.details == {"text": "Known."}
+    rough = Question("matrix", salt="s", shape=(2, 2), tolerance=0.01)
+    at = [[1, 5], [sm.Rational(1, 3), 4]]
+    near = KnownAnswer(
+        "mistake", (Note("authored", {"text": "Known."}),), (), numbers_of(rough, at)
+    )
+    cells = {text_of(rough, at): Locker((near,))}
+    assert said(rough, cells, [[1, 0.333], [5, 4]])[1] == "transposed, and authored"
+    rounded = sm.Matrix([[1, 3], [0.333, 4]])
+    lockers[text_of(matrix, rounded.T)] = Locker((mistake("Known."),))
+    assert said(matrix, lockers, rounded)[1] == ""  # what was rounded is no mistake to the digit
+    exact = sm.Matrix([[1, 3], [0.5, 4]])
+    lockers[text_of(matrix, exact.T)] = Locker((mistake("Known."),))
+    assert said(matrix, lockers, exact)[1] == "transposed, and authored"
+    wide = Question("matrix", salt="s", shape=(1, 2))
+    assert said(wide, {}, [[1, 2]])[:2] == ("wrong", "")
+
+
+def test_in_an_exam_only_the_form_is_looked_at():
+    unit = Question("vector", salt="s", unit_vector=True)
+    assert said(unit, None, [1, 0, 0])[:2] == ("recorded", "")
+    assert "nothing that you have tells whether it is right" in said(unit, None, [1, 0, 0])[2]
+    assert said(unit, None, [1, 1, 0])[:2] == ("invalid", "not unit length")
+    sealed = Sealed(Question("vector", salt="s", exam=True))
+    reply = judge("a/b", sealed, to_plain([1, 1, 0]))
+    assert (reply.question, reply.outcome) == ("a/b", "recorded")
+
+
+def test_words_and_what_a_person_reads():
+    choice = Question("choice", salt="s", options=("up", "down"))
+    lockers = {"up": Locker((CORRECT,))}
+    assert said(choice, lockers, "UP") == ("correct", "")
+    wrong = questions.kind_of_values(choice).wrong
+    assert said(choice, lockers, "down") == ("wrong", "", wrong)
+    number = Question("choice", salt="s", options=("1", "2"))
+    assert said(number, {}, 2.0) == ("wrong", "", wrong)
+    text = Question("free text")
+    for answer, words in (("One", "1 word"), ("One  two", "2 words")):
+        reply = compare("a/b", text, to_plain(answer), {}.get)
+        assert reply.answer == "" and (reply.outcome, reply.note) == ("undecided", "for a person")
+        assert reply.messages == [f"A person will read this text of {words} and decide."]
+
+
+# ---- what is sealed ----------------------------------------------------------------------------
+
+
+@pytest.fixture(autouse=True)
+def quick(monkeypatch):
+    """The slow hash in one round."""
+    monkeypatch.setattr(sealing, "ROUNDS", 1)
+
+
+def locked(question, answer, outcome, *notes, **more):
+    key = sealing.slow_key(question.salt, text_of(question, answer))
+    return sealing.locker(key, outcome, [short_name(*note) for note in notes], **more)
+
+
+def test_lockers_and_pages_of_a_question_are_opened():
+    page_key = bytes(range(8))
+    differs = sealing.shorten("Two.", "One.")
+    told = {"cases": [CORRECT.as_json()], "solution": [1, "00" * 8, differs]}
+    pages = (
+        sealing.seal(told, page_key),
+        sealing.seal({"words": "One."}, bytes(8)),
+        sealing.seal({"solution": "Three."}, bytes(8)),
+    )
+    opposite = next(note for note in by_short_name(EXACT).values() if not note.details)
+    lockers = sealing.pack([
+        locked(EXACT, RIGHT, 0, page=0, page_key=page_key), locked(EXACT, SLIP, 1, opposite),
+        locked(EXACT, [x, 0, 0], 0),
+    ])  # fmt: skip
+    sealed = Sealed(EXACT, lockers, pages=pages)
+    found = questions.opened(sealed, text_of(EXACT, RIGHT))
+    assert found.place == Place(0, page_key.hex()) and found.answers == (CORRECT,)
+    assert questions.solution_on(sealed, found.solution) == "Two."
+    assert questions.solution_on(sealed, Place(2, "00" * 8)) == "Three."
+    assert questions.solution_on(sealed, "Four.") == "Four."
+    empty = Sealed(EXACT, pages=(sealing.seal({}, bytes(8)),))
+    assert questions.solution_on(empty, Place(0, "00" * 8)) == ""
+    known = Locker((KnownAnswer("mistake", (opposite,)),))
+    assert questions.opened(sealed, text_of(EXACT, SLIP)) == known
+    assert questions.opened(sealed, text_of(EXACT, [x, 0, 0])) == Locker((CORRECT,))
+    assert questions.opened(sealed, text_of(EXACT, [0, x, 0])) is None
+    for content in ({"cases": 7}, []):
+        damaged = Sealed(EXACT, lockers, pages=(sealing.seal(content, page_key),))
+        with pytest.raises(Misread, match="^Page 0"):
+            questions.opened(damaged, text_of(EXACT, RIGHT))
+    for short, words in (("s", "^A page should be .*'words'"), ("", "^A page: 'solution' should")):
+        page = Sealed(EXACT, pages=(sealing.seal({"solution": 7}, bytes(8)),))
+        with pytest.raises(Misread, match=words):
+            questions.solution_on(page, Place(0, "00" * 8, short))
+    key, third = sealing.slow_key("s", text_of(EXACT, SLIP)), bytes([0, 0, 0, 3, *[0] * 4])
+    old = Sealed(EXACT, sealing.pack([sealing.locker(key, 1, [third])]), format=3)
+    notes = (Note("transposed", {}), Note("sign of a symbol", {"symbol": "x"}))
+    assert questions.opened(old, text_of(EXACT, SLIP)) == Locker((KnownAnswer("mistake", notes),))
+    strange = sealing.locker(sealing.slow_key("s", text_of(EXACT, SLIP)), 1, [b"\1\2\3\4"])
+    reply = judge("a/b", Sealed(EXACT, sealing.pack([strange])), to_plain(SLIP))
+    assert reply.messages == [questions.NOT_IN_THIS_CATALOGUE] and reply.note == "authored"
+
+
+def test_codes_and_keys_stay_what_they_are():
+    assert questions.code_text(" ab-cd 01 ilo9\n") == "code ABCDL9"
+    assert questions.rung_key(EXACT, 2) == hashlib.sha256(b"step 2 for vector").digest()[:8]
+    assert questions.salt_of_all("a/b") == hashlib.sha256(b"a/b, all variants").hexdigest()[:16]
+
+
+# ---- the files, and the names in them ----------------------------------------------------------
+
+
+def varied(number, answer):
+    """A question in one of three variants, of which the right answers are known to each."""
+    salt = questions.salt_of_all("levers/arm")
+    question = Question(
+        "expression", f"s{number}",
+        variant=Variant(number, 3, {"arm": number}, {"arm": str(number)}, "An arm of {{arm}}."),
+    )  # fmt: skip
+    common = Question("expression", salt)
+    keys = [sealing.slow_key(salt, text_of(common, right)) for right in (70, 71, 72)]
+    names = sealing.pack_names(map(sealing.name_of, keys), 4)
+    first = number == 0
+    return Sealed(
+        question, sealing.pack([locked(question, answer, 0)]), answer="arm",
+        pages=("p0", "p1") if first else ("p2",), ladder=("l",) if first else (),
+        others=(salt, names),
+    ).as_json()  # fmt: skip
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    sealed = tmp_path / "sealed"
+    (sealed / "variants").mkdir(parents=True)
+    plain = Sealed(EXACT, sealing.pack([locked(EXACT, RIGHT, 0)])).as_json()
+    first, *others = (varied(number, 70 + number) for number in range(3))
+
+    def write(name, about, format=4):
+        (sealed / name).write_text(json.dumps({"format": format, "questions": about}))
+
+    write("levers.json", {"levers/arm": first, "levers/plain": plain})
+    for number, other in enumerate(others, 1):
+        own = {"levers/arm": questions.beside(other, first)}
+        write(f"variants/levers-{number}.json", own)
+    write("later.json", {}, 5)
+    write("third.json", {"third/a": plain}, 3)
+    (sealed / "moved.json").write_text(json.dumps({"moved": {"levers/old": "levers/plain"}}))
+    (sealed / "notes.txt").write_text("")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(questions, "sealed_folders", list)
+    questions.notebook_questions.cache_clear()
+    yield sealed
+    questions.notebook_questions.cache_clear()
+
+
+def student_with(number):
+    names = (f"s{k}" for k in range(99))
+    return next(one for one in names if questions.own_numbers("levers/arm", one)[0] == number)
+
+
+def test_questions_are_found_in_the_variant_of_a_student(folder):
+    first = find_question("levers/arm", "")
+    assert first.question.variant.number == 0 and first.format == 4 and first.pages == ("p0", "p1")
+    for number in (1, 2):
+        student = student_with(number)
+        found = find_question("levers/arm", student)
+        assert found.question.given == {"arm": number} and found.answer == "arm"
+        assert found.pages == ("p0", "p1", "p2") and found.others == first.others
+        assert found.ladder == ()
+        siblings = [
+            find_question(f"levers/arm/sibling{which}", student).question.given["arm"]
+            for which in ("", "-2")
+        ]
+        assert siblings == [(number + 1) % 3, (number + 2) % 3]
+        shown = questions.own_numbers("levers/arm", student)
+        assert shown[0] == number and len(shown[1]) == 12
+        assert questions.own_numbers("levers/arm/sibling", student)[0] == siblings[0]
+    assert questions.own_numbers("levers/arm", "")[0] == 0
+    assert find_question("third/a", "ada").format == 3
+    for name in ("levers/plain", "a/b", "later/a"):
+        assert questions.own_numbers(name, "ada") == (0, "")
+    student = student_with(1)
+    (folder / "variants" / "levers-1.json").unlink()
+    questions.notebook_questions.cache_clear()
+    assert questions.own_numbers("levers/arm", student) == (1, "")
+
+
+def test_a_variant_is_shown_with_what_is_said_of_forgetting(folder, monkeypatch):
+    monkeypatch.setattr(questions, "identity", lambda: "")
+    given = questions.variant("levers/arm")
+    assert given._repr_markdown_() == f"An arm of 0.\n\n{FORGOTTEN}" and given.arm == 0
+    assert questions.variant("levers/plain")._repr_markdown_() == ""
+    student = student_with(2)
+    monkeypatch.setattr(questions, "identity", lambda: student)
+    assert questions.variant("levers/arm")._repr_markdown_() == "An arm of 2."
+
+
+def test_an_answer_to_other_numbers_is_told(folder):
+    student = student_with(1)
+    sealed = find_question("levers/arm", student)
+
+    def reply(answer, who=student, sealed=sealed):
+        found = judge("levers/arm", sealed, to_plain(answer), who)
+        return found.outcome, found.note, *found.messages
+
+    rest = questions.WHERE_ONES_OWN_ARE
+    assert reply(71) == ("correct", "")
+    assert reply(70) == ("wrong", "other numbers", questions.FOR_OTHERS[True] + rest)
+    assert reply(72) == ("wrong", "other numbers", questions.FOR_OTHERS[False] + rest)
+    assert reply(73)[1] == reply(70, "")[1] == ""
+    first = find_question("levers/arm", "")
+    assert reply(72, sealed=first) == ("wrong", "other numbers", questions.FOR_OTHERS[False] + rest)
+    for answer in (..., "a text", sm.gamma(x), x):
+        assert not questions.is_right_for_others(sealed, to_plain(answer))
+    assert not questions.is_right_for_others(Sealed(EXACT), to_plain(RIGHT))
+    assert not questions._is_right_for_everybody("levers/none", sealed, to_plain(70))
+    assert not questions._is_right_for_everybody("levers/arm", first, to_plain(70))
+    assert questions._is_right_for_everybody("levers/arm/sibling", sealed, to_plain(70))
+    alone = find_question("levers/plain", "")
+    assert not questions._is_right_for_everybody("levers/plain", alone, to_plain(RIGHT))
+
+
+LONG = "levers/" + "a" * 90
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (7, "is a text and comes first: .* This is of type `int`"),
+        (type("T" * 50, (), {})(), f"of type `{'T' * 40}`"),
+        ("levers/arm/sibling-3", "-3': of 'levers/arm', its siblings are levers/arm/sibling and "),
+        ("levers/plain/sibling", "of 'levers/plain', it has no other numbers"),
+        ("levers/old", r"^'levers/old' is called 'levers/plain' in this edition: .*`check\(...\)`"),
+        ("levers/old/sibling", "'levers/old' is called 'levers/plain'"),
+        ("levers", "^'levers' is a notebook. Its questions are 'levers/arm', 'levers/plain'"),
+        ("levers/plan", r"^There is no question 'levers/plan'\. Did you mean 'levers/plain'\?$"),
+        ("Levers/Arm", r"Did you mean 'levers/arm'\?"),
+        ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers'\?"),
+        ("third/zzzzzzzz", r"Did you mean 'third/a'\?"),
+        ("movd", r"^There is no question 'movd'\.$"),
+        ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\.$"),
+        ("../levers/arm", "There is no question"),
+        (LONG, f"^There is no question '{LONG[:80]}'"),
+    ],
+)  # fmt: skip
+def test_a_name_that_is_none_is_explained(folder, name, words):
+    with pytest.raises(NoSuchQuestion, match=words) as error:
+        find_question(name, "")
+    assert str(error.value) == error.value.args[0]
+
+
+def test_files_that_are_not_there_or_too_new_are_explained(folder, tmp_path, monkeypatch):
+    for name in ("later/a", "later"):
+        with pytest.raises(RuntimeError, match="of later are of format 5, .* formats 3 and 4"):
+            find_question(name, "")
+    (folder / "bad.json").write_text('{"format": "4", "questions": {}}')
+    with pytest.raises(RuntimeError, match="^The sealed questions of bad: 'format' should be"):
+        find_question("bad/a", "")
+    (tmp_path / "moved.json").write_text('{"moved": {"levers/gone": "levers/arm"}}')
+    with monkeypatch.context() as patch:
+        patch.setattr(questions, "sealed_folders", lambda: [tmp_path])
+        assert questions._moved() == {"levers/old": "levers/plain", "levers/gone": "levers/arm"}
+    (folder / "moved.json").write_text('{"moved": 7}')
+    with pytest.raises(Misread, match="^moved.json: 'moved' should be"):
+        find_question("levers/nothing", "")
+    monkeypatch.chdir(folder)
+    with pytest.raises(NoSuchQuestion, match="^There is no .*, and no other: ") as error:
+        find_question(LONG, "")
+    assert f"(in {folder})" in str(error.value) and f"'{LONG[:80]}'" in str(error.value)
+    assert questions.places() == []
+    monkeypatch.setattr(questions, "sealed_folders", lambda: [folder])
+    assert questions.places() == [folder]
+    assert find_question("third/a", "").format == 3
+
+
+def test_files_that_are_elsewhere_are_fetched(folder, monkeypatch):
+    from coursework.checking import elsewhere
+
+    text = (folder / "levers.json").read_text()
+    asked = []
+    monkeypatch.setattr(
+        elsewhere, "fetched", lambda place, name: asked.append((place, name)) or text
+    )
+    student = student_with(1)
+    (folder / "variants" / "levers-1.json").unlink()
+    questions.notebook_questions.cache_clear()
+    with pytest.raises(KeyError):
+        find_question("levers/nothing", student)
+    assert asked == [] and questions.notebook_questions("levers", 9) == {}
+    (folder / questions.ELSEWHERE).write_text("https://example.org/")
+    questions.notebook_questions.cache_clear()
+    assert questions.notebook_questions("no-such") == {} and asked == []
+    assert find_question("levers/arm", student).question.given == {"arm": 0}
+    assert [(str(place), name) for place, name in asked] == [
+        ("sealed/elsewhere.txt", "variants/levers-1.json")
+    ]

@@ -1,0 +1,261 @@
+"""Where the symbols of a question are sampled, how a reply is shown, and how a page fetches what is
+sealed.
+"""
+
+import itertools
+import math
+import sys
+from types import ModuleType, SimpleNamespace
+
+import pytest
+
+from coursework.checking import points, reply
+from coursework.checking.elsewhere import fetched
+from coursework.checking.evaluate import MP
+from coursework.checking.question import Question
+from coursework.checking.reply import HELP, OUTCOMES, Reply
+
+# --- points -------------------------------------------------------------------------------------
+
+
+SAMPLED = [
+    ["-0.19716267334", "0.134440568718", "0.9909216586", "4.09891366627", "-5.01614031356"],
+    ["0.821533235568", "0.00750033025903", "0.999971872127", "5.94539631772", "-7.51633299078"],
+    ["-1.67005471749", "0.092175211295", "-0.99574280335", "6.06764606904", "-3.77083385517"],
+    ["-0.230494551367", "0.0307244394185", "-0.999527892969", "0.503145512382", "-1.77327908297"],
+    ["2.19371958701", "0.0257600704453", "0.999668154325", "2.65150061514", "-4.27920987181"],
+]
+
+
+def test_where_symbols_are_sampled_is_what_it_was():
+    """Every file that was ever sealed depends on it."""
+    question = Question(
+        "expression",
+        salt="a",
+        symbols={
+            "phi'": (-3.0, 3.0),
+            "b": (0.1, 1.5),
+            "c": (-20.0, 90.0),
+            "d": (0.0, 12.0),
+            "e": (-12.0, -1.0),
+        },
+        unit=(("b", "c"),),
+    )
+    found = [
+        [MP.nstr(point[name], 12) for name in question.symbols] for point in points.points(question)
+    ]
+    assert found == SAMPLED
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("x", []),
+        ("phi", ["varphi"]),
+        ("x''", []),
+        ("X''", []),
+        ("X'", ["Xdot", "X_dot", "dot_X", "dX", r"\dot{X}", r"\dot{\X}"]),
+        ("x'", ["xdot", "x_dot", "dot_x", "dx", r"\dot{x}", r"\dot{\x}"]),
+        ("epsilon''", ["varepsilon''"]),
+    ],
+)
+def test_other_spellings_of_a_symbol(name, other):
+    assert points.spellings(name) == other
+
+
+def test_all_spellings_of_a_symbol_have_its_value_unless_they_are_another_symbol():
+    [point, *_] = points.points(Question("expression", symbols={"phi'": (1, 2), "varphi'": (3, 4)}))
+    assert point["phidot"] == point["phi'"] == point["dphi"]
+    assert 3 < point["varphi'"] < 4 and point["varphidot"] in (point["varphi'"], point["phi'"])
+
+
+def test_no_two_signs_of_sines_and_cosines_always_agree():
+    symbols = {name: (-3.0, 3.0) for name in "abc"}
+    for salt in "abcdefgh":
+        rows = points.points(Question("expression", salt=salt, symbols=symbols))
+        assert len(rows) == points.POINTS
+        signs = set()
+        for name, function in itertools.product(symbols, (math.sin, math.cos)):
+            changes = [function(row[name]) * function(rows[0][name]) > 0 for row in rows]
+            assert not all(changes) and tuple(changes) not in signs
+            signs.add(tuple(changes))
+        for name in symbols:
+            assert len({math.floor(row[name] / (math.pi / 2)) for row in rows}) == 4
+
+
+def test_where_no_choice_is_perfect_the_best_is_taken(monkeypatch):
+    """Twelve signs that have to differ, of which five points can tell fifteen."""
+    symbols = [(-3.0, 3.0)] * 7
+
+    def different(rows):
+        patterns = [
+            tuple((function(value) >= 0) == (function(column[0]) >= 0) for value in column)
+            for column in zip(*rows)
+            for function in (math.sin, math.cos)
+        ]
+        return len({pattern for pattern in patterns if not all(pattern)})
+
+    found = []
+    for tries in range(1, 9):
+        monkeypatch.setattr(points, "MOST_TRIES", tries)
+        found.append(points._placed("salt", symbols))
+    numbers = [*map(different, found)]
+    assert numbers == sorted(numbers) and numbers[0] < numbers[-1]
+    assert len({tuple(rows[0]) for rows in found}) == len(set(numbers))  # of equals the first
+
+
+def test_a_range_within_a_quadrant_leaves_nothing_to_place(monkeypatch):
+    made = []
+    column = points._column
+    monkeypatch.setattr(points, "_column", lambda *given: made.append(given) or column(*given))
+    assert len(points._placed("salt", [(0.1, 1.0)])) == points.POINTS and len(made) == 1
+
+
+def test_without_symbols_there_is_one_point_and_none_is_shared():
+    assert points.points(Question("expression")) == [{}]
+    question = Question("expression", symbols={"x": (1, 2)})
+    points.points(question)[0].clear()
+    assert "x" in points.points(question)[0]
+
+
+# --- replies ------------------------------------------------------------------------------------
+
+
+def shown(**about):
+    one = Reply("levers/<one>", "wrong", "a note", ["Say *so*: $x_1 < 2$.", "And on."])
+    vars(one).update(about)
+    return one
+
+
+def test_a_reply_as_text():
+    assert repr(shown()) == "Not yet: levers/<one>\nSay so: x_1 < 2.\nAnd on."
+    solved = Reply("levers/one", "correct", solution="<p>So.</p>")
+    assert repr(solved) == "\n".join(
+        ["Correct: levers/one", "The worked solution is shown where HTML can be."]
+    )
+    for outcome, (_, word, _) in OUTCOMES.items():
+        assert repr(Reply("a/b", outcome)) == f"{word}: a/b"
+    assert reply.plain_text(r"$\hat{n}_x$ of `A_B`, $\mathbf{R}\cdot\mathrm{d}x$") == (
+        "n_x of A_B, Rcdotdx"
+    )
+    assert reply.plain_text(r"${}^{A}\mathbf{C}^{B}$ ${}^A\mathbf{C}^B$") == "A_C_B A_C_B"
+
+
+BEGINS = '<div class="coursework-reply" role="status" data-outcome="wrong"'
+STYLE = ' style="border-left:.3em solid #b54708;padding:.2em .8em">'
+HEAD = (
+    '<p style="margin:.3em 0"><strong><span aria-hidden="true">✗</span> Not yet</strong> '
+    '<span style="opacity:.8">levers/&lt;one&gt;'
+)
+SAID = (
+    '<p style="margin:.3em 0">Say <em>so</em>: <span class="math">$x_1 &lt; 2$</span>.</p>'
+    '<p style="margin:.3em 0">And on.</p></div>'
+)
+
+
+@pytest.mark.parametrize(
+    ("about", "known", "tries"),
+    [
+        ({}, "", ""),
+        ({"tries": 1}, ' data-question="levers/&lt;one&gt;" data-tries="1"', ""),
+        (
+            {"tries": 2, "tried": ["<", "b"], "help": "hint", "sibling": "a>b"},
+            ' data-question="levers/&lt;one&gt;" data-tries="2" data-tried="&lt; b" '
+            'data-help="hint" data-sibling="a&gt;b"',
+            " · 2 answers so far",
+        ),
+    ],
+)
+def test_a_reply_as_a_page(about, known, tries):
+    page = shown(**about)._repr_html_()
+    assert page == f"{BEGINS}{known}{STYLE}{HEAD}{tries}</span></p>{SAID}"
+
+
+def test_a_new_reply_knows_nothing_that_it_was_not_told():
+    one = Reply("a", "correct")
+    assert vars(one) == {
+        "question": "a", "outcome": "correct", "note": "", "messages": [], "solution": "",
+        "answer": "", "tries": 0, "tried": [], "help": "", "sibling": "", "details": {},
+        "opened": None, "known": None,
+    }  # fmt: skip
+    two = Reply("a", "wrong", "n", ("m",), "s", "opened", "known", {"d": 1})
+    assert [*vars(two).values()] == [
+        "a", "wrong", "n", ["m"], "s", "", 0, [], "", "", {"d": 1}, "opened", "known",
+    ]  # fmt: skip
+    assert set(HELP) == {"mistake", "hint", "solution"}
+
+
+PAGE = "<p>$$x &lt; 1$$ and $y &amp; z$</p>"
+
+
+@pytest.mark.parametrize("editor", [None, "VSCODE_PID", "google.colab", "marimo"])
+def test_formulas_where_nothing_typesets_them(editor, monkeypatch):
+    made = []
+    converter = ModuleType("latex2mathml.converter")
+    converter.convert = lambda source, display: made.append((source, display)) or f"<math>{display}"
+    monkeypatch.setitem(sys.modules, "latex2mathml", ModuleType("latex2mathml"))
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", converter)
+    monkeypatch.delenv("VSCODE_PID", raising=False)
+    for name in ("google.colab", "marimo"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    if editor == "VSCODE_PID":
+        monkeypatch.setenv(editor, "1")
+    elif editor:
+        monkeypatch.setitem(sys.modules, editor, ModuleType(editor))
+    typeset = editor is None
+    assert reply.tex_is_typeset() == typeset
+    page = shown(solution=PAGE)._repr_html_()
+    assert page.count("<math>") == (0 if typeset else 3)
+    assert (
+        f"<details><summary>The worked solution</summary><div>"
+        f"{PAGE if typeset else '<p><math>block and <math>inline</p>'}</div></details></div>"
+    ) in page
+    if not typeset:
+        assert made == [("x_1 < 2", "inline"), ("x < 1", "block"), ("y & z", "inline")]
+
+
+def test_a_formula_that_cannot_be_converted_is_shown_as_it_is(monkeypatch):
+    monkeypatch.setitem(sys.modules, "latex2mathml.converter", None)
+    assert reply.mathml("a < b") == "<code>a &lt; b</code>"
+
+
+def test_what_is_marked_in_a_message_is_shown_so_and_never_obeyed():
+    assert reply.to_html("<a> `<b>` *<c>* $<d>$ <e>") == (
+        "&lt;a&gt; <code>&lt;b&gt;</code> <em>&lt;c&gt;</em> "
+        '<span class="math">$&lt;d&gt;$</span> &lt;e&gt;'
+    )
+    assert reply.to_html("$x$", str.upper) == "X" and reply.to_html("`a") == "`a"
+
+
+# --- fetching -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("status", [200, 404, None])
+def test_what_is_sealed_is_fetched_from_where_the_pages_lie(status, tmp_path, monkeypatch):
+    asked = []
+
+    class Request:
+        new = classmethod(lambda cls: cls())
+        responseText = "{}"
+
+        def open(self, *arguments):
+            asked.append(arguments)
+
+        def send(self):
+            if status is None:
+                raise OSError("no network")
+            self.status = status
+
+    monkeypatch.setitem(sys.modules, "js", SimpleNamespace(XMLHttpRequest=Request))
+    monkeypatch.setitem(sys.modules, "pyodide_js", SimpleNamespace(lockfileBaseUrl="https://x/"))
+    (tmp_path / "where").write_text("pages/ä/", "utf8")
+    address = "https://x/pages/ä/one.json"
+    if status == 200:
+        assert fetched(tmp_path / "where", "one.json") == "{}"
+    else:
+        why = "the server says 404" if status else "no network"
+        with pytest.raises(RuntimeError) as error:
+            fetched(tmp_path / "where", "one.json")
+        said = f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
+        assert str(error.value) == said
+    assert asked == [("GET", address, False)]

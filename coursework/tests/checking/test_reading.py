@@ -1,0 +1,501 @@
+"""What an answer of any form is read as, and what is said of one that is not of the form asked for.
+
+Exactly as it is said: each word of a message depends on what was asked for and on what was given.
+"""
+
+import itertools
+import random
+
+import pytest
+import sympy as sm
+from sympy.physics import units
+from sympy.physics.mechanics import ReferenceFrame
+
+from coursework.checking import kinds, reading
+from coursework.checking.evaluate import MP
+from coursework.checking.kinds import KINDS, Blank, Fault, Undecidable
+from coursework.checking.plain import to_plain
+from coursework.checking.question import Question
+from coursework.checking.reading import EXACT, NEAR, Reading, read
+
+x = sm.Symbol("x")
+N, A, B = map(ReferenceFrame, "NAB")
+A.orient_axis(N, 0, N.z)
+SIGNS = ("-i", "1", "+x", "none", "- 2 -", "B")
+EXPRESSION = Question("expression")
+VECTOR, PLANE = Question("vector"), Question("vector", length=2)
+IN_A = Question("vector", frames=("A",))
+MATRIX, SQUARE = Question("matrix", shape=(2, 3)), Question("matrix")
+MEASUREMENT = Question("measurement")
+CHOICE = Question("choice", options=SIGNS)
+WORDS = Question("words", options=SIGNS, length=2)
+LOUD = Question("words", options=("yes", "no"), length=2)
+TRUTHS = Question("truth values", length=3)
+ORDER = Question("order", options=("a", "b", "c"))
+TEXT = Question("free text")
+FUNCTION = Question("function", result="expression", calls=([1], [2]))
+
+
+def plain(value, *nodes):
+    return {"value": value, "nodes": list(nodes)}
+
+
+ONE, TWO = ["integer", "1"], ["integer", "2"]
+MINUS, NAME = ["integer", "-1"], ["symbol", "i"]
+
+
+def returned(*results, worked=True):
+    return plain(["function", list(results), worked], ONE, TWO, ["symbol", "w"])
+
+
+FIRST, SECOND, STRAY = ["expression", 0], ["expression", 1], ["expression", 2]
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "numbers"),
+    [
+        (EXPRESSION, 7, [7]),
+        (EXPRESSION, [[7]], [7]),
+        (EXPRESSION, sm.Matrix([[7]]), [7]),
+        (EXPRESSION, plain(["list", [FIRST, ["text", "1"]]], ONE), [1]),
+        (VECTOR, [1, 2, 3], [1, 2, 3]),
+        (VECTOR, [[1, 2, 3]], [1, 2, 3]),
+        (VECTOR, [[1], [2], [3]], [1, 2, 3]),
+        (VECTOR, sm.Matrix([1, 2, 3]), [1, 2, 3]),
+        (VECTOR, sm.Matrix([[1, 2, 3]]), [1, 2, 3]),
+        (PLANE, [1, 2], [1, 2]),
+        (IN_A, A.x + 2 * N.y + 3 * A.z, [1, 2, 3]),
+        (MATRIX, [[1, 2, 3], [4, 5, 6]], [1, 2, 3, 4, 5, 6]),
+        (MATRIX, sm.Matrix([[1, 2, 3], [4, 5, 6]]), [1, 2, 3, 4, 5, 6]),
+        (
+            MATRIX,
+            [[[1, 2, 3]], [[4, 5, 6]]],
+            [1, 2, 3, 4, 5, 6],
+        ),
+        (
+            MATRIX,
+            [sm.Matrix([[1, 2, 3]]), sm.Matrix([4, 5, 6])],
+            [1, 2, 3, 4, 5, 6],
+        ),
+        (SQUARE, sm.diag(1, 2, 3), [1, 0, 0, 0, 2, 0, 0, 0, 3]),
+    ],
+)
+def test_the_numbers_of_an_answer(question, answer, numbers):
+    answer = answer if isinstance(answer, dict) else to_plain(answer)
+    assert read(question, answer) == Reading([numbers])
+
+
+WANTED = {
+    "expression": "a single expression",
+    "vector": "a list of 3 components",
+    "matrix": "a matrix of 2 × 3",
+    "measurement": "a number and its unit, such as `(3.2, 'N m')`",
+    "truth values": "a list of 3 truth values, `True` or `False`",
+    "order": "a list with each of `a`, `b`, `c` once",
+    "free text": "a text",
+    "choice": "one of `-i`, `1`, `+x`, `none`, `- 2 -`, `B`, in quotation marks",
+}
+ROWS = "a list of rows, one of which has"
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "told"),
+    [
+        (EXPRESSION, sm.eye(2), "a matrix of 2 × 2"),
+        (EXPRESSION, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
+        (EXPRESSION, sm.Matrix([1, 2]), "a matrix of 2 × 1"),
+        (EXPRESSION, [1, 2], "a list with 2 entries"),
+        (EXPRESSION, [[]], "a list with 0 entries"),
+        (EXPRESSION, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
+        (EXPRESSION, [[1, 2], 3], "a list with 2 entries"),
+        (EXPRESSION, [[1, 2], [3]], "a list with 2 entries"),
+        (EXPRESSION, (1, "m"), "a number with a unit, or with a text"),
+        (EXPRESSION, "7", "a text: write it without quotation marks"),
+        (EXPRESSION, True, "a truth value"),
+        (EXPRESSION, B, "a reference frame"),
+        (EXPRESSION, A.x, "a vector"),
+        (EXPRESSION, plain(["function", [], True]), "a function"),
+        (EXPRESSION, plain(["frames", {}]), "a set of reference frames"),
+        (EXPRESSION, plain(["printed", "1"]), "something printed"),
+        (EXPRESSION, plain(["raised", "Error"]), "an error"),
+        (EXPRESSION, plain(["list", [["list", []]]]), "a list with 0 entries"),
+        (VECTOR, 7, "a single expression"),
+        (VECTOR, [7], "a list with 1 entry"),
+        (VECTOR, "7", "a text: write it without quotation marks"),
+        (VECTOR, [[1, 2]], "a list with 2 entries"),
+        (VECTOR, [1, 2, "3"], "a list that holds a text: numbers stand without quotation marks"),
+        (VECTOR, [1, ..., 3], "a list that is still blank in part"),
+        (VECTOR, [1, [..., ...], 3], "a list that is still blank in part"),
+        (VECTOR, [1, True, 3], "a list with 3 entries, one of which is a truth value"),
+        (VECTOR, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
+        (VECTOR, A.x, "a vector"),
+        (MATRIX, sm.eye(2), "a matrix of 2 × 2"),
+        (MATRIX, [[1, 2, 3]], "a list of 1 rows with 3 entries each"),
+        (MATRIX, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
+        (MATRIX, [[1, 2, 3], [4, 5]], f"{ROWS} 2 entries"),
+        (MATRIX, [[1, 2, 3], [..., ...]], f"{ROWS} 2 entries"),
+        (MATRIX, [[1, 2, 3], [..., ..., ...]], "a list that is still blank in part"),
+        (MATRIX, [[1, 2, 3], 4], "a list with 2 entries, one of which is a single expression"),
+        (MATRIX, [[1, 2, 3], "4"], "a list that holds a text"),
+        (
+            MATRIX,
+            [[1, 2, 3], sm.eye(2)],
+            "a list with 2 entries, one of which is a matrix of 2 × 2",
+        ),
+        (MATRIX, "7", "a text: write it without quotation marks"),
+        (MEASUREMENT, 7, "a single expression"),
+        (MEASUREMENT, "7 N", "a text"),
+        (MEASUREMENT, ("7", "N"), "a text: write it without quotation marks"),
+        (MEASUREMENT, [7, 8], "a list with 2 entries"),
+        (MEASUREMENT, [7, "N", "m"], "a list with 3 entries"),
+        (TRUTHS, True, "a truth value"),
+        (TRUTHS, [True, False], "a list with 2 entries"),
+        (TRUTHS, [True, False, 2], "a list with 3 entries, one of which is a single expression"),
+        (TRUTHS, [True, False, "yes"], "a list that holds a text"),
+        (TRUTHS, [True, False, ...], "a list that is still blank in part"),
+        (ORDER, "abc", "a text"),
+        (ORDER, ["a", "b"], "a list with 2 entries"),
+        (ORDER, ["b", "a", "b"], "one in which `b` stands 2 times"),
+        (TEXT, 3, "a single expression"),
+        (TEXT, ["a", 3], "a list with 2 entries"),
+        (CHOICE, 2 * x, "a single expression"),
+        (CHOICE, sm.Rational(1, 2), "a single expression"),
+        (CHOICE, 1.5, "a single expression"),
+        (CHOICE, plain(SECOND, MINUS, ["Mul", 0, 0]), "a single expression"),
+        (CHOICE, plain(STRAY, MINUS, NAME, ["Add", 0, 1]), "a single expression"),
+        (CHOICE, plain(STRAY, TWO, NAME, ["Mul", 0, 1]), "a single expression"),
+        (CHOICE, plain(STRAY, MINUS, NAME, ["Mul", 0, 1, 1]), "a single expression"),
+        (CHOICE, True, "a truth value"),
+        (CHOICE, ["1", 2], "a list with 2 entries"),
+    ],
+)
+def test_what_is_said_of_another_form(question, answer, told):
+    answer = answer if isinstance(answer, dict) else to_plain(answer)
+    with pytest.raises(Fault) as found:
+        read(question, answer)
+    wanted, said = WANTED[question.kind], found.value.message
+    assert found.value.note == "shape" and str(found.value) == said
+    assert said == f"The question wants {wanted}; this is {told}."
+
+
+OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "note", "said"),
+    [
+        (WORDS, ["1"], "shape", f"a list of 2 words, each one of {OPTIONS}; this is a list with 1"),
+        (WORDS, "1", "shape", f"a list of 2 words, each one of {OPTIONS}; this is a text."),
+        (WORDS, ["1", ...], "shape", "still blank in part: `'none'` is a text, too."),
+        (LOUD, ["yes", ...], "shape", "a list that is still blank in part."),
+        (WORDS, ["1", "k"], "shape", f"The answer is one of {OPTIONS}; this is `k`."),
+        (CHOICE, 50 * "k", "shape", f"The answer is one of {OPTIONS}; this is `{40 * 'k'}`."),
+        (IN_A, [1, 2], "shape", "The question wants a list of 3 components; this is a list with 2"),
+        (IN_A, B.x, "frame", "This vector is not connected with the frame `A` that the question"),
+        (EXPRESSION, x, "stray symbol", "The answer holds `x`; this question has no symbols."),
+        (
+            Question("expression", symbols={"a": (1, 2), "b": (1, 2)}),
+            sm.Symbol("x" * 50),
+            "stray symbol",
+            f"The answer holds `{'x' * 40}`; this question has the symbols `a`, `b`.",
+        ),
+        (EXPRESSION, sm.zoo, "undefined", "for some values of its symbols: division by zero."),
+        (EXPRESSION, sm.Integer(10) ** 61 * sm.E, "too large", "the value is beyond 10^60."),
+        (EXPRESSION, sm.I, "not real", "The answer has an imaginary part; the question asks for"),
+        (MEASUREMENT, (7, "furlong"), "unknown unit", "`furlong` is no unit that is known here."),
+        (FUNCTION, 7, "shape", "The question asks for a function: give its name, without calling"),
+        (FUNCTION, returned(["blank"], ["blank"]), "returned nothing", "and returns nothing. End"),
+        (
+            FUNCTION,
+            returned(FIRST, ["blank"]),
+            "returned nothing",
+            "In call 2 of 2 the function re",
+        ),
+        (FUNCTION, returned(FIRST, ["printed", "1"]), "printed", "The function prints its result"),
+        (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "In call 1 of 2 the"),
+        (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "raised `E: e`."),
+        (FUNCTION, returned(FIRST), "raised an error", "The function did not answer all calls."),
+        (FUNCTION, returned(FIRST, FIRST, FIRST), "raised an error", "did not answer all calls."),
+        (
+            FUNCTION,
+            returned(FIRST, ["truth", True]),
+            "shape",
+            "In call 2 of 2 the function did not return what the question wants. "
+            "The question wants a single expression; this is a truth value.",
+        ),
+        (
+            Question("function", result="expression", calls=([1], [2]), symbols={"w": (1, 2)}),
+            returned(FIRST, STRAY),
+            "stray symbol",
+            "wants. The answer holds `w`; this question has no symbols.",
+        ),
+    ],
+)
+def test_what_is_said_of_an_answer_that_has_no_value(question, answer, note, said):
+    answer = answer if isinstance(answer, dict) else to_plain(answer)
+    with pytest.raises(Fault) as found:
+        read(question, answer)
+    assert found.value.note == note and said in found.value.message
+
+
+@pytest.mark.parametrize(
+    ("question", "answer"),
+    [
+        (EXPRESSION, plain(["blank"])),
+        (VECTOR, plain(["list", [["blank"], ["blank"]]])),
+        (VECTOR, plain(["list", [["list", [["blank"]]], ["blank"]]])),
+        (TEXT, plain(["text", " "])),
+        (FUNCTION, returned(["blank"], ["blank"], worked=False)),
+    ],
+)
+def test_what_is_left_blank_is_no_answer(question, answer):
+    with pytest.raises(Blank):
+        read(question, answer)
+
+
+def test_what_a_function_returns_is_read_call_by_call():
+    assert read(FUNCTION, returned(FIRST, SECOND)) == Reading([[1], [2]])
+
+
+def test_what_has_no_value_here_is_left_to_a_person():
+    with pytest.raises(Undecidable, match="^The answer holds gamma, whose value is not worked out"):
+        read(EXPRESSION, plain(SECOND, ONE, ["gamma", 0]))
+
+
+def test_a_value_for_each_point():
+    question = Question("vector", salt="a", symbols={"x": (1, 2)}, length=2)
+    numbers = read(question, to_plain([x, 1])).numbers
+    assert len(numbers) == 5 and all(1 < first < 2 and second == 1 for first, second in numbers)
+    assert len({first for first, _ in numbers}) == 5
+
+
+def test_arguments_are_made_anew_for_each_call():
+    for takes, kind in (("lists", list), ("arrays", "ndarray")):
+        asked = Question("function", calls=([[1, 2], "zxy", 3],), takes=takes)
+        [[first, text, number]] = reading.calls_for(asked)
+        assert type(first) is kind or type(first).__name__ == kind
+        assert list(first) == [1, 2] and [text, number] == ["zxy", 3]
+        assert type(text) is str and type(number) is int
+        assert first is not asked.calls[0][0]
+    assert reading.calls_for(EXPRESSION) is None
+
+
+# --- answers in words ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "meant"),
+    [
+        *((CHOICE, said, "-i") for said in ("-i", "- I", "\u2212i", "\uff0di", " '-i' ")),
+        (CHOICE, "\u201e\u2011i\u201c", "-i"),
+        *((CHOICE, said, "1") for said in (1, 1.0, "+1", "+ 1", "'1'", ["1"])),
+        *((CHOICE, said, "+x") for said in (x, "x", "+ X", "+x")),
+        (CHOICE, plain(STRAY, MINUS, NAME, ["Mul", 0, 1]), "-i"),
+        (CHOICE, plain(STRAY, NAME, MINUS, ["Mul", 0, 1]), "-i"),
+        (CHOICE, "-  2  -", "- 2 -"),
+        (CHOICE, "b", "b"),
+        (WORDS, ["1", "None"], "1 | none"),
+        (WORDS, [1, x], "1 | +x"),
+        (ORDER, ["c", "A", "b"], "c < a < b"),
+        (TRUTHS, [True, False, True], "TFT"),
+        (TRUTHS, [1, 0, " true "], "TFT"),
+        (TRUTHS, ["TRUE", " False", sm.true], "TFT"),
+        (TEXT, " So it is. ", "So it is."),
+        (TEXT, ["So ", "it is."], "So it is."),
+    ],
+)  # fmt: skip
+def test_the_word_that_is_meant(question, answer, meant):
+    answer = answer if isinstance(answer, dict) else to_plain(answer)
+    assert read(question, answer) == Reading([], meant)
+
+
+# --- numbers with what they may be off by -------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("question", "real", "most"),
+    [
+        (EXPRESSION, 1, 2 * EXACT),
+        (EXPRESSION, 3, 4 * EXACT),
+        (Question("expression", tolerance=0.25, relative=0.5), 2, MP.mpf("1.25")),
+        (Question("expression", tolerance=0.25), 2, MP.mpf("0.25")),
+        (Question("expression", tolerance=1e-15), 1, 2 * EXACT),
+    ],
+)
+def test_what_may_remain_of_an_imaginary_part(question, real, most):
+    assert reading._number(question, MP.mpc(real, most * MP.mpf("0.99"))) == real
+    with pytest.raises(Fault, match="imaginary"):
+        reading._number(question, MP.mpc(real, most * MP.mpf("1.01")))
+
+
+def test_another_unit_is_farther_than_any_tolerance():
+    for tolerance in (None, 1e-9, 10.0):
+        question = Question("measurement", scale="1000", tolerance=tolerance)
+        [right] = read(question, to_plain((2, "kN m"))).numbers
+        [same] = read(question, to_plain((2000, "kg m^2/s^2"))).numbers
+        assert right == same and right[0] == 2
+        for unit in ("kN", "kN/m", "kN m s", "N m K"):
+            [other] = read(question, to_plain((2, unit))).numbers
+            assert reading.distance(question, other, right) > 10**5
+    assert read(MEASUREMENT, to_plain((2, "kN"))).numbers[0][0] == 2000  # in an exam
+    assert kinds.scale_of((5, "km/h")) == {"scale": "0.277777777777778"}
+
+
+TOLERANT = Question("vector", salt="cells", tolerance=0.25, relative=0.5, length=2)
+QUESTIONS = [
+    Question("vector", salt="cells", length=2),
+    Question("vector", salt="cells", tolerance=0.25, length=2),
+    TOLERANT,
+]
+
+
+def test_how_far_two_answers_are_apart():
+    assert reading.distance(TOLERANT, [3, 1], [2, 1]) == MP.mpf("0.8")
+    assert reading.distance(TOLERANT, [2, 1], [3, 1]) == 1 / MP.mpf("1.75")
+    assert reading.distance(TOLERANT, [2, 1], [2, -1]) == MP.mpf(2) / 0.75
+    for numbers, right, most in (
+        ([3.25, 1], [2, 1], 1),
+        ([2, 0.25], [2, 1], 1),
+        ([7, 1], [2, 1], 4),
+    ):
+        assert reading.within(TOLERANT, numbers, right, most)
+        assert not reading.within(TOLERANT, numbers, right, most * 0.999)
+    assert reading.within(TOLERANT, [3.25, 1], [2, 1])
+    assert not reading.within(TOLERANT, [3.26, 1], [2, 1])
+    assert reading.tolerances(Question("expression", tolerance=0.1)) == (MP.mpf("0.1"), 0)
+    assert reading.tolerances(Question("expression", relative=0.1)) == (EXACT, EXACT)
+
+
+WHERE = ["1098612289 -1386294362", "2 -2", "1 -1"]
+NEARLY = "near 69 -87"
+
+
+def test_where_the_cells_lie_is_what_it_was():
+    """Every file that was ever sealed depends on it."""
+    answer = Reading([[MP.mpf(2), MP.mpf(-3)]])
+    assert [reading.fingerprint(one, answer) for one in QUESTIONS] == WHERE
+    assert reading.fingerprint(QUESTIONS[0], answer, near=True) == NEARLY
+
+
+@pytest.mark.parametrize("near", [False, True])
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_the_cells_around_an_answer_hold_all_that_is_as_near(question, near):
+    chance = random.Random(5)
+    for _ in range(40):
+        numbers = [MP.mpf(chance.uniform(-4, 4)) for _ in range(2)]
+        answer, reach = Reading([numbers]), chance.choice([1, 2.5])
+        found = reading.fingerprints(question, answer, reach, near, most=99)
+        assert found[0] == reading.fingerprint(question, answer, near)
+        absolute, relative = (NEAR, NEAR) if near else reading.tolerances(question)
+        cells = []
+        for order, number in enumerate(numbers):
+            # As far as that on a scale on which each step is a tolerance.
+            growth = MP.exp(reach * relative) if relative else 0
+            moved = []
+            for sign in (-1, 1):
+                size, outward = abs(number), sign * (1 if number >= 0 else -1)
+                if not relative:
+                    new = number + sign * reach * absolute
+                else:
+                    offset = absolute / relative
+                    scaled = (size + offset) * (growth if outward > 0 else 1 / growth) - offset
+                    if scaled < 0:  # through zero
+                        passed = MP.log((size + offset) / offset) / relative
+                        scaled = -offset * (MP.exp((reach - passed) * relative) - 1)
+                    new = scaled * (1 if number >= 0 else -1)
+                moved.append(new)
+            own = []
+            for new in (number, *moved):
+                changed = [*numbers[:order], new, *numbers[order + 1 :]]
+                told = reading.fingerprint(question, Reading([changed]), near)
+                own.append(told.removeprefix("near ").split()[order])
+            cells.append(set(own))
+        expected = {" ".join(chosen) for chosen in itertools.product(*cells)}
+        assert {one.removeprefix("near ") for one in found} == expected
+        assert all(one.startswith("near ") == near for one in found)
+
+
+def test_of_many_edges_the_nearest_are_taken():
+    question = Question("vector", salt="many", tolerance=0.25, length=9)
+    answer = Reading([[MP.mpf(number) / 7 for number in range(9)]])
+    edges = reading.edges_near(question, answer.numbers[0], 26)
+    assert len(edges) == 18 and edges == sorted(edges)
+    nearer, farther = (
+        [reading.edges_near(QUESTIONS[1], [MP.mpf(number) / 3], *reach) for number in range(99)]
+        for reach in ((), (2,))
+    )
+    assert nearer != farther and sum(map(len, nearer)) < sum(map(len, farther)) * 0.7
+    for edges_of_one in nearer:
+        assert all(far < MP.mpf(1) / 3 for far, _, _ in edges_of_one)
+    for most in (1, 2, 3):
+        reach = (edges[most - 1][0] + edges[most][0]) / 2 * reading._width(question, 9, False)
+        nearest = reading.fingerprints(question, answer, reach, most=99)
+        assert reading.fingerprints(question, answer, 26, most=most) == nearest
+        assert len(nearest) == 2**most
+    assert len(reading.fingerprints(question, answer, 26)) <= 2**6
+    words = Reading([], "zxy")
+    assert (
+        reading.fingerprints(question, words) == [reading.fingerprint(question, words)] == ["zxy"]
+    )
+
+
+# --- one value for what can be written in several ways; faults of the form ----------------------
+
+
+@pytest.mark.parametrize(("tolerance", "limit"), [(None, "2e-9"), (0.25, "2")])
+def test_of_two_opposites_the_one_that_begins_above_zero(tolerance, limit):
+    question = Question("vector", either_sign=True, tolerance=tolerance)
+    limit, half = MP.mpf(limit), MP.mpf("0.5")
+    assert kinds.sign_limit(question) == limit
+    for numbers, turned in (
+        ([-limit - half, 1], True),
+        ([limit + half, -1], False),
+        ([limit, -3], True),
+        ([-limit, 3], False),
+        ([limit * 2, -1], False),
+        ([0, 0], False),
+    ):
+        expected = [-number for number in numbers] if turned else numbers
+        assert kinds.one_sign(question, numbers) == expected
+        assert kinds.one_sign(Question("vector"), numbers) == numbers
+        read_twice = Reading([numbers, numbers])
+        assert reading.canonical(question, read_twice) == 2 * expected
+    assert reading.canonical(EXPRESSION, Reading([[1], [2]])) == [1, 2]
+
+
+@pytest.mark.parametrize(("tolerance", "slack"), [(None, "1e-9"), (0.125, "0.75")])
+def test_the_length_of_a_unit_vector(tolerance, slack):
+    question = Question("vector", unit_vector=True, tolerance=tolerance)
+
+    def found(length):
+        numbers = [length * 2 / MP.mpf(3), -length / 3, length * 2 / MP.mpf(3)]
+        assert reading.fault(Question("vector"), Reading([numbers])) is None
+        return reading.fault(question, Reading([[0, 1, 0], numbers]))
+
+    for sign in (1, -1):
+        assert found(1 + sign * MP.mpf(slack) * MP.mpf("0.99")) is None
+        assert found(1 + sign * MP.mpf(slack) * MP.mpf("1.01")).note == "not unit length"
+    assert found(MP.mpf(2)).message.endswith("this one has length 2.")
+    assert reading.fault(question, Reading([], "a")) is None
+    assert reading.fault(EXPRESSION, Reading([[1]])) is None
+
+
+@pytest.mark.parametrize(
+    ("length", "said"),
+    [("1.0437", "1.04"), ("1.0000437", "1.00004"), ("2", "2"), ("1.000000001", "1.000000001")],
+)
+def test_a_length_with_the_digits_that_show_that_it_is_not_one(length, said):
+    assert kinds.length_in_words(MP.mpf(length)) == said
+    assert kinds.short(MP.mpf(length)) == str(MP.nstr(MP.mpf(length), 3))
+
+
+def test_the_transpose():
+    square = Question("matrix", shape=(2, 2))
+    assert kinds.transposed(square, [1, 2, 3, 4]) == [1, 3, 2, 4]
+    assert kinds.transposed(SQUARE, [*range(9)]) == [0, 3, 6, 1, 4, 7, 2, 5, 8]
+    assert kinds.transposed(MATRIX, [*range(6)]) is None
+    assert KINDS["matrix"].slips["transposed"][1] is kinds.transposed
+
+
+def test_degrees_are_no_unit():
+    assert abs(read(EXPRESSION, to_plain(180 * units.degree)).numbers[0][0] - MP.pi) < 1e-30

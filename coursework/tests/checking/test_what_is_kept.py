@@ -1,0 +1,286 @@
+"""What is written down beside a notebook, and what is read again of it: entry by entry, reader by
+reader.
+"""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from coursework.checking import fields, identity
+from coursework.checking.fields import Fields, Misread
+from coursework.checking.progress import KEPT, Entry, Progress
+from coursework.checking.question import Place, Question, Variant
+
+OTHER = {"outcome": "correct", "variant": 1, "numbers": "other", "whose": ""}
+WHOLE = {
+    "outcome": "wrong",
+    "note": "opposite",
+    "answers": ["a", "b"],
+    "help": "hint",
+    "page": [1, "key"],
+    "mistake": "opposite",
+    "mistake at": 12.5,
+    "after": [["levers/other", 2, "its key"]],
+    "variant": 3,
+    "numbers": "three",
+    "whose": "ann",
+    "other variants": {"1": OTHER},
+    "colour": "red",
+}
+ENTRY = Entry(
+    "wrong",
+    "opposite",
+    ("a", "b"),
+    "hint",
+    Place(1, "key"),
+    "opposite",
+    12.5,
+    (("levers/other", Place(2, "its key")),),
+    3,
+    "three",
+    "ann",
+    (Entry("correct", variant=1, numbers="other", whose=""),),
+    {"colour": "red"},
+)
+
+
+# --- entries ------------------------------------------------------------------------------------
+
+
+def test_an_entry_is_written_as_it_was_read():
+    assert Entry.from_json(WHOLE) == ENTRY and ENTRY.as_json() == WHOLE
+    assert Entry.from_json({}) == Entry() and Entry().as_json() == {}
+    assert [type(part) for part in Entry.from_json({}).__dict__.values()] == [
+        type(part) for part in Entry().__dict__.values()
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(set(WHOLE) - {"colour"}))
+@pytest.mark.parametrize("damaged", [True, {"1": 2}, [[]]])
+def test_a_field_that_is_not_what_it_should_be_is_as_if_it_were_not_there(name, damaged):
+    without = {key: value for key, value in WHOLE.items() if key != name}
+    if name == "other variants" and damaged == {"1": 2}:  # what is no entry is an empty one
+        without[name] = {"1": {}}
+    assert Entry.from_json({**WHOLE, name: damaged}) == Entry.from_json(without)
+    assert Entry.from_json(damaged if damaged is True else [damaged]) == Entry()
+
+
+def test_two_sets_of_numbers_of_one_place_are_both_kept():
+    first, second = (Entry("wrong", variant=1, numbers=name) for name in ("old", "new"))
+    written = Entry(others=(first, second)).as_json()["other variants"]
+    assert written == {"1": first.as_json(), "1 new": second.as_json()}
+    assert Entry.from_json({"other variants": written}).others == (first, second)
+
+
+def test_an_entry_is_of_numbers_by_their_name_and_without_one_by_their_place():
+    assert Entry(variant=1, numbers="a").has(2, "a") and not Entry(variant=1, numbers="a").has(
+        1, "b"
+    )
+    for nameless, asked in ((Entry(variant=1), "b"), (Entry(variant=1, numbers="a"), "")):
+        assert nameless.has(1, asked) and not nameless.has(2, asked)
+
+
+def test_what_is_known_with_other_numbers_stays_beside_it():
+    place, later = Place(1, "key"), Place(2, "key")
+    fresh = Entry(after=(("a", place),)).with_numbers(1, "one")
+    assert fresh == Entry(variant=1, numbers="one", after=(("a", place),))
+    first = Entry("wrong", variant=1, after=(("a", place),)).with_numbers(1, "one")
+    assert (first.outcome, first.numbers, first.others) == ("wrong", "one", ())
+    second = first.with_numbers(2, "two")
+    assert second == Entry(variant=2, numbers="two", after=first.after, others=(first,))
+    worked = Entry("correct", variant=2, numbers="two", after=(("b", later),), others=second.others)
+    third = worked.with_numbers(3, "three")
+    kept = Entry("correct", variant=2, numbers="two", after=(("b", later),))
+    assert third.others == (kept, first) and third.after == worked.after
+    again = third.with_numbers(1, "one")
+    assert (again.outcome, again.variant) == ("wrong", 1)
+    assert again.after == (("a", place), ("b", later))
+    assert [one.numbers for one in again.others] == ["three", "two"]
+
+
+def test_numbers_are_known_by_their_name_where_both_have_one():
+    one, nameless = Entry("wrong", variant=1, numbers="one"), Entry("wrong", variant=1)
+    assert one.with_numbers(1, "two").others == (one,)
+    three = Entry("correct", variant=3, numbers="three")
+    for known, variant, found in ((one, 1, False), (one, 2, False), (nameless, 1, True)):
+        asked = replace(three, others=(known,)).with_numbers(variant, "other")
+        assert asked.outcome == ("wrong" if found else "")
+        assert asked.others == ((three,) if found else (three, known))
+
+
+# --- the file -----------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    yield tmp_path
+    monkeypatch.setattr(identity, "_identity", "")
+
+
+@pytest.mark.parametrize("found", [None, b"[]", b"{", b"\xff", b'{"levers/one": 3}'])
+def test_what_is_no_record_is_none(folder, found):
+    if found is not None:
+        KEPT.parent.mkdir()
+        KEPT.write_bytes(found)
+    assert Progress.read().entry("levers/one") == Entry()
+
+
+def test_what_is_put_is_there_again_and_nothing_else_is(folder):
+    for folder_is_there in (False, True):
+        Progress.read().put({"b/größe": ENTRY, "a/one": Entry("correct")})
+        Progress.read().put({"b/größe": Entry("correct", "ö")})
+        assert Progress.read().entry("b/größe") == Entry("correct", "ö")
+        assert Progress.read().entry("a/one") == Entry("correct")
+        assert [path.name for path in KEPT.parent.iterdir()] == ["progress.json"]
+        assert KEPT.parent.is_dir() or not folder_is_there
+    text = KEPT.read_text("utf8")
+    assert list(json.loads(text)) == ["a/one", "b/größe"] and text.startswith('{\n "a/one": {\n  "')
+
+
+def test_a_folder_that_cannot_be_written_to_costs_the_record_only(folder):
+    KEPT.parent.write_text("no folder")
+    progress = Progress({})
+    progress.put({"a/one": ENTRY})
+    assert progress.entry("a/one") == ENTRY and Progress.read().entries == {}
+
+
+def test_what_is_right_with_other_numbers_is_told_by_whose_they_were():
+    right, wrong = (
+        {"outcome": outcome, "variant": 1, "numbers": outcome} for outcome in ("correct", "wrong")
+    )
+    progress = Progress(
+        {
+            "d": {**right, "whose": "ann"},
+            "c": {**wrong, "whose": "bob", "other variants": {"1": {**right, "whose": "ann"}}},
+            "b": {**right, "whose": "bob", "other variants": {"1": {**right, "whose": "ann"}}},
+            "a": right,
+            "e": {
+                **wrong,
+                "whose": "ann",
+                "other variants": {"1": {**right, "whose": ""}, "2": {**right, "whose": "eve"}},
+            },
+        }
+    )
+    assert progress.right_for_others("bob") == {"ann": ["c", "d"], "": ["e"]}
+    assert progress.right_for_others("ann") == {"": ["e"]}
+
+
+# --- who works here -----------------------------------------------------------------------------
+
+
+def test_who_works_here_is_said_once(folder, capsys):
+    Progress({}).put({"b": Entry("correct", variant=1, numbers="x", whose="")})
+    Progress.read().put({"a": Entry("correct", variant=1, numbers="x", whose="bob")})
+    Progress.read().put({"c": Entry("correct", variant=1, numbers="x", whose="ann ä")})
+    identity.student("")
+    assert capsys.readouterr().out == ""
+    identity.student("  Ann   Ä\t")
+    assert identity.identity() == "ann ä" == identity.KEPT.read_text("utf8")
+    said = capsys.readouterr().out
+    assert said.splitlines() == [
+        "With the numbers of bob you have solved a. That stays written down; for the numbers of "
+        "ann ä, run the cells again.",
+        "With the numbers that everybody sees you have solved b. That stays written down; for the "
+        "numbers of ann ä, run the cells again.",
+    ]
+    monkey = identity._identity
+    identity.student()
+    assert identity.identity() == monkey
+    assert capsys.readouterr().out.startswith(
+        "The numbers below are those of ann ä, as you have said before.\n"
+    )
+    for count, student, told in ((1, "", ""), (2, "ann", ""), (2, "", identity.FORGOTTEN)):
+        asked = Question("expression", variant=Variant(count=count))
+        assert identity.forgotten(student, asked) == told
+
+
+def test_an_identity_that_cannot_be_kept_or_read_is_said_anew(folder, capsys):
+    identity.student("")
+    assert identity.identity() == "" == capsys.readouterr().out
+    KEPT.parent.mkdir()
+    identity.KEPT.write_bytes(b"\xff")
+    identity.student("")
+    assert identity.identity() == "" == capsys.readouterr().out
+    identity.KEPT.write_text(" ")
+    identity.student("")
+    assert identity.identity() == "" == capsys.readouterr().out
+    identity.KEPT.unlink()
+    identity.KEPT.mkdir()
+    identity.student("Ann")
+    assert identity.identity() == "ann"
+
+
+# --- readers ------------------------------------------------------------------------------------
+
+#: How to make readers.
+MAKES = {
+    "many": lambda: fields.many(fields.number),
+    "pair": lambda: fields.pair(fields.whole),
+    "by name": lambda: fields.by_name(fields.text),
+    "one of": lambda: fields.one_of("a", "b"),
+}
+
+
+@pytest.mark.parametrize(
+    ("reader", "right", "wrong", "wanted"),
+    [
+        (fields.text, ["", "a"], [1, None, ["a"]], "a text"),
+        (fields.number, [1, 2.5, 0], ["1", True, None], "a number"),
+        (fields.whole, [1, 0], [1.0, True, "1"], "a whole number"),
+        (fields.truth, [True, False], [1, 0, "true"], "true or false"),
+        ("one of", ["a", "b"], ["c", "ab"], "one of 'a', 'b'"),
+        (fields.a_list, [[1, "a"], []], ["a", {"a": 1}], "a list"),
+        ("pair", [(1, 2)], [[1], [1, 2, 3], "ab", {1: 2, 3: 4}], "a list of two"),
+        ("many", [(1, 2), ()], ["ab", {"a": 1}], "a list"),
+        ("by name", [{"a": "b"}, {}], [["a"], "a"], "an object"),
+    ],
+)
+def test_a_reader_gives_what_it_is_for_and_refuses_the_rest(reader, right, wrong, wanted):
+    reader = MAKES[reader]() if reader in MAKES else reader
+    for value in right:
+        assert reader(value, "here") == value and type(reader(value, "here")) is type(value)
+    for value in wrong:
+        with pytest.raises(Misread) as error:
+            reader(value, "here")
+        assert str(error.value) == f"here should be {wanted}, and is {value!r}."
+
+
+@pytest.mark.parametrize(
+    ("reader", "value", "where"),
+    [
+        ("many", [1, "a"], "here"),
+        ("pair", ["a", 1], "here"),
+        ("pair", [1, "a"], "here"),
+        ("by name", {"b": "c", "a": 1}, "here: 'a'"),
+        ("by name", {1: "c"}, "here"),
+    ],
+)
+def test_what_is_wrong_within_is_said_where_it_stands(reader, value, where):
+    with pytest.raises(Misread) as error:
+        MAKES[reader]()(value, "here")
+    assert str(error.value).startswith(f"{where} should be")
+
+
+def test_a_long_value_is_shown_in_part():
+    for length, shown in ((58, repr("a" * 58)), (59, "'" + "a" * 59 + "…")):
+        assert str(Misread("here", "short", "a" * length)).endswith(f"and is {shown}.")
+
+
+def test_fields_are_there_or_may_be_missing():
+    about = Fields({"a": 1, "b": None, "c": "x"}, "here")
+    assert about.get("a", fields.whole) == 1 == about.maybe("a", fields.whole)
+    assert about.maybe("b", fields.whole) is None is about.maybe("d", fields.whole)
+    assert about.beside(["a", "d"]) == {"b": None, "c": "x"}
+    with pytest.raises(Misread, match="^here should be an object with 'd', and is 'a, b, c'.$"):
+        about.get("d", fields.whole)
+    for read in (about.get, about.maybe):
+        with pytest.raises(Misread, match="^here: 'c' should be a whole number, and is 'x'.$"):
+            read("c", fields.whole)
+    with pytest.raises(Misread, match="^here should be an object"):
+        Fields([], "here")
+
+
+def test_tuples_are_written_as_lists():
+    assert fields.written({"a": (1, [(2,), {"b": ()}])}) == {"a": [1, [[2], {"b": []}]]}
