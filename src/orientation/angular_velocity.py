@@ -339,7 +339,7 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
 
     def excess(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
         angle = f.norm(x, y, z)
-        return f.where(angle > 1, f.where(abs(f.sin(angle / 2)) < 1e-9, 1, 0), 0)
+        return f.where(abs(f.sin(angle / 2)) < 1e-9 * angle, 1, 0)
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
@@ -376,5 +376,5 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
         (3,),
         ("vector", vector, (3,)),
         ("angular_velocity", angular_velocity, (3,)),
-        guard=Guard(3, excess, explain),
+        guard=Guard(excess, explain, 3),
     )

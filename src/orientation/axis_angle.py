@@ -47,7 +47,7 @@ def _explain_zero(components: Sequence[float], where: str) -> None:
     )
 
 
-AXIS_GUARD = Guard(3, _length_missing, _explain_zero)
+AXIS_GUARD = Guard(_length_missing, _explain_zero, 3)
 
 
 @overload
@@ -104,9 +104,18 @@ def axis_angle_formula(
 ) -> Sequence[Component]:
     """Formula of :func:`dcm_from_axis_angle`, for the components of the axis and the angle."""
     length = f.norm(x, y, z)
-    cosine, sine = f.cos(angle), f.sin(angle) / length
-    rest = (1 - cosine) / length**2
-    sx, sy, sz, rx, ry = sine * x, sine * y, sine * z, rest * x, rest * y
+    cosine = f.cos(angle)
+    return turn_components(cosine, f.sin(angle) / length, (1 - cosine) / length**2, x, y, z)
+
+
+def turn_components(
+    cosine: Component, first: Component, second: Component, x: Component, y: Component, z: Component
+) -> Sequence[Component]:
+    r"""Components, row by row, of :math:`c\,\mathbf{I} + s_2\,\mathbf{v}\mathbf{v}^T
+    - s_1\,[\mathbf{v}]_\times`: a turn about the vector, whose length has been divided out of
+    both shares.
+    """
+    sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
     xy, xz, yz = rx * y, rx * z, ry * z
     return (
         cosine + rx * x,
@@ -117,7 +126,7 @@ def axis_angle_formula(
         yz + sx,
         xz + sy,
         yz - sx,
-        cosine + rest * z * z,
+        cosine + second * z * z,
     )
 
 
@@ -216,5 +225,5 @@ def axis_angle_from_dcm(dcm: Values) -> tuple[Array, Scalars]:
         return axis_angle_components(f, *quaternion_components_from_dcm(f, *entries))
 
     combined = evaluate_numbers(formula, (4,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
-    angle = combined[..., 3]
-    return combined[..., :3], angle if angle.ndim else float(angle)
+    angle = combined[..., -1]
+    return combined[..., :-1], angle if angle.ndim else float(angle)

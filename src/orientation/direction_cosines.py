@@ -192,7 +192,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     """Raise the error that says what is wrong with nine numbers, which are no direction cosine
     matrix.
     """
-    rows = {"x": entries[0:3], "y": entries[3:6], "z": entries[6:9]}
+    rows = {"x": entries[:3], "y": entries[3:6], "z": entries[6:]}
     names = list(rows)
     # Added in this order by every Python and in the page: sum() rounds otherwise since 3.12.
     products = {
@@ -204,7 +204,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     (p, q), worst = max(faults.items(), key=lambda item: abs(item[1]))
     (a, b, c), (d, e, g), (h, k, m) = rows.values()
     determinant = a * (e * m - g * k) - b * (d * m - g * h) + c * (d * k - e * h)
-    if abs(worst) <= 2 * TOLERANCE and determinant < 0:
+    if abs(worst) <= TOLERANCE and determinant < 0:
         raise ValueError(
             f"{name}{where} is orthogonal but left-handed: its determinant is "
             f"{determinant:.6g}, not +1. One row or column has the wrong sign, or two "
@@ -225,7 +225,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
         cause = "Every entry is zero"
     elif scaled:
         cause = (
-            f"The whole matrix is {squares[0] ** 0.5:.8g} times an orthogonal one, as from a "
+            f"The whole matrix is {max(squares) ** 0.5:.8g} times an orthogonal one, as from a "
             f"quaternion that is not of unit length"
         )
     elif abs(worst) < 0.1:
@@ -236,7 +236,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
 
 
 #: What every conversion from a direction cosine matrix asks of it first.
-DCM_GUARD = Guard(9, dcm_excess, explain_dcm)
+DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
 
 
 class NearestDCM(NamedTuple):
@@ -286,9 +286,7 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     import numpy
 
     array = number_array(matrix, (3, 3), "matrix")
-    left, scales, right = numpy.linalg.svd(array)
-    handedness = numpy.sign(numpy.linalg.det(left @ right))
-    gap = scales[..., 1] + handedness * scales[..., 2]
+    dcm, scales, gap = nearest_by_scales(array)
     excess = gap - TOLERANCE * scales[..., 0]
     if numpy.any(excess <= 0):
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
@@ -296,15 +294,21 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
         raise ValueError(
             f"several direction cosine matrices are equally near to matrix{where}: its singular "
             "values are "
-            f"{', '.join(map(_six_decimals, scales[worst]))} and its determinant is "
-            f"{_six_decimals(numpy.linalg.det(array[worst]))}. It is a mirror image, or its rows "
+            f"{', '.join(f'{scale:z.6f}' for scale in scales[worst])} and its determinant is "
+            f"{numpy.linalg.det(array[worst]):z.6f}. It is a mirror image, or its rows "
             "all lie "
             f"along one line"
         )
-    left[..., :, 2] *= handedness[..., None]
-    dcm = left @ right
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))
 
 
-def _six_decimals(number: float) -> str:
-    return f"{round(float(number), 6) + 0.0:.6f}"  # adding zero turns -0 into 0
+def nearest_by_scales(array: Array) -> tuple[Array, Array, Array]:
+    """The nearest direction cosine matrix, the singular values, and how far they are from allowing
+    others that are equally near.
+    """
+    import numpy
+
+    left, scales, right = numpy.linalg.svd(array)
+    handedness = numpy.sign(numpy.linalg.det(left @ right))
+    left[..., :, 2] *= handedness[..., None]
+    return left @ right, scales, scales[..., 1] + handedness * scales[..., 2]

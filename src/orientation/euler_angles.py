@@ -6,14 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, TypeAlias, overload
 
 from .direction_cosines import AXES, DCM_GUARD
-from .numbers_and_symbols import (
-    evaluate,
-    evaluate_numbers,
-    is_symbolic,
-    number_array,
-    one_item,
-    symbol_components,
-)
+from .numbers_and_symbols import evaluate, evaluate_numbers
 
 if TYPE_CHECKING:
     from ._types import (
@@ -45,15 +38,11 @@ TAIT_BRYAN = ("xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
 SEQUENCES = PROPER_EULER + TAIT_BRYAN
 
 
-def _layout(sequence: str) -> Layout:
-    """Return the first, the second and the remaining axis as indices, and the sign of their
-    order.
-    """
-    first, second = AXES.index(sequence[0]), AXES.index(sequence[1])
-    return first, second, 3 - first - second, 1 if (second - first) % 3 == 1 else -1
-
-
-_LAYOUTS = {sequence: _layout(sequence) for sequence in SEQUENCES}
+_LAYOUTS: dict[str, Layout] = {
+    sequence: (first, second, 3 - first - second, 1 if (second - first) % 3 == 1 else -1)
+    for sequence in SEQUENCES
+    for first, second in [map(AXES.index, sequence[:2])]
+}
 
 
 def layout_of(sequence: str) -> Layout:
@@ -66,7 +55,7 @@ def layout_of(sequence: str) -> Layout:
             f"write {sequence.lower()!r}: sequences are lower case and body fixed; for turns about "
             f"the axes of the frame that stays, there are functions named space_fixed"
         )
-    elif isinstance(sequence, str) and len(sequence) == 3 and set(sequence) <= set(AXES):
+    elif isinstance(sequence, str) and len(sequence) == 3 and not set(sequence) - set(AXES):
         cause = (
             "two turns in a row about one axis are one turn, so such a sequence does not reach "
             "every orientation"
@@ -253,7 +242,14 @@ def dcm_from_space_fixed(angles: Values, sequence: str) -> Array | Matrix:
     True
     """
     layout_of(sequence)
-    return dcm_from_body_fixed(_reversed(angles), sequence[::-1])
+    turned = body_fixed_formula(sequence[::-1])
+
+    def formula(
+        f: Functions[Component], psi: Component, theta: Component, phi: Component
+    ) -> Sequence[Component | float]:
+        return turned(f, phi, theta, psi)
+
+    return evaluate(formula, (3, 3), ("angles", angles, (3,)))
 
 
 def space_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
@@ -310,10 +306,3 @@ def lock_margin_formula(sequence: str) -> NumberFormula:
         return [f.atan2(abs(across), abs(along))]
 
     return formula
-
-
-def _reversed(angles: Values) -> Values:
-    if is_symbolic(angles):
-        return symbol_components(angles, (3,), "angles")[::-1]
-    entries = one_item(angles, (3,), "angles")
-    return entries[::-1] if entries else number_array(angles, (3,), "angles")[..., ::-1]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from .direction_cosines import check_dcm
 from .numbers_and_symbols import number_array
+from .observations import unit_directions
 from .rotation_vector import dcm_from_rotation_vector
 
 if TYPE_CHECKING:
@@ -110,8 +111,8 @@ class MultiplicativeKalmanFilter:
         self.bias = numpy.zeros((*batch, 3))
         covariance = number_array(covariance, (6, 6), "covariance")
         self.covariance = numpy.broadcast_to(covariance, (*batch, 6, 6)).copy()
-        self.gyroscope_noise = numpy.asarray(gyroscope_noise, dtype=float)
-        self.bias_noise = numpy.asarray(bias_noise, dtype=float)
+        self.gyroscope_noise = number_array(gyroscope_noise, (), "gyroscope_noise")
+        self.bias_noise = number_array(bias_noise, (), "bias_noise")
 
     def turn(self, angular_velocity: Values, step: Values) -> None:
         r"""Turn with the gyroscope for one step.
@@ -125,8 +126,8 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        rate = number_array(angular_velocity, (3,), "rate") - self.bias
-        step = numpy.asarray(step, dtype=float)[..., None]
+        rate = number_array(angular_velocity, (3,), "angular_velocity") - self.bias
+        step = number_array(step, (), "step")[..., None]
         turned = dcm_from_rotation_vector(rate * step)
         self.dcm = turned @ self.dcm
         carried = numpy.zeros_like(self.covariance) + numpy.eye(6)
@@ -155,17 +156,17 @@ class MultiplicativeKalmanFilter:
         """
         import numpy
 
-        seen = number_array(observed, (3,), "observed")
-        known = number_array(reference, (3,), "reference")
-        seen = seen / numpy.linalg.norm(seen, axis=-1, keepdims=True)
-        known = known / numpy.linalg.norm(known, axis=-1, keepdims=True)
+        seen, known = (
+            unit_directions(number_array(direction, (3,), name), name)
+            for direction, name in ((observed, "observed"), (reference, "reference"))
+        )
         expected = (self.dcm @ known[..., None])[..., 0]
         # A body turned by delta sees expected + expected x delta.
         slope = numpy.zeros((*expected.shape, 6))
         across = numpy.cross(expected[..., None, :], numpy.eye(3))
         slope[..., :3] = across.swapaxes(-1, -2)
         spread = self.covariance @ slope.swapaxes(-1, -2)
-        variance = numpy.asarray(deviation, dtype=float)[..., None, None] ** 2
+        variance = number_array(deviation, (), "deviation")[..., None, None] ** 2
         innovation = Innovation(seen - expected, slope @ spread + variance * numpy.eye(3))
         gain = spread @ numpy.linalg.inv(innovation.covariance)
         change = (gain @ innovation.difference[..., None])[..., 0]

@@ -72,7 +72,7 @@ def turns_from_angular_velocity(
 
     if order not in ORDERS:
         raise ValueError(f"order is {order!r}, where 1, 2 or 4 was expected")
-    times = numpy.asarray(times, dtype=float)
+    times = number_array(times, (), "times")
     if times.ndim != 1 or len(times) < 2:
         raise ValueError(
             f"times has shape {times.shape}, where the ends of one interval or more were expected, "

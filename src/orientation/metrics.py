@@ -76,7 +76,7 @@ def angle_between(first: Values, second: Values) -> Scalars:
         (),
         ("first", first, (3, 3)),
         ("second", second, (3, 3)),
-        guard=Guard(18, excess, explain),
+        guard=Guard(excess, explain),
     )
 
 

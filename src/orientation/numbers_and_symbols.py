@@ -61,17 +61,17 @@ class Guard(NamedTuple):
 
     Attributes
     ----------
-    size : int
-        How many components it looks at, from the first.
     excess : callable
         ``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input.
     explain : callable
         ``explain(components, where)`` raises the error that says what is wrong.
+    size : int, optional
+        How many components it looks at, from the first: all, if not given.
     """
 
-    size: int
     excess: Excess
     explain: Explain
+    size: int | None = None
 
 
 def is_symbolic(value: object) -> TypeGuard[Symbols]:

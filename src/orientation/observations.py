@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from .direction_cosines import nearest_by_scales
 from .numbers_and_symbols import number_array
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
 def _triad(pair: Array, name: str) -> Array:
     import numpy
 
-    first, second = (_unit(pair[..., k, :], name) for k in (0, 1))
+    first, second = (unit_directions(pair[..., k, :], name) for k in (0, 1))
     across = numpy.cross(first, second)
     sine = numpy.linalg.norm(across, axis=-1, keepdims=True)
     if not numpy.all(sine > PARALLEL):
@@ -85,7 +86,8 @@ def _triad(pair: Array, name: str) -> Array:
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
 
 
-def _unit(directions: Array, name: str) -> Array:
+def unit_directions(directions: Array, name: str) -> Array:
+    """Directions of any length, each divided by it."""
     import numpy
 
     length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
@@ -150,11 +152,10 @@ def dcm_from_directions(
     import numpy
 
     observed, reference, weights = _weighted(observed, reference, deviations)
-    left, sizes, right = numpy.linalg.svd((weights * observed).swapaxes(-1, -2) @ reference)
-    sign = numpy.linalg.det(left @ right)
+    fitted, scales, gap = nearest_by_scales((weights * observed).swapaxes(-1, -2) @ reference)
     # How far the least of the three turns would have to be wrong before another orientation fits as
     # well.
-    margin = (sizes[..., 1] + sign * sizes[..., 2]) / sizes[..., 0]
+    margin = gap / scales[..., 0]
     if not numpy.all(margin > PARALLEL):
         raise ValueError(
             f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie "
@@ -162,9 +163,6 @@ def dcm_from_directions(
             "observed and reference are mirror images of each other. Is one of the two frames "
             "left-handed?"
         )
-    handed = left.copy()
-    handed[..., :, 2] *= numpy.round(sign)[..., None]
-    fitted: Array = handed @ right
     return fitted
 
 
@@ -244,4 +242,4 @@ def _weighted(
             f"{deviations.min():g}"
         )
     spread: Array = deviations[:, None] ** -2.0
-    return _unit(observed, "observed"), _unit(reference, "reference"), spread
+    return unit_directions(observed, "observed"), unit_directions(reference, "reference"), spread

@@ -58,7 +58,7 @@ def demand_unit_length(entries: Sequence[complex], name: str, tolerance: float) 
         _explain_length(real, "", name)
 
 
-QUATERNION_GUARD = Guard(4, _length_excess, _explain_length)
+QUATERNION_GUARD = Guard(_length_excess, _explain_length, 4)
 
 
 @overload
@@ -348,7 +348,7 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
         ("first", first, (4,)),
         ("second", second, (4,)),
         ("share", share, ()),
-        guard=Guard(8, excess, explain),
+        guard=Guard(excess, explain, 8),
     )
 
 

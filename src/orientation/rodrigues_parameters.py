@@ -122,7 +122,7 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         return x / scalar, y / scalar, z / scalar
 
-    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(9, excess, explain))
+    return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=Guard(excess, explain))
 
 
 @overload
@@ -260,4 +260,4 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
         square = x * x + y * y + z * z
         return -x / square, -y / square, -z / square
 
-    return evaluate(formula, (3,), ("vector", vector, (3,)), guard=Guard(3, excess, explain))
+    return evaluate(formula, (3,), ("vector", vector, (3,)), guard=Guard(excess, explain))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, overload
 
+from .axis_angle import turn_components
 from .direction_cosines import DCM_GUARD
 from .numbers_and_symbols import evaluate, evaluate_numbers
 from .quaternions import quaternion_components_from_dcm
@@ -79,19 +80,7 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
         # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers.
         # It is divided twice because the square of a very small length is 0.
         second = (1 - cosine) / length / length
-        sx, sy, sz, rx, ry = first * x, first * y, first * z, second * x, second * y
-        xy, xz, yz = rx * y, rx * z, ry * z
-        return (
-            cosine + rx * x,
-            xy + sz,
-            xz - sy,
-            xy - sz,
-            cosine + ry * y,
-            yz + sx,
-            xz + sy,
-            yz - sx,
-            cosine + second * z * z,
-        )
+        return turn_components(cosine, first, second, x, y, z)
 
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 

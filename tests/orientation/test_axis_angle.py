@@ -23,6 +23,8 @@ from orientation import (
     quaternion_from_axis_angle,
     simple_dcm,
 )
+from orientation.axis_angle import axis_angle_components
+from orientation.numbers_and_symbols import NUMBERS
 
 theta = sm.Symbol("theta")
 SMALL = [0, 1e-300, 1e-16, 1e-12, 1e-8, 1e-7, 1e-4, 1e-2, 0.1]
@@ -135,6 +137,18 @@ def test_exact_half_turns_and_rest():
     for rest in (np.eye(3), np.where(np.eye(3) == 1, 1, -0.0), np.eye(3, dtype=int)):
         found, angle = axis_angle_from_dcm(rest)
         assert angle == 0 and found.tolist() == [1, 0, 0]
+
+
+def test_both_quaternions_of_an_orientation_have_one_axis_and_angle():
+    """The formula is everybody's who has components, of either sign."""
+    for quaternion in [*random_unit_vectors(20, 7, size=4), np.array([1.0, 0, 0, 0])]:
+        for sign in (1, -1):
+            *axis, angle = axis_angle_components(NUMBERS, *sign * quaternion)
+            assert np.linalg.norm(axis) == pytest.approx(1) and 0 <= angle <= np.pi
+            assert (
+                rotation_error(dcm_from_axis_angle(axis, angle), dcm_from_quaternion(quaternion))
+                < 1e-14
+            )
 
 
 def test_half_angle():

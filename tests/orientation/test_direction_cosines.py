@@ -147,6 +147,8 @@ def test_every_kind_of_reflection_is_found():
                 ValueError, match="orthogonal but left-handed: its determinant is -1, not"
             ):
                 check_dcm(mirror)
+            with pytest.raises(ValueError, match="not orthogonal: row . has length 1.5"):
+                check_dcm(1.5 * mirror)
 
 
 def test_check_repairs_and_returns_nothing():

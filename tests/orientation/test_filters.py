@@ -3,6 +3,7 @@ covariance says.
 """
 
 import numpy as np
+import pytest
 from orientations import random_dcms
 
 from orientation import (
@@ -104,3 +105,80 @@ def test_one_orientation_is_a_batch_of_one():
     assert np.allclose(single.dcm, batch.dcm[0]) and np.allclose(
         single.covariance, batch.covariance[0]
     )
+
+
+def kalman_filters(shape, source):
+    """A filter with a bias, of a batch of any shape, in which nothing is like anything else."""
+    roots = 0.03 * source.normal(size=(*shape, 6, 6))
+    estimate = MultiplicativeKalmanFilter(
+        random_dcms(max(1, np.prod(shape, dtype=int)), 5).reshape(*shape, 3, 3),
+        roots @ roots.swapaxes(-1, -2) + 1e-4 * np.eye(6),
+        source.uniform(0.01, 0.1, shape),
+        source.uniform(0.01, 0.1, shape),
+    )
+    estimate.bias = source.normal(size=(*shape, 3))
+    return estimate
+
+
+def by_differences(function):
+    """The derivative of a vector by small turns of the body."""
+    size = 1e-6
+    return np.stack(
+        [
+            (function(dcm_from_rotation_vector(d)) - function(dcm_from_rotation_vector(-d)))
+            / (2 * size)
+            for d in size * np.eye(3)
+        ],
+        axis=-1,
+    )
+
+
+@pytest.mark.parametrize("shape", [(), (1,), (3,), (2, 2)])
+def test_each_step_is_kalmans_for_the_model_of_its_docstring(shape):
+    source = np.random.default_rng(6)
+    estimate, eye = kalman_filters(shape, source), np.eye(3)
+    dcm, bias, P = estimate.dcm, estimate.bias, estimate.covariance
+    rate, step = source.normal(size=(*shape, 3)), source.uniform(0.1, 0.3, shape)
+    estimate.turn(rate, step)
+    for k in np.ndindex(shape):
+        turned, h = dcm_from_rotation_vector((rate[k] - bias[k]) * step[k]), step[k]
+        carried = np.block([[turned, -h * eye], [0 * eye, eye]])
+        noise = np.repeat([estimate.gyroscope_noise[k], estimate.bias_noise[k]], 3) ** 2 * h
+        np.testing.assert_allclose(estimate.dcm[k], turned @ dcm[k], atol=1e-15)
+        np.testing.assert_allclose(
+            estimate.covariance[k], carried @ P[k] @ carried.T + np.diag(noise), atol=1e-15
+        )
+    dcm, P = estimate.dcm, estimate.covariance
+    observed, reference = source.normal(size=(2, *shape, 3))
+    deviation = source.uniform(0.03, 0.3, shape)
+    innovation = estimate.observe(observed, reference, deviation)
+    for k in np.ndindex(shape):
+        seen, known = (v[k] / np.linalg.norm(v[k]) for v in (observed, reference))
+        H = np.hstack([by_differences(lambda turn: turn @ dcm[k] @ known), 0 * eye])
+        information = H.T / deviation[k] ** 2
+        # By the inverses of the covariances: another way than that of the gain.
+        after = np.linalg.inv(np.linalg.inv(P[k]) + information @ H)
+        difference = seen - dcm[k] @ known
+        change = after @ information @ difference
+        S = H @ P[k] @ H.T + deviation[k] ** 2 * eye
+        for found, right in (
+            (innovation.difference[k], difference),
+            (innovation.covariance[k], S),
+            (innovation.normalised_square[k], difference @ np.linalg.inv(S) @ difference),
+            (estimate.covariance[k], after),
+            (estimate.dcm[k], dcm_from_rotation_vector(change[:3]) @ dcm[k]),
+            (estimate.bias[k], bias[k] + change[3:]),
+        ):
+            np.testing.assert_allclose(found, right, rtol=1e-8, atol=1e-9)
+
+
+def test_a_filter_keeps_its_own_numbers_and_refuses_what_is_no_orientation():
+    covariance = np.eye(6)
+    estimate = MultiplicativeKalmanFilter(random_dcms(3, 1), covariance, 0.1, 0.1)
+    assert estimate.bias.shape == (3, 3) and not estimate.bias.any()
+    estimate.covariance[0] = 7
+    assert (covariance == np.eye(6)).all() and (estimate.covariance[1] == np.eye(6)).all()
+    with pytest.raises(ValueError, match="dcm is not orthogonal"):
+        MultiplicativeKalmanFilter(2 * np.eye(3), covariance, 0.1, 0.1)
+    with pytest.raises(ValueError, match="observed holds a direction of length zero"):
+        estimate.observe(np.zeros((3, 3)), (0, 0, 1.0), 0.1)

@@ -224,6 +224,23 @@ def test_lists_tuples_and_objects(function, batches):
         )
 
 
+@every
+def test_one_item_of_plain_numbers_is_read_at_a_glance(function, batches, monkeypatch):
+    """Most of the speed of a single conversion lies in this, and no other result shows it."""
+
+    def refuse(*_):
+        raise AssertionError("read the long way")
+
+    monkeypatch.setattr(orientation.numbers_and_symbols, "_evaluate_what_is_read", refuse)
+    items = [batch[0] for batch in batches]
+    for held in (
+        [item.tolist() for item in items],
+        [tuple(item.tolist()) if item.ndim == 1 else item.tolist() for item in items],
+        [item if item.ndim else round(item.item()) for item in items],
+    ):
+        function(*held)
+
+
 # --- kinds of numbers -----------------------------------------------------------------------------
 
 
@@ -389,6 +406,10 @@ def test_missing_numbers_are_found(function, batches):
                 function(*(batch[7] for batch in spoilt))
 
 
+def kalman_filter():
+    return orientation.MultiplicativeKalmanFilter(DCMS, np.eye(6), 0.1, 0.1)
+
+
 @pytest.mark.parametrize(
     ("function", "arguments"),
     [
@@ -398,9 +419,27 @@ def test_missing_numbers_are_found(function, batches):
         (orientation.scipy_rotation_from_dcm, DCMS[:1]),
         (orientation.mean_orientation, (DCMS, ANGLE**2)),
         (orientation.dcms_after_turns, (DCMS[0], RATES)),
+        (
+            lambda times: orientation.turns_from_angular_velocity(lambda _: RATES[0], times),
+            (ANGLE,),
+        ),
         (orientation.dcm_from_two_directions, (AXES[:2], RATES[:2])),
         (orientation.dcm_from_directions, (AXES, AXES, ANGLE**2)),
         (orientation.directions_covariance, (AXES, ANGLE**2)),
+        (
+            orientation.MultiplicativeKalmanFilter,
+            (DCMS, np.eye(6) + np.zeros((COUNT, 1, 1)), ANGLE, ANGLE),
+        ),
+        (
+            lambda angular_velocity, step: kalman_filter().turn(angular_velocity, step),
+            (RATES, ANGLE),
+        ),
+        (
+            lambda observed, reference, deviation: kalman_filter().observe(
+                observed, reference, deviation
+            ),
+            (AXES, RATES, ANGLE),
+        ),
     ],
 )
 def test_whoever_takes_numbers_says_which_are_none(function, arguments):
@@ -461,29 +500,33 @@ def test_what_is_no_number_is_told(function, batches):
 
 @symbolic
 def test_what_is_no_expression_is_told(function, batches):
-    item = batches[0].shape[1:]
+    item, name = batches[0].shape[1:], name_of(function, 0)
     count = int(np.prod(item, dtype=int))
     rest = [batch[0] for batch in batches[1:]]
     for wrong in ("theta", None, True, sm.true):
         entries = [psi] * (count - 1) + [wrong]
         if item:
-            with pytest.raises(TypeError, match="holds .* neither a number nor a SymPy expression"):
+            with pytest.raises(
+                TypeError, match=f"^{name} holds .* neither a number nor a SymPy expression"
+            ):
                 function(
                     entries if len(item) == 1 else [entries[:3], entries[3:6], entries[6:]], *rest
                 )
     for wrong in (sm.nan, sm.oo, -sm.oo, sm.zoo, psi + sm.oo):
         entries = [psi] * (count - 1) + [wrong]
-        with pytest.raises(ValueError, match="a division by zero happened before"):
+        with pytest.raises(ValueError, match=f"^{name} .*a division by zero happened before"):
             function(
                 wrong if item == () else entries if len(item) == 1 else sm.Matrix(3, 3, entries),
                 *rest,
             )
     for wrong in ([psi, psi], sm.Matrix([psi, psi]), [[psi], [psi]]):
         with pytest.raises(
-            ValueError, match="has shape .*, where .* expected .*one item at a time"
+            ValueError, match=f"^{name} has shape .*, where .* expected .*one item at a time"
         ):
             function(wrong, *rest)
-    with pytest.raises(TypeError, match="is the vector N.x: give its components along one frame"):
+    with pytest.raises(
+        TypeError, match=f"^{name} is the vector N.x: give its components along one frame"
+    ):
         function(me.ReferenceFrame("N").x, *rest)
 
 
@@ -554,6 +597,8 @@ def test_axes_without_a_direction(function, angle):
         quaternion_from_dcm,
         axis_angle_from_dcm,
         rotation_vector_from_dcm,
+        rodrigues_from_dcm,
+        modified_rodrigues_from_dcm,
         check_dcm,
         orientation.scipy_rotation_from_dcm,
     ],
@@ -620,6 +665,8 @@ def test_symbolic_matrices_that_are_no_orientation():
         check_dcm(sm.eye(3) - sm.I * sm.ones(3))
     with pytest.raises(ValueError, match="^dcm is not orthogonal: row x has length 2"):
         check_dcm(2 * sm.eye(3))
+    with pytest.raises(ValueError, match="^dcm has shape"):
+        check_dcm(SYMBOLS)
 
 
 def test_components_in_separate_arrays_are_not_guessed_at():

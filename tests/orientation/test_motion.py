@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import sympy as sm
 import sympy.physics.mechanics as me
+from orientations import random_unit_vectors
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -30,23 +31,22 @@ from orientation import (
     turns_from_angular_velocity,
 )
 
-RANDOM = np.random.default_rng(11)
 
-
-def random_quaternions(count):
-    quaternions = RANDOM.normal(size=(count, 4))
-    return quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
+@pytest.fixture
+def random():
+    """The same chance for each test, whichever ran before."""
+    return np.random.default_rng(11)
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
-def test_angular_velocity_matrix_agrees_with_sympy(sequence):
+def test_angular_velocity_matrix_agrees_with_sympy(sequence, random):
     psi, theta, phi = me.dynamicsymbols("psi, theta, varphi")
     A, D = me.ReferenceFrame("A"), me.ReferenceFrame("D")
     D.orient_body_fixed(A, (psi, theta, phi), sequence)
     rates = sm.Matrix([psi, theta, phi]).diff(me.dynamicsymbols._t)
     by_sympy = D.ang_vel_in(A).to_matrix(D).jacobian(rates)
     ours = angular_velocity_matrix((psi, theta, phi), sequence)
-    for values in RANDOM.uniform(-3, 3, (4, 3)):
+    for values in random.uniform(-3, 3, (4, 3)):
         numbers = dict(zip((psi, theta, phi), values))
         expected = np.array(by_sympy.subs(numbers), dtype=float)
         assert np.allclose(np.array(ours.subs(numbers), dtype=float), expected, atol=1e-13)
@@ -54,17 +54,17 @@ def test_angular_velocity_matrix_agrees_with_sympy(sequence):
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
-def test_determinant_is_the_sine_of_the_lock_margin(sequence):
-    angles = RANDOM.uniform(-np.pi, np.pi, (200, 3))
+def test_determinant_is_the_sine_of_the_lock_margin(sequence, random):
+    angles = random.uniform(-np.pi, np.pi, (200, 3))
     determinants = np.linalg.det(angular_velocity_matrix(angles, sequence))
     assert np.allclose(abs(determinants), np.sin(gimbal_lock_margin(angles, sequence)), atol=1e-12)
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
-def test_all_rates_belong_to_one_motion(sequence):
+def test_all_rates_belong_to_one_motion(sequence, random):
     """Central differences of the matrix and of the quaternion, moving with constant angle rates."""
     step = 1e-5
-    for angles, rates in zip(RANDOM.uniform(-3, 3, (10, 3)), RANDOM.uniform(-2, 2, (10, 3))):
+    for angles, rates in zip(random.uniform(-3, 3, (10, 3)), random.uniform(-2, 2, (10, 3))):
         omega = angular_velocity_matrix(angles, sequence) @ rates
         before, now, after = (
             dcm_from_body_fixed(angles + s * step * rates, sequence) for s in (-1, 0, 1)
@@ -80,17 +80,17 @@ def test_rates_of_symbols_and_batches():
     omega = sm.symbols("omega_x, omega_y, omega_z")
     rate = quaternion_rate(q, omega)
     assert sm.expand(2 * sum(a * b for a, b in zip(q, rate))) == 0  # the length stays
-    assert quaternion_rate(random_quaternions(7), (1.0, 0, 0)).shape == (7, 4)
+    assert quaternion_rate(random_unit_vectors(7, 1, size=4), (1.0, 0, 0)).shape == (7, 4)
     assert dcm_rate(np.eye(3), np.zeros((5, 3))).shape == (5, 3, 3)
 
 
 @pytest.mark.parametrize("scale", [1, 1e-3, 1e-7, 1e-12, 1e-200])
-def test_exponential_against_scipy_and_back(scale):
-    axes = RANDOM.normal(size=(500, 3))
+def test_exponential_against_scipy_and_back(scale, random):
+    axes = random.normal(size=(500, 3))
     vectors = (
         scale
         * np.pi
-        * RANDOM.uniform(0, 1, (500, 1))
+        * random.uniform(0, 1, (500, 1))
         * axes
         / np.linalg.norm(axes, axis=1)[:, None]
     )
@@ -112,7 +112,9 @@ def test_exponential_of_nothing_and_of_symbols():
 
 def test_slerp_agrees_with_scipy():
     shares = np.linspace(0, 1, 9)
-    for first, second in zip(random_quaternions(40), random_quaternions(40)):
+    for first, second in zip(
+        random_unit_vectors(40, 1, size=4), random_unit_vectors(40, 2, size=4)
+    ):
         both = Rotation.from_quat([first, second], scalar_first=True)
         expected = dcm_from_scipy_rotation(Slerp([0, 1], both)(shares))
         ours = dcm_from_quaternion(interpolate_quaternions(first, second, shares))
@@ -120,7 +122,7 @@ def test_slerp_agrees_with_scipy():
 
 
 def test_slerp_between_nearly_and_exactly_equal_orientations():
-    q = random_quaternions(1)[0]
+    q = random_unit_vectors(1, 1, size=4)[0]
     for other in (q, -q):
         assert same_orientation(interpolate_quaternions(q, other, 0.3), q)
     near = q + 1e-10 * np.array([-q[1], q[0], -q[3], q[2]])
@@ -150,9 +152,9 @@ def test_the_rate_of_the_matrix_defines_the_angular_velocity(sequence):
     assert np.allclose(np.array((ours - theirs).subs(numbers), dtype=float), 0, atol=1e-14)
 
 
-def test_angular_velocity_undoes_the_rate_of_the_matrix():
-    dcms = dcm_from_quaternion(random_quaternions(50))
-    omegas = RANDOM.normal(size=(50, 3))
+def test_angular_velocity_undoes_the_rate_of_the_matrix(random):
+    dcms = dcm_from_quaternion(random_unit_vectors(50, 1, size=4))
+    omegas = random.normal(size=(50, 3))
     assert np.allclose(
         angular_velocity_from_dcm_rate(dcms, dcm_rate(dcms, omegas)), omegas, atol=1e-14
     )
@@ -166,15 +168,15 @@ def test_angular_velocity_undoes_the_rate_of_the_matrix():
 
 
 @pytest.mark.parametrize("size", [1e-12, 1e-6, 1e-3, 0.05, 1, 3, 4.5, 6.2])
-def test_rotation_vector_rate_against_differences(size):
+def test_rotation_vector_rate_against_differences(size, random):
     """The matrix of r + h dr/dt must move as the angular velocity says, beyond half a turn as
     well.
     """
-    h = 1e-6
+    h = 1e-5
     for _ in range(20):
-        vector = RANDOM.normal(size=3)
+        vector = random.normal(size=3)
         vector *= size / np.linalg.norm(vector)
-        omega = RANDOM.normal(size=3)
+        omega = random.normal(size=3)
         rate = rotation_vector_rate(vector, omega)
         h_here = h / max(1, np.linalg.norm(rate))
         ahead, behind = (
@@ -199,8 +201,14 @@ def test_rotation_vector_rate_at_rest_of_symbols_and_at_a_whole_turn():
     )
     near = rotation_vector_rate((0, 0, 2 * np.pi - 1e-4), (1.0, 0, 0))
     assert np.linalg.norm(near) > 1e4, "it grows without bound"
-    with pytest.raises(ValueError, match="whole turn"):
-        rotation_vector_rate((0, 0, 2 * np.pi), (1.0, 0, 0))
+    for turns in (1, 3):
+        for axis in ((1, 0, 0), (0.6, 0.8, 0), (0, 0.6, 0.8)):
+            whole = 2 * np.pi * turns * np.array(axis)
+            rotation_vector_rate(np.outer((0.25, 0.5, 0.75), whole), (1.0, 0, 0))
+            with pytest.raises(ValueError, match="^vector is .* a whole turn"):
+                rotation_vector_rate(whole, (1.0, 0, 0))
+            with pytest.raises(ValueError, match=r"^vector \(item \[1\]\) is .* a whole turn"):
+                rotation_vector_rate([whole / 2 / turns, whole], (1.0, 0, 0))
 
 
 def tumbling(t):
@@ -262,11 +270,17 @@ def test_steps_refuse_what_they_cannot_read():
         turns_from_angular_velocity(lambda t: np.ones((len(t), 1)), [0, 1, 2, 3])
     with pytest.raises(ValueError, match="for 3 times"):
         turns_from_angular_velocity(lambda t: np.ones((5, 3)), [0, 1, 2, 3])
-    with pytest.raises(ValueError, match="ends of one interval"):
-        turns_from_angular_velocity(tumbling, [0])
-    with pytest.raises(ValueError, match="not orthogonal"):
+    for times in ([0], [[0, 1]]):
+        with pytest.raises(ValueError, match="^times has shape .* ends of one interval"):
+            turns_from_angular_velocity(tumbling, times)
+    for wrong, said in ((np.nan, r"\[0, 0\] is nan"), ("fast", " must hold real numbers")):
+        with pytest.raises((ValueError, TypeError), match=rf"^angular_velocity\(times\){said}"):
+            turns_from_angular_velocity(lambda t: [3 * [wrong]], [0, 1])
+    with pytest.raises(ValueError, match="^start is not orthogonal"):
         dcms_after_turns(2 * np.eye(3), np.zeros((1, 3)))
-    with pytest.raises(ValueError, match="turns has shape"):
+    with pytest.raises(ValueError, match=r"^start has shape \(1, 3, 3\), where \(3, 3\)"):
+        dcms_after_turns(np.eye(3)[None], np.zeros((1, 3)))
+    with pytest.raises(ValueError, match=r"^turns has shape \(3,\), where \(n, 3\)"):
         dcms_after_turns(np.eye(3), (0, 0, 1))
 
 

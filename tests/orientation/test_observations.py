@@ -96,10 +96,14 @@ def test_covariance_is_what_many_noisy_measurements_show():
 
 
 def test_what_does_not_fix_an_orientation_is_refused():
-    with pytest.raises(ValueError, match="parallel"):
-        dcm_from_two_directions([[1, 0, 0], [2, 0, 0]], np.eye(3)[:2])
-    with pytest.raises(ValueError, match="length zero"):
-        dcm_from_two_directions([[1, 0, 0], [0, 0, 0]], np.eye(3)[:2])
+    for size, said in ((2, "the two {} directions are parallel"), (0, "{} holds .* length zero")):
+        bad, good = [[1, 0, 0], [size, 0, 0]], np.eye(3)[:2]
+        for name, pair in (("observed", (bad, good)), ("reference", (good, bad))):
+            with pytest.raises(ValueError, match=said.format(name)):
+                dcm_from_two_directions(*pair)
+            if size == 0:
+                with pytest.raises(ValueError, match=said.format(name)):
+                    dcm_from_directions(*pair)
     with pytest.raises(ValueError, match="one line"):
         dcm_from_directions([[1, 0, 0], [-1, 0, 0]], [[1, 0, 0], [-1, 0, 0]])
     with pytest.raises(ValueError, match="left-handed"):
@@ -108,5 +112,28 @@ def test_what_does_not_fix_an_orientation_is_refused():
         dcm_from_directions(np.eye(3), np.eye(3), [0.1, 0, 0.1])
     with pytest.raises(ValueError, match="one line"):
         directions_covariance([[1, 0, 0], [1, 0, 0]], [0.1, 0.1])
-    with pytest.raises(ValueError, match="as many directions"):
-        dcm_from_directions(np.eye(3), np.eye(3)[:2])
+    for observed, reference in ((np.eye(3), np.eye(3)[:2]), 2 * [np.eye(3)[0]], 2 * [np.eye(2)]):
+        with pytest.raises(ValueError, match="as many directions"):
+            dcm_from_directions(observed, reference)
+
+
+@pytest.mark.parametrize(
+    ("function", "taken", "refused"),
+    [
+        (lambda pair: dcm_from_two_directions(pair, pair), 1e-5, 5e-7),
+        (lambda pair: dcm_from_directions(pair, pair), 1e-2, 1e-3),
+        (lambda pair: dcm_from_directions(pair, pair, [100, 100]), 1e-2, 1e-3),
+        (lambda pair: directions_covariance(pair, [0.1, 0.1]), 1e-5, 5e-7),
+    ],
+)
+def test_how_near_two_directions_may_be_does_not_depend_on_lengths_or_units(
+    function, taken, refused
+):
+    def pair(angle):
+        return np.array([[0, 0, 1], [0, np.sin(angle), np.cos(angle)]])
+
+    for lengths in ([[1.0], [1.0]], [[1e-3], [1e4]]):
+        assert np.allclose(function(lengths * pair(taken)), function(pair(taken)), 1e-4, 1e-9)
+        for near in (lengths * pair(refused), [lengths * pair(2), lengths * pair(refused)]):
+            with pytest.raises(ValueError, match="parallel|one line"):
+                function(np.array(near))

@@ -18,13 +18,14 @@ from orientation_workbench.formulas import FORMULAS, LISTS, SIZES
 
 LARGEST = 1e-12  # radians
 NODE = Path(sys.executable).with_name("node")
-# Applies a function to each of many lists of arguments, which come as JSON.
+# Applies a function to each of many lists of arguments, which come as JSON, a line for each.
 APPLY = """
-import { readFileSync } from 'node:fs';
-const { jobs } = JSON.parse(readFileSync(0));
+import { createInterface } from 'node:readline';
 const functions = { NAMES };
-console.log(JSON.stringify(
-  jobs.map(([name, calls]) => calls.map((call) => functions[name](...call)))));
+for await (const line of createInterface({ input: process.stdin })) {
+  const [name, calls] = JSON.parse(line);
+  console.log(JSON.stringify(calls.map((call) => functions[name](...call))));
+}
 """
 
 
@@ -45,16 +46,14 @@ def in_browser_language(tmp_path_factory):
             [entry.tolist() if hasattr(entry, "tolist") else entry for entry in row]
             for row in zip(*columns)
         ]
-        done = subprocess.run(
-            [NODE, script],
-            input=json.dumps({"jobs": [[name, calls]]}),
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return json.loads(done.stdout)[0]
+        print(json.dumps([name, calls]), file=node.stdin, flush=True)
+        return json.loads(node.stdout.readline())
 
-    return run
+    # To start it takes longer than any of its answers.
+    with subprocess.Popen(
+        [NODE, script], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as node:
+        yield run
 
 
 def test_the_formulas_are_those_that_the_module_makes():

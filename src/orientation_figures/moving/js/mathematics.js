@@ -102,7 +102,7 @@ export function checkDcm(matrix) {
   let cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad';
   if (matrix.flat().every((entry) => entry === 0)) cause = 'Every entry is zero';
   else if (scaled) {
-    cause = `The whole matrix is ${general(Math.sqrt(squares[0]), 8)} times an orthogonal one, as from a quaternion `
+    cause = `The whole matrix is ${general(Math.sqrt(most), 8)} times an orthogonal one, as from a quaternion `
       + 'that is not of unit length';
   } else if (worst < 0.1) {
     cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix';
