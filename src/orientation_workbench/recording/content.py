@@ -216,13 +216,15 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
                 precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
                 counts = bool(re.search(COUNTS, column.lower()))
                 candidates.append((float(called + precise + 0.5 * even - counts - 0.01 * k), k))
-    for k in range(len(table.columns) - 1) if not candidates else ():  # the same without headings
+    for k in range(len(table.columns) - 1):  # the same without headings
         whole, part = table.values[:, k], table.values[:, k + 1]
+        begins = np.diff(whole) > 0
         if (
-            np.ptp(whole) > 0
+            begins.any()
             and (whole == whole.round()).all()
             and 0 <= part.min()
             and 1e8 < part.max() < 1e9
+            and np.mean(np.diff(part)[begins] < 0) > 0.5  # a mere count begins nothing anew
         ):
             time = whole - whole[0] + 1e-9 * part
             if np.mean(np.diff(time) > 0) > 0.97:
