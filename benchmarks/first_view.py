@@ -155,7 +155,7 @@ SLOW = {
     "downloadThroughput": 1_474_560 / 8,
     "uploadThroughput": 675_000 / 8,
 }
-SEEN = "performance.getEntriesByName('first-contentful-paint')[0].startTime"
+SEEN = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime"
 
 
 def seen_on_a_slow_line(browser, address):
@@ -168,7 +168,8 @@ def seen_on_a_slow_line(browser, address):
     line.send("Network.enable")
     line.send("Network.emulateNetworkConditions", SLOW)
     page.goto(address)
-    seconds = page.evaluate(SEEN) / 1000
+    # a busy machine paints after all has come
+    seconds = page.wait_for_function(SEEN).json_value() / 1000
     context.close()
     return seconds
 

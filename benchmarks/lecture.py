@@ -16,7 +16,6 @@ from notebook_pages.browser import open_browser
 WIDTH, HEIGHT = 1280, 720
 STEPS = """() => {
   const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
-  press("l");
   press("Home");
   const MARKS = "path, line, circle, ellipse, rect, polygon, polyline, use, text";
   const all = (where, what) => [...where.querySelectorAll(what)];
@@ -55,6 +54,8 @@ def main():
         for name in names:
             page.goto((BOOK / "_build" / "html" / f"{name}.html").as_uri())
             page.wait_for_timeout(1500)
+            page.keyboard.press("l")
+            page.wait_for_selector("html.lecture")
             steps = page.evaluate(STEPS)
             everything += steps
             print_line(name[9:], steps)

@@ -8,6 +8,7 @@ import stat
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import nbformat
 import pytest
@@ -393,3 +394,18 @@ def test_a_build_with_nothing_to_do_starts_nothing(tmp_path, monkeypatch, capsys
     monkeypatch.setattr(book, "subprocess", None)  # whatever it would start fails
     book.main()
     assert "Nothing has changed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("end", [SystemExit(1), RuntimeError("There was an error in building")])
+def test_of_a_faulty_build_nothing_is_left(tmp_path, monkeypatch, end):
+    def build(*arguments, **settings):
+        raise end
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
+    monkeypatch.setattr(book.lite, "is_compiled", lambda: True)
+    monkeypatch.setitem(sys.modules, "jupyter_book.cli.main", SimpleNamespace(main=build))
+    (tmp_path / "_build" / "html").mkdir(parents=True)
+    with pytest.raises(SystemExit, match="not built"):
+        book.main()
+    assert not (tmp_path / "_build" / "html").exists()

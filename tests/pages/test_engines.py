@@ -7,6 +7,7 @@ from test_servers import SIZE
 from test_site import stand_as_katex_sets_them
 
 from notebook_pages.execution import STORED
+from notebook_pages.page import in_short
 
 RUN_ALL = "() => document.querySelector('button.run-page').click()"
 IS_DONE = (
@@ -35,7 +36,7 @@ def compare(engine, site, name):
     words = engine.wait(IS_DONE)
     assert "ran." in words or "there already" in words, words
     engine.wait(PLAYABLE)
-    after = engine.run(RESULTS)
+    after = list(map(in_short, engine.run(RESULTS)))
     compared = 0
     for number, kind in enumerate(kinds(name), start=1):
         if not kind["needs"]:

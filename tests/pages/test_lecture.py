@@ -55,6 +55,12 @@ def opened(browser, site):
         context.close()
 
 
+def begin(page):
+    """The lecture comes when it is asked for."""
+    page.keyboard.press("l")
+    page.wait_for_selector("html.lecture")
+
+
 def step(page):
     return int(page.locator(BAR).inner_text().split()[0])
 
@@ -63,7 +69,7 @@ def step(page):
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_each_step_is_seen_whole_with_its_line(opened, name):
     page = opened(name)
-    page.keyboard.press("l")
+    begin(page)
     count, faults = page.evaluate(STEPS)
     assert faults == []
     assert 3 <= count <= 25
@@ -100,7 +106,7 @@ def test_the_page_is_left_where_it_was(opened):
     page = opened()
     page.evaluate("document.querySelectorAll('h2')[3].scrollIntoView({ behavior: 'instant' })")
     before = page.evaluate("[scrollY, document.querySelectorAll('article *').length]")
-    page.keyboard.press("l")
+    begin(page)
     page.keyboard.press("End")
     page.keyboard.press("Escape")
     assert page.evaluate("[scrollY, document.querySelectorAll('article *').length]") == before
@@ -110,7 +116,7 @@ def test_the_page_is_left_where_it_was(opened):
 
 def test_a_prediction_is_voted_twice_and_answered(opened):
     page = opened()
-    page.keyboard.press("l")
+    begin(page)
     while not page.locator(".question.in-step").count():
         page.keyboard.press("PageDown")
     at = step(page)
@@ -137,7 +143,7 @@ def test_a_prediction_is_voted_twice_and_answered(opened):
 
 def test_outline_black_screen_time_and_notes(opened):
     page = opened()
-    page.keyboard.press("l")
+    begin(page)
     page.keyboard.press("o")
     menu = page.get_by_role("dialog", name="Outline of the lecture")
     assert menu.locator("ol button").count() == int(page.locator(BAR).inner_text().split()[-1])
@@ -164,6 +170,7 @@ def test_outline_black_screen_time_and_notes(opened):
 def test_a_hall_without_a_mouse_may_swipe(opened):
     page = opened(has_touch=True)
     page.locator("button.lecture-mode").tap()
+    page.wait_for_selector("html.lecture")
     swipe = """(by) => {
       const target = document.querySelector(".lecture-line");
       const at = (x) => [new Touch({ identifier: 1, target, clientX: x, clientY: 300 })];
@@ -183,7 +190,7 @@ def test_a_hall_without_a_mouse_may_swipe(opened):
 
 def test_the_essay_is_lectured_by_its_stops(opened):
     page = opened("rotations", "", reduced_motion="reduce")
-    page.keyboard.press("l")
+    begin(page)
     stops = page.locator("[data-stop]").evaluate_all("all => all.map((one) => one.dataset.stop)")
     assert page.locator(BAR).inner_text() == f"1 of {len(stops)}"
     for stop in stops[:5]:
@@ -201,7 +208,7 @@ def test_the_essay_is_lectured_by_its_stops(opened):
 
 def test_on_paper_the_page_is_whole(opened):
     page = opened()
-    page.keyboard.press("l")
+    begin(page)
     page.emulate_media(media="print")
     hidden = (
         "all => all.filter((one) => one.textContent.trim() && "

@@ -79,6 +79,18 @@ def test_notebook_is_the_page_ready_to_run(page):
     assert [code for code, new in zip(codes(page), announced) if not new] == expected
 
 
+def test_the_interface_leaves_the_pages_their_dates():
+    """A page that is older than its source is written again by the next build: all were, since
+    JupyterLite gives what lies beside it the date of the commit.
+    """
+    younger = [
+        page
+        for page in notebook_pages()
+        if (HTML / f"{page}.html").stat().st_mtime < (REPOSITORY / f"{page}.ipynb").stat().st_mtime
+    ]
+    assert younger == [], "`make book` has not come to an end since these were changed"
+
+
 def test_lock_lists_what_is_there():
     packages = json.loads((HTML / runtime.FOLDER / LOCK).read_text("utf8"))["packages"]
     for package in packages.values():

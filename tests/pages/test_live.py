@@ -24,6 +24,7 @@ from notebook_pages.live import runtime, scripts
 from notebook_pages.live.cells import kinds_of_cells, on_the_page
 from notebook_pages.live.fetch import fetch
 from notebook_pages.notebooks import all_notebooks
+from notebook_pages.page import in_short
 from notebook_pages.serve import Handler, server
 
 PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
@@ -237,7 +238,7 @@ def equal_the_stored_ones(page, name, before, after, notes):
     """Every cell that needs SymPy only gives what is printed; the others say why they did not
     run.
     """
-    before = all_shown(before)
+    before, after = all_shown(before), list(map(in_short, after))
     for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
         if not kind["needs"]:
             assert after[number - 1] == before[number - 1], f"cell {number}"

@@ -63,7 +63,8 @@ def test_files_for_machines():
     assert "Allow: /" in (HTML / "robots.txt").read_text("utf8")
     outline = (HTML / "llms.txt").read_text("utf8")
     for page in pages()[1:]:
-        assert f"{page}.html): " in outline, f"llms.txt lacks {page}"
+        said = meta(head(HTML / f"{page}.html"), "description")
+        assert f"{page}.html): {said}" in outline, f"llms.txt lacks {page}"
     assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
     missing = (HTML / "404.html").read_text("utf8")
     assert 'href="/index.html"' in missing and "_static" not in missing, (

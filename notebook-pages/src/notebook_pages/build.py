@@ -4,7 +4,7 @@ import shutil
 import subprocess
 import sys
 import time
-from pathlib import Path
+import traceback
 
 import yaml
 
@@ -41,7 +41,25 @@ def contents_of_this_edition():
         return []
     BUILD.mkdir(exist_ok=True)
     EXAM_CONTENTS.write_text(yaml.safe_dump(contents(), sort_keys=False), "utf8")
-    return ["--toc", EXAM_CONTENTS.resolve()]
+    return ["--toc", str(EXAM_CONTENTS.resolve())]
+
+
+def make_pages():
+    """Run the command ``jupyter-book`` and return its exit code.
+
+    It runs in this process, which has loaded the same packages, and goes on to use what it finds
+    out of the notebooks.
+    """
+    from jupyter_book.cli.main import main as jupyter_book
+
+    options = ["-q", "-W", "-n", "--keep-going", *contents_of_this_edition()]
+    try:
+        jupyter_book(["build", ".", *options], prog_name="jupyter-book")
+    except SystemExit as end:
+        return end.code
+    except Exception:  # what goes wrong within Sphinx, it raises
+        traceback.print_exc()
+        return 1
 
 
 def main():
@@ -50,23 +68,12 @@ def main():
         print(f"Nothing has changed since this was built: {HTML / 'index.html'}")
         return
     print("Building the book ...", flush=True)
-    jupyter_book = Path(sys.executable).with_name("jupyter-book")
     # What was fetched for browsers is byte-compiled while the pages are read one by one.
-    ahead = subprocess.Popen(
-        [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
-    )
-    command = [
-        jupyter_book,
-        "build",
-        ".",
-        "-q",
-        "-W",
-        "-n",
-        "--keep-going",
-        *contents_of_this_edition(),
-    ]
-    code = subprocess.run(command).returncode
-    ahead.wait()
+    compiling = [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
+    ahead = None if lite.is_compiled() else subprocess.Popen(compiling)
+    code = make_pages()
+    if ahead:
+        ahead.wait()
     if code == 0 and (missing := missing_pages()):
         print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
         code = 1

@@ -178,8 +178,7 @@ def add_lecture(app, pagename, templatename, context, doctree):
     steps = app.env.metadata[pagename].get("steps", [])
     if not stops and not steps:
         return
-    context["lecture"] = True
-    app.add_js_file("lecture.js", loading_method="defer")
+    context["lecture_script"] = context["pathto"]("_static/lecture.js", 1)
     if not stops:
         try:
             items = "".join(map(as_html, steps))

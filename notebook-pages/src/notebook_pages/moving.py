@@ -6,6 +6,7 @@ book.js asks for when the first view stands, brings it to life.
 """
 
 import os
+import shutil
 import subprocess
 from functools import cache
 from hashlib import sha256
@@ -13,7 +14,7 @@ from pathlib import Path
 
 from docutils import nodes
 
-from .page import ESBUILD
+from .page import ESBUILD, take_later
 from .paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
 from .used import files_used
 
@@ -71,6 +72,15 @@ def scripts_and_styles(kinds):
     return texts, later
 
 
+def figures_as_written(app):
+    """Where the scripts and styles of moving figures lie as they were written, by this build or
+    before.
+
+    Small ones are made of these each time: made small twice, a script is another one.
+    """
+    return Path(app.doctreedir) / "moving"
+
+
 def write(folder, texts):
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
@@ -82,7 +92,7 @@ def add_scripts(app, pagename, templatename, context, doctree):
     if not kinds:
         return
     texts, later = scripts_and_styles(kinds)
-    write(Path(app.outdir) / "_static" / "moving", texts | later)
+    write(figures_as_written(app), texts | later)
     address = context["pathto"]("_static/moving", 1)
     context["figure_scripts"] = [f"{address}/{name}" for name in texts if name.endswith(".js")]
     context["styles"] = [
@@ -108,9 +118,24 @@ def write_embedded(app, exception):
     if (site / embedding.FOLDER).is_dir() and stamp.is_file() and stamp.read_text() == made_from:
         return
     texts, later = scripts_and_styles([*embedding.figures(), *named(REGISTERED["figures"]).BUILT])
-    write(site / "_static" / "moving", texts | later)
+    write(figures_as_written(app), texts | later)
     write(site / embedding.FOLDER, embedding.files())
     stamp.write_text(made_from)
+
+
+def bring(app, exception):
+    """Put scripts and styles of figures into the site; the shared script brings those styles that
+    only a living figure needs.
+    """
+    written = figures_as_written(app)
+    if exception or app.builder.format != "html" or not written.is_dir():
+        return
+    target = Path(app.outdir) / "_static" / "moving"
+    shutil.copytree(written, target, dirs_exist_ok=True)
+    if (styles := target / "moving.css").is_file():
+        shared = target / "shared.js"
+        later = take_later(Path(app.outdir), styles)
+        shared.write_text(later + shared.read_text("utf8"), "utf8")
 
 
 @cache
@@ -135,6 +160,6 @@ def setup(app):
     app.connect("config-inited", prefer_stills)
     app.connect("doctree-read", drop_widget_state)
     app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
-    app.connect(
-        "build-finished", write_embedded, priority=900
-    )  # before page.py makes the styles small
+    # before page.py makes the scripts small
+    app.connect("build-finished", write_embedded, priority=900)
+    app.connect("build-finished", bring, priority=910)

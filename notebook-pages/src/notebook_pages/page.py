@@ -1,8 +1,11 @@
 """The page around the text: templates, styles, and nothing that it does not use."""
 
+import json
 import re
 import subprocess
+import tempfile
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from hashlib import sha256
 from pathlib import Path
 
@@ -42,10 +45,9 @@ PAGE_SCRIPTS = (
     "book.js",
     "previews.js",
     "questions.js",
-    "lecture.js",
     "scripts/pydata-sphinx-theme.js",
 )
-SOMETIMES = ("progress", "questions", "lecture")
+SOMETIMES = ("progress", "questions")
 JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
 #: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the
 #: whole page, and again for each in turn. book.js watches them instead.
@@ -108,7 +110,46 @@ NAME = re.compile(
 #: A program, and a word of it that has a colour of its own.
 PROGRAM = re.compile(r"<pre\b.*?</pre>", re.DOTALL)
 TOKEN = re.compile(r'<span class="(\w{1,3})">([^<]*)</span>')
+#: Numbers and strings of each kind have the colour of all.
+KIND = re.compile(r"(?<=<i class=[ms])\w+")
 STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
+
+
+#: A path of the book's own drawings: all its points are said from one corner.
+ABSOLUTE = re.compile(r'(?<= d=")M[MLQCZ\d. -]*(?=")')
+MOVED = re.compile(r"(?<=translate\()[^)]*")
+
+
+def tenths(numbers):
+    """Numbers of tenths, as a drawing writes them."""
+    text = " ".join(f"{number / 10:g}" for number in numbers)
+    return re.sub(r"(?<!\d)0(?=\.)", "", text).replace(" -", "-")
+
+
+def in_steps(path):
+    """The same path in steps from point to point, in tenths of a pixel: finer nobody sees it."""
+    written, before, here = "", "", [0, 0]
+    for letter, numbers in re.findall(r"([MLQCZ])([^A-Z]*)", path[0]):
+        points = [round(10 * float(number)) for number in numbers.split()]
+        steps = tenths(point - here[place % 2] for place, point in enumerate(points))
+        if letter == "M":
+            start = points
+        here = start if letter == "Z" else points[-2:]
+        same = letter == before != "Z"
+        written += (" " if same and steps[0] != "-" else "" if same else letter.lower()) + steps
+        before = "L" if letter == "M" else letter
+    return written
+
+
+def in_short(drawing):
+    """A drawing with its places in tenths of a pixel; what is cut out of a plot is its style."""
+
+    def place(numbers):
+        return tenths(round(10 * float(number)) for number in re.findall(r"-?[\d.]+", numbers[0]))
+
+    drawing = MOVED.sub(place, ABSOLUTE.sub(in_steps, drawing))
+    drawing = re.sub(r' [xy]="0"|(?<=scale\()0(?=\.)', "", drawing)
+    return re.sub(r' clip-path="([^"]*)" style="([^"]*)', r' style="\2;clip-path:\1', drawing)
 
 
 STYLED = re.compile(r' style="([^"]*)"')
@@ -163,7 +204,7 @@ def share_outlines(body):
 
         text = DEFINITIONS.sub(take, drawing[0].replace(" />", "/>"))
         text = USE.sub(place, PLACED.sub(r'<use x="\1" y="\2" href=', text))
-        return name_styles(text.replace(' y="0"', ""))
+        return name_styles(in_short(text))
 
     body = re.sub(r"<svg\b.*?</svg>", share, body, flags=re.DOTALL)
     table = "".join(f'<path id="o{number}" {outline}/>' for outline, number in numbers.items())
@@ -177,8 +218,8 @@ def lighten(body):
     notebook it stands alone. There it is a figure to a screen reader, too; here it lies in one that
     has a name, or its drawing has one. Names, brackets, blanks and operators of a program have the
     colour of the text around them, and need no element each; nor does a single word within an
-    element. The stills of a page that moves its own figure (``data-stop``) are seen on paper and
-    without scripts: where there are scripts, the browser need not read them.
+    element, nor a part of a string. The stills of a page that moves its own figure (``data-stop``)
+    are seen on paper and without scripts: where there are scripts, the browser need not read them.
     """
     seen = set()
 
@@ -192,8 +233,15 @@ def lighten(body):
     body = STILL.sub(r"\1<noscript>\2</noscript>\3", body)
     body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
     body = re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body)
-    body = PROGRAM.sub(lambda program: TOKEN.sub(r"<i class=\1>\2</i>", program[0]), body)
-    return share_outlines(body)
+
+    def in_colour(program):
+        text = KIND.sub("", TOKEN.sub(r"<i class=\1>\2</i>", program[0]))
+        return re.sub(r"(?<=<i class=s>)([^<]*)((?:</i><i class=s>[^<]*)+)", joined, text)
+
+    def joined(parts):
+        return parts[1] + parts[2].replace("</i><i class=s>", "")
+
+    return share_outlines(PROGRAM.sub(in_colour, body))
 
 
 def trim_page(app, pagename, templatename, context, doctree):
@@ -254,12 +302,30 @@ def number_values(site, rules):
 
 def purged(site, rules, *others):
     """The rules that some page uses, or one of the scripts or style sheets ``others``."""
-    sheet = site / "_static" / "purged.css"
-    sheet.write_text(rules, "utf8")
-    subprocess.run([NODE, PURGE, NODE_MODULES, site, sheet, *others], check=True)
-    kept = sheet.read_text("utf8")
-    sheet.unlink()
-    return kept
+    with tempfile.TemporaryDirectory() as folder:
+        sheet = Path(folder, "purged.css")
+        sheet.write_text(rules, "utf8")
+        subprocess.run([NODE, PURGE, NODE_MODULES, site, sheet, *others], check=True)
+        return sheet.read_text("utf8")
+
+
+def as_script(styles):
+    """A style sheet, which goes, as the beginning of a script that brings it."""
+    make_small(styles.parent, [styles], "warning")
+    rules = json.dumps(styles.read_text("utf8").strip())
+    styles.unlink()
+    element = f"Object.assign(document.createElement('style'), {{textContent: {rules}}})"
+    return f"document.head.append({element});\n"
+
+
+def take_later(site, styles):
+    """Leave in a style sheet what pages use as they come, for that is awaited before the first
+    view; the rest, which only scripts make them use, as the beginning of a script.
+    """
+    later = styles.with_suffix(".later.css")
+    subprocess.run([NODE, PURGE, NODE_MODULES, site, styles, "--later", later], check=True)
+    make_small(styles.parent, [styles], "warning")
+    return as_script(later)
 
 
 def bundle_styles(site):
@@ -278,9 +344,14 @@ def bundle_styles(site):
         own = [static / "book.css", WEBSITE / "live" / "js" / "page.css"]
         scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
         others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
+        sheets = (
+            ("@layer theme {\n" + theme + "\n}\n", *others),
+            (katex_rules("fonts").replace("span", "i"),),
+        )
+        with ThreadPoolExecutor() as pool:  # each waits for a process of its own
+            kept = pool.map(lambda sheet: purged(site, *sheet), sheets)
         rules = [
-            purged(site, "@layer theme {\n" + theme + "\n}\n", *others),
-            purged(site, katex_rules("fonts").replace("span", "i")),
+            *kept,
             whole_face_rules("fonts"),
             *(path.read_text("utf8") for path in own),
         ]
@@ -293,7 +364,7 @@ def bundle_styles(site):
 
 def join_scripts(site):
     """Write the scripts of the page itself as one file, for each choice of them that some page
-    makes.
+    makes. Each script begins with the styles that it alone needs.
     """
     static = site / "_static"
     if not (static / "doctools.js").exists():  # Sphinx had nothing to build and copied nothing
@@ -306,14 +377,18 @@ def join_scripts(site):
             "replaces"
         )
     theme.write_text(text, "utf8")
+    begin = take_later(site, static / STYLE)
     files = {name for page in pages_of(site) for name in JOINED.findall(page.read_text("utf8"))}
     for file in files:
         left_out = {f"{name}.js" for name in SOMETIMES} - {
             f"{name}.js" for name in file[:-3].split("-")
         }
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
-        (static / file).write_text("\n;".join(parts), "utf8")
-    make_small(static, [*(static / file for file in files), *static.glob("moving/*.js")], "error")
+        (static / file).write_text(begin + "\n;".join(parts), "utf8")
+    lecture = static / "lecture.js"
+    text = as_script(static / "lecture.css") + lecture.read_text("utf8")
+    lecture.write_text(text, "utf8")
+    make_small(static, [lecture, *(static / file for file in files)], "error")
     for name in PAGE_SCRIPTS:
         (static / name).unlink()
 

@@ -71,6 +71,9 @@ def shortened(words):
     )
 
 
+DESCRIPTION = re.compile(r'<meta name="description" content="([^"]*)"')
+
+
 def plain_title(context):
     return html.unescape(re.sub(r"<[^>]+>", "", context.get("title") or "")).strip()
 
@@ -87,8 +90,6 @@ def write_head(app, pagename, templatename, context, doctree):
     if words and pagename.startswith(STORED):
         words = shortened(f"{title}. {words}")  # such pages begin alike
     context["description"] = words or f"{title}: a page of {book}."
-    if doctree is not None:
-        app.env.book_descriptions[pagename] = context["description"]
     context["shared_title"] = book if pagename == app.config.root_doc else f"{title} – {book}"
     context["shared_kind"] = "book" if pagename == app.config.root_doc else "article"
     context["edition"] = app.config.book_edition
@@ -110,13 +111,10 @@ def write_head(app, pagename, templatename, context, doctree):
         context["suggest_change"] = f"{repository}/edit/{branch}/{quote(source)}"
 
 
-def forget(app, env, docname):
-    env.book_descriptions.pop(docname, None)
-
-
-def begin(app, env, docnames):
-    if not hasattr(env, "book_descriptions"):
-        env.book_descriptions = {}
+def described(app, page):
+    """What a page says of itself, also one that this build has not written."""
+    text = Path(app.outdir, f"{page}.html").read_text("utf8")
+    return html.unescape(DESCRIPTION.search(text)[1])
 
 
 def outline(app):
@@ -124,7 +122,7 @@ def outline(app):
     (https://llmstxt.org).
     """
     env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
-    lines = [f"# {app.config.html_title}", "", f"> {env.book_descriptions.get(root, '')}", ""]
+    lines = [f"# {app.config.html_title}", "", f"> {described(app, root)}", ""]
     said = filter(
         None,
         [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."],
@@ -134,9 +132,7 @@ def outline(app):
         title = env.titles[page].astext()
         is_one = str(env.doc2path(page)).endswith(".ipynb")
         notebook = f" ([notebook]({address}{notebook_address(page)}))" if is_one else ""
-        lines.append(
-            f"- [{title}]({address}{page}.html): {env.book_descriptions.get(page, '')}{notebook}"
-        )
+        lines.append(f"- [{title}]({address}{page}.html): {described(app, page)}{notebook}")
     return "\n".join(lines) + "\n"
 
 
@@ -252,7 +248,5 @@ def setup(app):
     app.add_directive("cite-this-book", CiteThisBook)
     app.add_config_value("book_edition", {}, "html", dict)
     app.connect("config-inited", take_addresses)
-    app.connect("env-before-read-docs", begin)
-    app.connect("env-purge-doc", forget)
     app.connect("html-page-context", write_head)
     app.connect("build-finished", write_files)

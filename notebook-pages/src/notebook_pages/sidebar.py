@@ -4,6 +4,8 @@ else the first.
 
 from bs4 import BeautifulSoup
 
+UNUSED = ("reference", "internal", "toctree-l1")
+
 
 def fold(soup):
     """Make each caption and the list below it one fold; a title does not repeat the caption of its
@@ -27,6 +29,11 @@ def fold(soup):
         caption.insert_before(part)
         summary.append(caption.extract())
         part.extend([summary, pages.extract()])
+    # What no rule asks for at the side is said some fifty times on each page.
+    for entry in soup.select("li, a.internal"):
+        entry["class"] = [name for name in entry["class"] if name not in UNUSED]
+        if not entry["class"]:
+            del entry["class"]
     return soup
 
 

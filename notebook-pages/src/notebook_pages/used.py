@@ -9,6 +9,7 @@ import ast
 import hashlib
 import re
 import threading
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -34,6 +35,16 @@ def parse(code: str) -> ast.Module:
         return ast.parse(code)
 
 
+def statements(tree: ast.AST) -> Iterator[ast.AST]:
+    """The statements of a tree, and those within them: an expression, which most of a tree is,
+    holds none.
+    """
+    for inner in ast.iter_child_nodes(tree):
+        if isinstance(inner, (ast.stmt, ast.excepthandler, ast.match_case)):
+            yield inner
+            yield from statements(inner)
+
+
 def file_of(module: str) -> Path | None:
     """The file of one of our modules, or ``None`` if there is none of this name."""
     package, *inner = module.split(".")
@@ -51,7 +62,7 @@ def names_imported(code: str, module: str = "") -> set[str]:
     """
     found: set[str] = set()
     file = file_of(module)
-    for node in ast.walk(parse(code)):
+    for node in statements(parse(code)):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -16,7 +16,16 @@ from pathlib import Path
 import yaml
 
 from . import install, offline, unchanged
-from .paths import BUILD, HTML, REGISTERED, WEBSITE, fingerprint, let_everybody_read, pages
+from .paths import (
+    BUILD,
+    HTML,
+    REGISTERED,
+    WEBSITE,
+    YAML,
+    fingerprint,
+    let_everybody_read,
+    pages,
+)
 
 NAME = REGISTERED.get("name", "book")
 FOLDER = HTML / "take-away"
@@ -165,7 +174,7 @@ def make_zip(settings):
 def main():
     if not (HTML / FRONT).is_file():
         sys.exit("There is no book yet to take away: run `make book` first.")
-    settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
+    settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
     withdraw_outdated()
     for path, make in ((PDF, make_pdf), (EPUB, make_epub), (ZIP, make_zip)):
         if not path.exists():

@@ -22,7 +22,7 @@ import yaml
 
 from ..live import runtime, scripts
 from ..live.cells import PYTHON, kinds_of_cells
-from ..paths import BUILD, LICENCES_SAID, fingerprint, moment_of_sources
+from ..paths import BUILD, LICENCES_SAID, YAML, fingerprint, moment_of_sources
 from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
 
 HERE = Path(__file__).parent
@@ -64,11 +64,19 @@ def wheels_of_kernel():
     return [*sorted(FETCHED.glob("*.whl")), *kernel]
 
 
+def wheels_fetched():
+    """What was fetched for browsers, the dearest part first."""
+    return sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()
+
+
+def is_compiled():
+    """Whether all that was fetched has been byte-compiled before."""
+    return all(runtime.compiled_form(wheel).exists() for part in wheels_fetched() for wheel in part)
+
+
 def compile_ahead():
-    """Byte-compile what was fetched for browsers, the dearest part first; whoever needs it then
-    finds it.
-    """
-    for wheels in (sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()):
+    """Byte-compile what was fetched for browsers; whoever needs it then finds it."""
+    for wheels in wheels_fetched():
         runtime.compile_wheels(wheels)
 
 
@@ -250,7 +258,7 @@ def write(site):
     """Write the notebook interface into ``site``, a folder with the built pages, if anything has
     changed.
     """
-    settings = yaml.safe_load(Path("_config.yml").read_text("utf8"))
+    settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
     names = write_lock(site)
     write_workshop(site, settings, names)
     target = site / FOLDER
@@ -261,17 +269,20 @@ def write(site):
     )
     if made.exists() and made.read_text("utf8") == made_from:
         return
-    shutil.rmtree(target, ignore_errors=True)
     # It drops local settings without a word if it finds the notes of an older run: the workshop is
-    # new each time.
-    command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", target.resolve()]
+    # new each time. It dates all that lies beside its own folder, too, which were all pages of the
+    # site: the next build would take them for older than their sources.
+    apart = WORKSHOP / "site" / FOLDER
+    command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", apart.resolve()]
     environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}
     done = subprocess.run(
         command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
     )
     if done.returncode:
         sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
-    bring_answers_first(target)
+    bring_answers_first(apart)
+    shutil.rmtree(target, ignore_errors=True)
+    shutil.move(apart, target)
     made.write_text(made_from, "utf8")
 
 

@@ -29,6 +29,7 @@ from ..paths import PACKAGES, REPOSITORY, fingerprint
 from ..used import fingerprint_of_used, names_imported, parse
 
 PYTHON = Path(__file__).parent / "python"
+PRETTY = Path(find_spec("IPython").submodule_search_locations[0], "lib", "pretty.py")
 RESULTS = REPOSITORY / "_build" / "runtime"
 #: MyST-NB's tags of cells whose code a page does not hold.
 HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
@@ -76,8 +77,7 @@ def write_python(folder):
     )
     (folder / "IPython" / "lib").mkdir(exist_ok=True)
     (folder / "IPython" / "lib" / "__init__.py").touch()
-    root = find_spec("IPython").submodule_search_locations[0]
-    shutil.copyfile(Path(root, "lib", "pretty.py"), folder / "IPython" / "lib" / "pretty.py")
+    shutil.copyfile(PRETTY, folder / "IPython" / "lib" / "pretty.py")
 
 
 def run_alone(codes, *more):

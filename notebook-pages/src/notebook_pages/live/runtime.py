@@ -111,14 +111,17 @@ def our_packages_in(wheel):
     return [package for package in PACKAGES if package in held]
 
 
+def compiled_form(wheel):
+    """Where the compiled form of a wheel is kept, whether it is there or not."""
+    program = b"".join(path.read_bytes() for path in (*COMPILER, PYODIDE / "package.json"))
+    digest = sha256(program + "\n".join(our_packages_in(wheel)).encode() + wheel.read_bytes())
+    return COMPILED / digest[:12] / wheel.name
+
+
 @one_at_a_time()
 def compile_wheels(wheels):
     """Return the compiled form of each of ``wheels``, made now or kept from before."""
-    program = b"".join(path.read_bytes() for path in (*COMPILER, PYODIDE / "package.json"))
-    compiled = {}
-    for wheel in wheels:
-        digest = sha256(program + "\n".join(our_packages_in(wheel)).encode() + wheel.read_bytes())
-        compiled[wheel] = COMPILED / digest[:12] / wheel.name
+    compiled = {wheel: compiled_form(wheel) for wheel in wheels}
     missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
     if missing:
         with tempfile.TemporaryDirectory() as folder:

@@ -12,7 +12,7 @@ from ..fonts import FOLDER as FONTS_FOLDER
 from ..fonts import __file__ as FONTS_PROGRAM
 from ..fonts import katex_rules
 from ..paths import NODE, NODE_MODULES, REGISTERED, WEBSITE, fingerprint, named
-from .cells import PYTHON, write_python
+from .cells import PRETTY, PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
@@ -24,7 +24,8 @@ ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 def folder_name():
     """Its scripts have the same names in every version of the book: the folder tells them apart."""
-    sources = filter(None, [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), WEBSITE / "package-lock.json"])
+    ours = [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), Path(__file__)]
+    sources = filter(None, [*ours, PRETTY, WEBSITE / "package-lock.json"])
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 
@@ -46,6 +47,23 @@ def write(site):
     for outdated in (site / FOLDER).glob("scripts-*"):
         if outdated != target:
             shutil.rmtree(outdated)
+    if not (target / "live.css").exists():  # the last of them, in a folder named by its sources
+        write_loaded(target)
+    static = site / "_static"
+    static.mkdir(exist_ok=True)
+    esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
+    esbuild(
+        JS / "progress.js",
+        "--bundle",
+        "--global-name=progress",
+        f"--outfile={static / 'progress.js'}",
+    )
+    # A service worker may act for the pages below it only.
+    esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")
+
+
+def write_loaded(target):
+    """Write what a page loads when its reader asks for Python."""
     target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         workshop = Path(folder)
@@ -69,14 +87,3 @@ def write(site):
     # the page go before.
     rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
     (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")
-    static = site / "_static"
-    static.mkdir(exist_ok=True)
-    esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
-    esbuild(
-        JS / "progress.js",
-        "--bundle",
-        "--global-name=progress",
-        f"--outfile={static / 'progress.js'}",
-    )
-    # A service worker may act for the pages below it only.
-    esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")

@@ -1,8 +1,8 @@
 """The search: an index of places, made from the built pages, and the palette that asks it (``js``).
 
 Nothing is written for it but ``synonyms.yml``, the words of readers for what the book calls
-otherwise, and what else they type for a place: the places, with their numbers, first sentences and
-characteristic words, are those of the pages.
+otherwise, and what else they type for a place, and ``questions.txt``, what they have asked: the
+places, with their numbers, first sentences and characteristic words, are those of the pages.
 """
 
 import json
@@ -17,7 +17,7 @@ import yaml
 from bs4 import BeautifulSoup
 
 from ..finish import pages_of
-from ..paths import NODE, NODE_MODULES, is_solutions, parts
+from ..paths import NODE, NODE_MODULES, YAML, is_solutions, parts
 
 HERE = Path(__file__).parent
 ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
@@ -26,7 +26,8 @@ WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "asked")
 KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
-SYNONYMS = Path("synonyms.yml")
+SYNONYMS, QUESTIONS = Path("synonyms.yml"), Path("questions.txt")
+LONG = 4  # phrases of more words come later: nobody types so many before the rest is there
 LONGEST_SENTENCE = 76
 LATER = ("equation", "figure")
 SAID_LATER = ("function", "exercise", "example")  # their first sentences
@@ -204,13 +205,24 @@ def weight_of(page):
     return 0.9 if page.startswith("appendix/reference") else 1
 
 
+def questions(path):
+    """What has been asked, and the places that answer it, the best first."""
+    for line in path.read_text("utf8").splitlines() if path.exists() else []:
+        if not line.startswith("#"):
+            typed, places, *_ = line.split("|")
+            yield typed.strip(), [place.strip() for place in places.split(",")]
+
+
 def index(site):
     """What the palette asks: pages, places and synonyms, as plain data; and, for later, each
     place's words and TeX.
     """
     caption, pages, entries = captions(), [], []
-    synonyms = yaml.safe_load(SYNONYMS.read_text("utf8")) if SYNONYMS.exists() else {}
+    synonyms = yaml.load(SYNONYMS.read_text("utf8"), YAML) if SYNONYMS.exists() else {}
     asked = synonyms.pop("places", {})
+    for question, (place, *_) in questions(QUESTIONS):
+        page, _, anchor = place.partition("#")
+        asked.setdefault(page, {}).setdefault(anchor, []).append(question)
     # Reading them takes most of the time, and few pages change between two builds.
     memory = (
         site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
@@ -253,6 +265,9 @@ def index(site):
     for entry in first:
         if entry["weight"] <= LITTLE and not entry["asked"]:
             entry["about"] = ""
+    long = [[one for one in entry["asked"] if len(one.split()) > LONG] for entry in first]
+    for entry, some in zip(first, long, strict=True):
+        entry["asked"] = [one for one in entry["asked"] if one not in some] or ""
     about = [
         [k, entry.pop("about")]
         for k, entry in enumerate(first)
@@ -261,6 +276,7 @@ def index(site):
     later = {
         "words": words,
         "about": about,
+        "asked": [[k, some] for k, some in enumerate(long) if some],
         "entries": [row(one) for one in last],
         "tex": [[k, one["tex"]] for k, one in enumerate(last, len(first)) if "tex" in one],
     }

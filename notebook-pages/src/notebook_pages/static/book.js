@@ -112,20 +112,23 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
   if (entry) addEventListener("load", show);
 }
 
-// The search is loaded when somebody goes to a field of it; the key / leads to one.
+// The search is loaded when somebody goes to a field of it, the lecture when it begins; the keys / and L lead there.
 {
-  const typing = "input, textarea, select, [contenteditable], .cm-content";
-  const script = document.querySelector("link[rel='search-script']")?.href;
-  let loaded = false;
-  const load = () => {
-    if (!loaded && script) document.head.append(Object.assign(document.createElement("script"), { src: script }));
-    loaded = true;
+  const typing = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor, dialog";
+  const load = (name, onload) => {
+    const link = document.querySelector(`link[rel='${name}-script']`);
+    if (link) document.head.append(Object.assign(document.createElement("script"), { src: link.href, onload }));
+    link?.remove(); // once
   };
-  document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load());
+  const lecture = document.querySelector("button.lecture-mode");
+  const lead = { "/": () => document.querySelector(".search-button__button")?.click(), l: () => load("lecture", () => lecture.click()) };
+  document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load("search"));
   document.addEventListener("keydown", (event) => {
-    if (event.key !== "/" || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(typing)) return;
+    const to = lead[event.key?.toLowerCase()]; // what a browser fills in has none
+    if (!to || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(typing)) return;
     event.preventDefault();
-    document.querySelector(".search-button__button")?.click();
+    to();
   });
-  if (document.querySelector("form.bd-search:not(dialog form)")) load();
+  lecture?.addEventListener("click", lead.l);
+  if (document.querySelector("form.bd-search:not(dialog form)")) load("search");
 }

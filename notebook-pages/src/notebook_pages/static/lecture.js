@@ -1,6 +1,6 @@
 // The lecture: the page in the steps that its author marked, at the size of a hall, with its figures alive. The key L or
 // the button begins and ends it; the keys are said by "?". Nothing is moved within the page: what is not shown is
-// hidden, and what is shown lies over everything else.
+// hidden, and what is shown lies over everything else. book.js loads this when somebody asks for it, with its styles.
 {
   const root = document.documentElement;
   const article = document.querySelector(".bd-article");
@@ -247,7 +247,8 @@
     page.documentElement.dataset.theme = root.dataset.theme ?? "light";
     page.documentElement.className = "lecture-speaker";
     page.documentElement.lang = root.lang;
-    for (const sheet of document.querySelectorAll("link[rel=stylesheet]")) page.head.append(Object.assign(page.createElement("link"), { rel: "stylesheet", href: sheet.href }));
+    for (const { href } of document.querySelectorAll("link[rel=stylesheet]")) page.head.append(Object.assign(page.createElement("link"), { rel: "stylesheet", href }));
+    for (const styles of document.querySelectorAll("head > style")) page.head.append(page.importNode(styles, true));
     page.body.innerHTML = '<p class="place"></p><p class="time" role="timer"></p><h1></h1><main></main><footer></footer>';
     page.addEventListener("keydown", keys);
     tellSpeaker();

@@ -2,7 +2,7 @@
 //
 // A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare
 // it is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and
-// of itself that was asked for. The shares below were fitted to titles of forums (``tests/pages/queries``).
+// of itself that was asked for. The shares below were fitted to titles of forums (``questions.txt``).
 import SearchableMap from "minisearch/SearchableMap";
 import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
@@ -30,14 +30,13 @@ const KINDS = {
   page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8,
 };
 const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
-const READ = { page: true, section: true }; // those of the chapters have numbers
-const NO_CHAPTER = 0.93;
 const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
-const WITHIN = { chapter: 0.45, about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
-const PHRASE = 0.98, SYNONYM = 0.8, SAME = 1.12; // for a phrase, a synonym, the very words
-const OF_WEAK = 0.4, OF_OTHERS = 0.6, OF_GUESSED = 0.7; // for words that say little, of no subject, that may be slips
+const WITHIN = { about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
+const SYNONYM = 0.8, SAME = 1.12; // for a synonym, the very words
+const OF_WEAK = 0.4, OF_OTHERS = 0.6; // for words that say little, and of no subject
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
+const ENDS = 6, ENDED = 0.7; // with how many ends a last word is tried; what that counts where it is a word as it stands
 const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
@@ -50,12 +49,13 @@ const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles",
   "rotations", "orientation"]);
 const isWay = (sign) => sign.term.includes(">");
 
-// ``more`` holds the words of each entry's text, further first sentences, the TeX of the equations, these and the figures,
-// once they are there.
+// ``more`` holds the words of each entry's text, further phrases and first sentences, the TeX of the equations, these and
+// the figures, once they are there.
 export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, more = {}) {
   const entries = [...rows, ...more.entries ?? []].map((row) => (
     Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined]))));
   for (const [id, about] of more.about ?? []) entries[id].about = about;
+  for (const [id, asked] of more.asked ?? []) entries[id].asked = [...entries[id].asked ?? [], ...asked];
   for (const entry of entries) entry.kind = kinds[entry.kind ?? 0], entry.page ??= 0;
 
   // Concepts have several names, of one word or more; so have the things that can be converted into one another.
@@ -108,22 +108,21 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   const documents = [], having = new SearchableMap(), spread = new Map(), forms = new SearchableMap();
   const add = (entry, text, { within, ...more }) => {
     const read = within === "text" ? { list: words(text), signs: [] } : understood(text);
-    const one = { entry, share: 1, within, ...more, ...read };
-    for (const word of one.all ?? []) forms.set(word, true);
+    const one = { entry, within, ...more, ...read };
+    for (const word of one.all ?? []) forms.set(word, (forms.get(word) ?? 0) + 1);
     for (const term of new Set([...one.list, ...one.signs.map((sign) => sign.term)])) {
       if (!having.has(term)) having.set(term, []), spread.set(term, new Set());
       having.get(term).push(one);
-      if (within !== "chapter") spread.get(term).add(entry);
+      spread.get(term).add(entry);
     }
     documents.push(one);
   };
-  for (const [id, { kind, page, anchor, number, title, about, asked = [] }] of entries.entries()) {
+  for (const [id, { kind, number, title, about, asked = [] }] of entries.entries()) {
     add(id, title, {});
     const called = kind === "page" ? "chapter" : kind;
     if (number) add(id, /^[A-Z]/.test(number) ? number : `${called} ${number}`, { alone: true });
-    for (const phrase of asked) add(id, phrase, { share: PHRASE });
+    for (const phrase of asked) add(id, phrase, {});
     if (about) add(id, about, { within: "about" });
-    if (anchor && pages[page][2]) add(id, pages[page][1], { within: "chapter" });
     if (more.words?.[id]) add(id, more.words[id], { within: "text" });
   }
   const ofNames = entries.filter(({ kind }) => kind === "term" || kind === "function").map(({ title }) => title);
@@ -140,23 +139,17 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   for (const one of documents) if (!one.within) one.worths = worths(one), one.worth = sum(one.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
 
-  // A question in the words of the book: written together or apart as there, and without slips. ``guessed`` are words
-  // that may have been slips, or others that the book does not have.
-  function mended(text, goesOn) {
-    const given = read(text.replace(/([a-z])(?=[A-Z][a-z])/g, "$1 ")).all, found = [], guessed = new Set();
-    const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
-    const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
+  // A question in the words of the book: written together or apart as there, and without slips.
+  const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
+  const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
+  function mended(text) {
+    const given = read(text.replace(/([a-z])(?=[A-Z][a-z])/g, "$1 ")).all, found = [];
     for (let k = 0; k < given.length; k += 1) {
       const [one, next] = [given[k], given[k + 1]];
       const put = () => {
         const two = [one, next];
         if (next && !two.some(isLeftOut) && !two.every(isKnown) && isKnown(one + next)) return k += 1, [one + next];
-        const longer = one.length > 2 ? [...forms.atPrefix(one).keys()] : [];
-        if (goesOn && !next && longer.length) { // as it makes a name with what stands before, or else the most frequent
-          const named = longer.find((form) => understood([...found, form].join(" ")).names.at(-1));
-          return [named ?? (forms.has(one) ? one : widest(longer))];
-        }
-        if (isKnown(one) || one.length < 4 || isLeftOut(one) || longer.length) return [one];
+        if (isKnown(one) || one.length < 4 || isLeftOut(one) || forms.atPrefix(one).size) return [one];
         const letters = /^([a-z]{3,})\d\w*$/.exec(one)?.[1]; // Vector3
         if (letters) return [letters];
         const cut = [...one].map((_, j) => [one.slice(0, j), one.slice(j)])
@@ -165,30 +158,28 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         const near = [...forms.fuzzyGet(one, 2)];
         const close = near.filter(([form, [, slips]]) => slips === 1 || sorted(form) === sorted(one));
         const like = (close.length ? close : one.length > 6 ? near : []).map(([form]) => form);
-        if (like.length) return guessed.add(stem(widest(like))), [widest(like)];
-        return [one];
+        return [like.length ? widest(like) : one];
       };
       found.push(...put());
     }
-    return { text: found.join(" "), last: given.at(-1), guessed };
+    return found.join(" ");
   }
 
-  // The terms of the book that a word of a question stands for, and how like it they are: what was ``typed`` may go on.
-  function meant(word, typed, goesOn) {
-    const found = new Map(), whole = having.has(typed) || having.has(stem(typed));
-    if (typed.length > 2 && (goesOn || !whole)) {
-      for (const term of having.atPrefix(typed).keys()) {
-        found.set(term, whole ? 0.6 : 0.92 - 0.02 * (term.length - typed.length));
-      }
-    }
-    if (having.has(word)) found.set(word, typed === word || stem(typed) === word ? 1 : 0.95);
-    return found;
+  // The terms of the book that a word of a question stands for, and how like it they are: itself, or what begins with it.
+  const meant = (word) => (having.has(word) ? [[word, 1]] : word.length < 3 ? []
+    : [...having.atPrefix(word).keys()].map((term) => [term, 0.92 - 0.02 * (term.length - word.length)]));
+
+  // What a question may become whose last word is not finished: with the most frequent words that begin so.
+  function finished(text) {
+    const begun = /[a-z]+$/i.exec(text)?.[0].toLowerCase();
+    return (begun ? [...forms.atPrefix(begun)] : []).filter(([form]) => form !== begun)
+      .sort(([, one], [, other]) => other - one).slice(0, ENDS)
+      .map(([form]) => [text + form.slice(begun.length), forms.has(begun) ? ENDED : 1]);
   }
 
-  function byWords(text, goesOn) {
-    const put = mended(text, goesOn), asked = understood(put.text), { list, signs } = asked;
-    const weights = worths(asked).map((worth, k) => (put.guessed.has(list[k]) ? OF_GUESSED : 1) * worth);
-    const whole = sum(weights);
+  function byWords(text) {
+    const asked = understood(mended(text)), { list, signs } = asked;
+    const weights = worths(asked), whole = sum(weights);
     const answered = (likes) => (sum(likes.map((like, k) => weights[k] * like)) / whole) ** POWER;
     const states = new Map();
     const state = (one) => {
@@ -197,12 +188,11 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     };
     const raise = (likes, k, like) => { likes[k] = Math.max(likes[k], like); };
     for (const [k, word] of list.entries()) {
-      const isLast = goesOn && k === list.length - 1;
-      for (const [term, like] of meant(word, isLast ? put.last : word, isLast)) for (const one of having.get(term)) {
+      for (const [term, like] of meant(word)) for (const one of having.get(term)) {
         const { likes, own } = state(one);
         if (one.within) raise(likes, k, like);
         else for (const [j, mine] of one.list.entries()) if (mine === term) {
-          const now = like * (one.names[j] === asked.names[k] || isLast ? 1 : APART);
+          const now = like * (one.names[j] === asked.names[k] ? 1 : APART);
           raise(likes, k, now), raise(own, j, now);
         }
       }
@@ -233,11 +223,11 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       const both = likes.map((like, k) => Math.max(like, text?.[k] ?? 0));
       const way = !ways.size || one.signs.some(({ term }) => ways.has(term)) ? 1 : NO_WAY;
       const same = one.list.join(" ") === list.join(" ") ? SAME : 1;
-      take(one.entry, answered(both) * (1 - OWN + OWN * used) * one.share * same * (back ? OTHER_WAY : way));
+      take(one.entry, answered(both) * (1 - OWN + OWN * used) * same * (back ? OTHER_WAY : way));
       if (one.alone) continue;
       if (!all.has(one.entry)) all.set(one.entry, { likes: list.map(() => 0), used: 0, way: NO_WAY });
       const its = all.get(one.entry);
-      for (const [k, like] of likes.entries()) raise(its.likes, k, Math.max(like * one.share, text?.[k] ?? 0));
+      for (const [k, like] of likes.entries()) raise(its.likes, k, Math.max(like, text?.[k] ?? 0));
       its.used = Math.max(its.used, used * sum(both.map((like, k) => weights[k] * like)) / whole);
       its.way = Math.max(its.way, way);
     }
@@ -245,9 +235,9 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     for (const [id, { likes, used, way }] of all) take(id, answered(likes) * (1 - OWN + OWN * used) * way);
     for (const [id, likes] of beside) take(id, answered(likes) * (1 - OWN));
     return [...best].map(([id, score]) => {
-      const { kind, number, page, asked: phrases } = entries[id], weight = pages[page][3];
+      const { kind, page, asked: phrases } = entries[id], weight = pages[page][3];
       return [id, score * KINDS[kind] * (list.length > 2 ? IN_LONG[kind] ?? 1 : 1)
-        * (phrases ? Math.max(weight, ASKED) : weight) * (number || !READ[kind] ? 1 : NO_CHAPTER)];
+        * (phrases ? Math.max(weight, ASKED) : weight)];
     });
   }
 
@@ -264,7 +254,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         return kind !== "function" || !its.startsWith(name) ? [] : [[id, its === name ? 3 : 1.5]];
       }));
     }
-    take(byWords(query, !/\s$/.test(query)), formula ? 0.6 : 1);
+    take(byWords(query), formula ? 0.6 : 1);
+    if (!formula) for (const [longer, share] of finished(query)) take(byWords(longer), share);
     if (formula) {
       const asked = pairs(signs(query));
       take(formulas.map(({ id, signs: there }) => (
