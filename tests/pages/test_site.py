@@ -271,7 +271,8 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
 
     page = browser.new_page(viewport=WIDE)
     # Held, not refused: a document that has ended before its first frame is laid out as a whole.
-    page.route("**/_static/page-*.js*", lambda route: None)
+    held = []
+    page.route("**/_static/page-*.js*", lambda route: held.append(route))
     page.goto(site + name, wait_until="commit")
     assert set(asked(page)) == named
     # What stands until they come is a typeface of the machine, if it has such a one: it is not
@@ -281,6 +282,8 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
         "for now'))"
     )
     assert page.evaluate(f"{loaded}.length") == len(named)
+    for route in held:
+        route.abort()
     page.close()
     with Visit(browser, site, name, "light", WIDE) as visit:
         fetched = asked(visit.page)
