@@ -75,13 +75,15 @@ STRAY = """() => [...document.querySelectorAll(".bd-article .katex")].filter((fo
   range.setEnd(after, 1);
   return range.getBoundingClientRect().left < last.left;
 }).map((formula) => formula.querySelector("math").textContent)"""
-# Rules that the page's scripts bring, and that the page would have needed before them.
+# Rules that the page's scripts bring, and that the page would have needed before them, or that name a file: it would be
+# looked for beside the page.
 TOO_LATE = r"""async () => {
   const page = new DOMParser().parseFromString(await (await fetch(location.href)).text(), "text/html");
-  const flat = (rules) => [...rules].flatMap((rule) => rule.selectorText ? [rule.selectorText] : flat(rule.cssRules ?? []));
+  const flat = (rules) => [...rules].flatMap((rule) => rule.selectorText ? [rule] : flat(rule.cssRules ?? []));
   const brought = [...document.querySelectorAll("head > style:not(:first-of-type)")].flatMap(({ sheet }) => flat(sheet.cssRules));
   const whenever = (selector) => selector.replace(/:not\([^()]*\)/g, "").replace(/::?[a-z-]+(?![a-z(-])/g, ":where(*)");
-  return brought.length ? brought.filter((selector) => page.querySelector(whenever(selector))) : ["nothing is brought"];
+  const late = ({ selectorText, cssText }) => page.querySelector(whenever(selectorText)) || /url\("(?!data:)/.test(cssText);
+  return brought.length ? brought.filter(late).map(({ cssText }) => cssText) : ["nothing is brought"];
 }"""
 SIDEWAYS = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
 
@@ -175,6 +177,7 @@ def test_page_in_light_and_wide(browser, site, name):
         page = visit.page
         assert page.evaluate("document.documentElement.dataset.theme") == "light"
         assert visit.shift() < LARGEST_SHIFT
+        assert page.evaluate(TOO_LATE) == []
         assert page.evaluate(MATHEMATICS) == []
         assert bool(page.query_selector(".katex")) or not name.startswith("chapters/")
         assert violations(page) == []

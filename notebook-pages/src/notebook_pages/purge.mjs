@@ -60,7 +60,9 @@ if (files[0] === "--later") {
   const stateless = root.clone();
   stateless.walkRules((rule) => (rule.selector = rule.selector.replace(/::?[a-z-]+(?![a-z(-])/g, "[open]")));
   const atOnce = new Set((await purged(stateless.toString(), [])).match(/(?<=--rule: ?)\d+/g));
-  root.walkRules((rule) => /url\((?!["']?data:)/.test(rule) && atOnce.add(rule.last.value));
+  root.walkRules((rule) => {
+    if (/url\((?!["']?data:)/.test(rule)) atOnce.add(rule.last.value);
+  });
   const part = (wanted) => {
     const found = root.clone();
     found.walkRules((rule) => (wanted(rule) ? rule.last : rule).remove());

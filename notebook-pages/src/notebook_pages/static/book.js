@@ -117,11 +117,13 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
   const typing = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor, dialog";
   const load = (name, onload) => {
     const link = document.querySelector(`link[rel='${name}-script']`);
-    if (link) document.head.append(Object.assign(document.createElement("script"), { src: link.href, onload }));
+    const onerror = () => document.head.append(link); // what did not come is asked for again
+    if (link) document.head.append(Object.assign(document.createElement("script"), { src: link.href, onload, onerror }));
     link?.remove(); // once
   };
   const lecture = document.querySelector("button.lecture-mode");
-  const lead = { "/": () => document.querySelector(".search-button__button")?.click(), l: () => load("lecture", () => lecture.click()) };
+  const lead = { "/": () => document.querySelector(".search-button__button")?.click() };
+  if (lecture) lead.l = () => load("lecture", () => lecture.click());
   document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load("search"));
   document.addEventListener("keydown", (event) => {
     const to = lead[event.key?.toLowerCase()]; // what a browser fills in has none

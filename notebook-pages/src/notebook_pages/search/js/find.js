@@ -242,6 +242,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   }
 
   // The entries that answer, the best first.
+  let before = new Map(); // what the letter typed last made of it: the next one asks for much of that again
   return (query, most = 12) => {
     const scores = new Map(), take = (found, share = 1) => {
       for (const [id, score] of found) scores.set(id, Math.max(scores.get(id) ?? 0, score * share));
@@ -254,8 +255,14 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         return kind !== "function" || !its.startsWith(name) ? [] : [[id, its === name ? 3 : 1.5]];
       }));
     }
-    take(byWords(query), formula ? 0.6 : 1);
-    if (!formula) for (const [longer, share] of finished(query)) take(byWords(longer), share);
+    const tried = new Map();
+    const byItsWords = (text) => {
+      tried.set(text, before.get(text) ?? byWords(text));
+      return tried.get(text);
+    };
+    take(byItsWords(query), formula ? 0.6 : 1);
+    if (!formula) for (const [longer, share] of finished(query)) take(byItsWords(longer), share);
+    before = tried;
     if (formula) {
       const asked = pairs(signs(query));
       take(formulas.map(({ id, signs: there }) => (
