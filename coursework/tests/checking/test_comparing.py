@@ -326,7 +326,8 @@ def test_words_and_what_a_person_reads():
     text = Question("free text")
     for answer, words in (("One", "1 word"), ("One  two", "2 words")):
         reply = compare("a/b", text, to_plain(answer), {}.get)
-        assert reply.answer == "" and (reply.outcome, reply.note) == ("undecided", "for a person")
+        assert (reply.question, reply.answer) == ("a/b", "")
+        assert (reply.outcome, reply.note) == ("undecided", "for a person")
         assert reply.messages == [f"A person will read this text of {words} and decide."]
 
 
