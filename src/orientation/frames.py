@@ -37,7 +37,7 @@ class _AxisTurn(NamedTuple):
 
     def batch(self) -> tuple[int, ...]:
         """Shape of the batch that this turn is, () for a single one."""
-        return () if self.is_symbolic() else getattr(self.angle, "shape", ())
+        return getattr(self.angle, "shape", ())
 
     def back(self) -> _AxisTurn:
         return self._replace(angle=-self.angle)
@@ -61,7 +61,7 @@ class _MatrixTurn(NamedTuple):
 
     def batch(self) -> tuple[int, ...]:
         """Shape of the batch that this turn is, () for a single one."""
-        return () if self.is_symbolic() else self.matrix.shape[:-2]
+        return self.matrix.shape[:-2]
 
     def back(self) -> _MatrixTurn:
         transposed = self.matrix.T if self.is_symbolic() else self.matrix.swapaxes(-1, -2)

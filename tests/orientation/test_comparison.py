@@ -20,6 +20,8 @@ from orientation import (
     same_orientation,
     simple_dcm,
 )
+from orientation.mixups import wrong_sign
+from orientation.random_points import points_for
 
 psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 NAMES = ("psi", "theta", "varphi")
@@ -146,6 +148,16 @@ def test_each_of_many_symbols_is_tried_with_both_signs(count):
         assert not same_orientation(
             simple_dcm("x", sm.Abs(symbol) + rest), simple_dcm("x", symbol + rest)
         )
+
+
+def test_every_symbol_is_tried_well_inside_of_all_four_quadrants_and_beyond_half_a_turn():
+    names = [f"a{k}" for k in range(50)]
+    points = points_for(names)
+    quarters = np.array([[point[name] for name in names] for point in points]) / (np.pi / 2)
+    assert (np.sort(np.floor(quarters), axis=0).T == [-3, -1, 0, 2]).all()
+    assert ((quarters % 1 > 0.1) & (quarters % 1 < 0.9)).all()
+    assert len(set(quarters.flat)) == 200
+    assert points == points_for(names)
 
 
 def test_symbols_are_compared_by_name():
@@ -383,6 +395,18 @@ def test_mixups_that_are_mathematically_the_same_are_all_named():
         SENTENCES["order"],
         "the angles are in reverse order",
     )
+
+
+def test_functions_of_time_are_angles_of_a_sequence_and_time_is_none():
+    angles = me.dynamicsymbols("psi, theta, varphi")
+    assert diagnose(composed(angles[::-1], "yxz"), composed(angles, "zxy")).causes == (
+        SENTENCES["order"],
+    )
+
+
+def test_turns_with_wrong_signs_are_counted():
+    assert wrong_sign("second") == "the angle of the second turn has the wrong sign"
+    assert wrong_sign("first", "third").startswith("the angles of the first and the third turn")
 
 
 def test_chain_of_two_turns():
