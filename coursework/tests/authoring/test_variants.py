@@ -109,6 +109,7 @@ def variant(student):
     return variants.variant_of(student, NAME, 6)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", range(6))
 def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
     coursework.student(student_with(number) if number else "")
@@ -196,6 +197,7 @@ EDITIONS = [{0: (20, 2), 1: (30, 3), 2: (45, 7)}, {0: (20, 2), 1: (45, 7), 2: (6
 NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("first", ["answer", "slip", *NUMBERS])
 def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(
     first, monkeypatch, tmp_path
@@ -672,6 +674,7 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
     ]
 
 
+@pytest.mark.long
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
     """Their pages follow upon those of the first variant, which another machine's numbers had made
     others.
