@@ -304,7 +304,6 @@ def demand_truth(diagnosis, answer, angles, sequence):
     assert all(cause in str(diagnosis) for cause in diagnosis.causes)
 
 
-@pytest.mark.sampled(24)
 @all_sequences
 @pytest.mark.parametrize("mixup", SENTENCES)
 def test_symbolic_mixups_are_named(sequence, mixup):

@@ -197,7 +197,6 @@ EDITIONS = [{0: (20, 2), 1: (30, 3), 2: (45, 7)}, {0: (20, 2), 1: (45, 7), 2: (6
 NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
 
 
-@pytest.mark.sampled(2)
 @pytest.mark.parametrize("first", ["answer", "slip", *NUMBERS])
 def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(
     first, monkeypatch, tmp_path
