@@ -191,6 +191,12 @@ def test_every_way_to_hold_a_matrix():
     assert same_orientation(numbers.tolist(), sm.Matrix(numbers))
 
 
+def test_plain_numbers_of_one_item_are_compared_without_numpy(monkeypatch):
+    monkeypatch.setattr("orientation.comparison.number_array", None)
+    dcm, quaternion = composed(NUMBERS, "zxy").tolist(), (0.6, 0, 0.8, 0)
+    assert same_orientation(dcm, dcm) and same_orientation(quaternion, list(quaternion))
+
+
 def test_batches():
     dcms = random_dcms(6, 1).reshape(2, 3, 3, 3)
     assert same_orientation(dcms, dcms.copy())
@@ -560,8 +566,14 @@ def test_bad_input():
             function(dcm, (1, 2, 3))
         with pytest.raises(ValueError, match="is neither"):
             function(theta, dcm)
-        with pytest.raises(ValueError, match=r"\[0, 0\] is nan"):
-            function(dcm * np.nan, dcm)
+        name = "given" if function is diagnose else "first"
+        for spoilt, said in (
+            (dcm * np.nan, r"\[0, 0\] is nan"),
+            (random_dcms(2, 1) * np.nan, r"\[0, 0, 0\] is nan"),
+            (composed(SYMBOLS, "zxy") * sm.nan, " holds nan"),
+        ):
+            with pytest.raises(ValueError, match=f"^{name}{said}"):
+                function(spoilt, dcm)
         with pytest.raises(TypeError, match="must hold real numbers"):
             function(dcm, "zxy")
     with pytest.raises(ValueError, match="one answer at a time"):
