@@ -288,7 +288,6 @@ class Frames:
                     if edge.frame not in done:
                         _orient(frames[edge.frame], frames[edge.reference], edge)
                         done.add(edge.frame)
-            done.add(root)
         return frames
 
     def __repr__(self) -> str:
@@ -346,7 +345,7 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
             "this path holds symbols and a batch of numbers: put numbers in for the symbols "
             "first, or one item for the batch"
         )
-    if len(shapes) > 1:
+    if shapes:
         import numpy
 
         try:

@@ -1236,6 +1236,7 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     context.close()
 
 
+@pytest.mark.long
 def test_edit_of_code_that_has_changed_is_offered(browser, site):
     context = browser.new_context()
     page = Page(context, site, QUIET)
