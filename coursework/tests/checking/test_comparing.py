@@ -186,6 +186,15 @@ def test_numbers_with_fewer_places_than_count_may_be_rounded():
     assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
 
 
+def test_large_decimal_fractions_are_as_exact_as_their_digits():
+    def precision(digits):
+        return questions._precision({"nodes": [["float", digits]]})
+
+    assert precision("12345.0000000005") == (True, False)
+    # Of so large a square hardly any digit after the point is known.
+    assert precision("123456.79") == (False, True)
+
+
 def test_numbers_that_nearly_fit_together_may_be_rounded():
     unit = Question("vector", salt="s", tolerance=1e-6, unit_vector=True)
     third = [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
