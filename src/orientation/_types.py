@@ -62,7 +62,7 @@ class Expression(Symbolic, Protocol):
     @property
     def free_symbols(self) -> AbstractSet[Expression]: ...
     @property
-    def func(self) -> type[object]: ...
+    def name(self) -> str: ...  # of a symbol, and of a function of time
 
 
 #: A component of one item that is read; and of a batch, too.

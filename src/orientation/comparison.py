@@ -20,8 +20,10 @@ from .numbers_and_symbols import (
     NUMBERS,
     TOLERANCE,
     WrongShape,
+    as_list,
     is_symbolic,
     number_array,
+    number_tuples,
     one_item,
     symbol_components,
 )
@@ -226,7 +228,7 @@ def diagnose(
         turns = (
             symbol_components(angles, (3,), "angles")
             if is_symbolic(angles)
-            else one_item(angles, (3,), "angles") or number_array(angles, (3,), "angles").tolist()
+            else as_list(number_tuples(angles, (3,), "angles"))
         )
     names = unknowns([*answer, *truth, *(turns or ())])
     points = points_for(names)
@@ -294,7 +296,7 @@ def _substitutions(
             f"{first} and {second} have changed places",
             with_changes(lambda p: {first: p[second], second: p[first]}),
         )
-    for group in dict.fromkeys([tuple(own), *((name,) for name in own)] if own else []):
+    for group in dict.fromkeys([tuple(own), *((name,) for name in own)]):
         those = f"{', '.join(group)} {'was' if len(group) == 1 else 'were'}"
         yield (
             f"{those} given in degrees where radians are expected",

@@ -37,7 +37,7 @@ class _AxisTurn(NamedTuple):
 
     def batch(self) -> tuple[int, ...]:
         """Shape of the batch that this turn is, () for a single one."""
-        return () if self.is_symbolic() else getattr(self.angle, "shape", ())
+        return getattr(self.angle, "shape", ())
 
     def back(self) -> _AxisTurn:
         return self._replace(angle=-self.angle)
@@ -61,7 +61,7 @@ class _MatrixTurn(NamedTuple):
 
     def batch(self) -> tuple[int, ...]:
         """Shape of the batch that this turn is, () for a single one."""
-        return () if self.is_symbolic() else self.matrix.shape[:-2]
+        return self.matrix.shape[:-2]
 
     def back(self) -> _MatrixTurn:
         transposed = self.matrix.T if self.is_symbolic() else self.matrix.swapaxes(-1, -2)
@@ -288,7 +288,6 @@ class Frames:
                     if edge.frame not in done:
                         _orient(frames[edge.frame], frames[edge.reference], edge)
                         done.add(edge.frame)
-            done.add(root)
         return frames
 
     def __repr__(self) -> str:
@@ -346,7 +345,7 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
             "this path holds symbols and a batch of numbers: put numbers in for the symbols "
             "first, or one item for the batch"
         )
-    if len(shapes) > 1:
+    if shapes:
         import numpy
 
         try:

@@ -189,7 +189,7 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
     found = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
     least = min(cost for cost, _ in found)
-    best = [guess for cost, guess in found if cost <= least + 1e-9 * (1 + least)]
+    best = [guess for cost, guess in found if cost <= least + 1e-9]
     apart = max(angle_between(best[0], guess) for guess in best)
     if apart > 1e-6:
         raise ValueError(

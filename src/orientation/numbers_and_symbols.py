@@ -184,14 +184,17 @@ def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | N
     if isinstance(value, (list, tuple)) and len(value) != sum(item[:1]):
         return None
     try:
-        return _flat(number_tuples(value, item, name))
+        return as_list(number_tuples(value, item, name))
     except WrongShape:
         return None  # a batch, or a mistake, which number_array explains
 
 
-def _flat(value: Nested) -> list[float]:
+def as_list(value: Nested) -> list[float]:
+    """The numbers of tuples in one list."""
     return (
-        [entry for part in value for entry in _flat(part)] if isinstance(value, tuple) else [value]
+        [entry for part in value for entry in as_list(part)]
+        if isinstance(value, tuple)
+        else [value]
     )
 
 

@@ -40,9 +40,9 @@ def unknowns(components: Iterable[Column]) -> Names:
 
         functions = expression.atoms(AppliedUndef)
         # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
-        rest = expression.xreplace({function: sympy.Dummy("function") for function in functions})
+        rest = expression.xreplace({function: sympy.Dummy() for function in functions})
         for atom in functions | (rest.free_symbols & expression.free_symbols):
-            names.setdefault(getattr(atom, "name", None) or atom.func.__name__, set()).add(atom)
+            names.setdefault(atom.name, set()).add(atom)
     return dict(sorted(names.items()))
 
 

@@ -99,6 +99,7 @@ FORGOTTEN = {
 }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("part", FORGOTTEN)
 def test_what_is_forgotten_is_told_by_its_place(book, part):
     path, old, other, says = FORGOTTEN[part]

@@ -85,8 +85,8 @@ def test_what_does_not_cross():
         scipy_rotation_from_dcm(simple_dcm("z", sm.Symbol("theta")))
     with pytest.raises(ValueError, match="left-handed"):
         scipy_rotation_from_dcm(-np.eye(3))
-    for wrong in (np.eye(3), "zxy", None):
-        with pytest.raises(TypeError, match="rotation must be a SciPy Rotation, not"):
+    for wrong, kind in ((np.eye(3), "ndarray"), ("zxy", "str"), (None, "NoneType")):
+        with pytest.raises(TypeError, match=f"rotation must be a SciPy Rotation, not {kind}"):
             dcm_from_scipy_rotation(wrong)
 
 

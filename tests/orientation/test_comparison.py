@@ -20,6 +20,8 @@ from orientation import (
     same_orientation,
     simple_dcm,
 )
+from orientation.mixups import wrong_sign
+from orientation.random_points import points_for
 
 psi, theta, phi = SYMBOLS = sm.symbols("psi, theta, varphi")
 NAMES = ("psi", "theta", "varphi")
@@ -148,6 +150,16 @@ def test_each_of_many_symbols_is_tried_with_both_signs(count):
         )
 
 
+def test_every_symbol_is_tried_well_inside_of_all_four_quadrants_and_beyond_half_a_turn():
+    names = [f"a{k}" for k in range(50)]
+    points = points_for(names)
+    quarters = np.array([[point[name] for name in names] for point in points]) / (np.pi / 2)
+    assert (np.sort(np.floor(quarters), axis=0).T == [-3, -1, 0, 2]).all()
+    assert ((quarters % 1 > 0.1) & (quarters % 1 < 0.9)).all()
+    assert len(set(quarters.flat)) == 200
+    assert points == points_for(names)
+
+
 def test_symbols_are_compared_by_name():
     in_time, positive = me.dynamicsymbols("theta"), sm.Symbol("theta", positive=True)
     for other in (in_time, positive, sm.Function("theta")(sm.Symbol("t"))):
@@ -179,6 +191,14 @@ def test_every_way_to_hold_a_matrix():
     assert same_orientation(numbers.tolist(), sm.Matrix(numbers))
 
 
+def test_plain_numbers_of_one_item_need_neither_numpy_nor_sympy(monkeypatch):
+    for reading in ("number_array", "symbol_components"):
+        monkeypatch.setattr(f"orientation.comparison.{reading}", None)
+    dcm, quaternion = composed(NUMBERS, "zxy").tolist(), (0.6, 0, 0.8, 0)
+    assert same_orientation(dcm, dcm) and same_orientation(quaternion, list(quaternion))
+    assert diagnose(dcm, dcm, NUMBERS, "zxy").same
+
+
 def test_batches():
     dcms = random_dcms(6, 1).reshape(2, 3, 3, 3)
     assert same_orientation(dcms, dcms.copy())
@@ -187,8 +207,8 @@ def test_batches():
     assert not same_orientation(dcms, dcms[0, 0])
     assert same_orientation(np.stack(5 * [np.eye(3)]), sm.eye(3))
     assert same_orientation(np.zeros((0, 3, 3)), np.zeros((0, 3, 3)))
-    quaternions = random_unit_vectors(5, 2, size=4)
-    assert same_orientation(quaternions, quaternions * [[1], [-1], [1], [-1], [-1]])
+    quaternions = np.concatenate([random_unit_vectors(50, 2, size=4), np.eye(4)])
+    assert same_orientation(quaternions, quaternions * np.resize([[1], [-1], [-1]], (54, 1)))
     with pytest.raises(
         ValueError, match=r"batches of shapes \(2, 3\) and \(5,\) cannot be compared"
     ):
@@ -376,13 +396,32 @@ def test_two_mixups_at_once_are_not_taken_for_one(sequence):
 def test_mixups_that_are_mathematically_the_same_are_all_named():
     diagnosis = diagnose(simple_dcm("z", theta).T, simple_dcm("z", theta))
     assert diagnosis.causes == (SENTENCES["transpose"], "theta has the wrong sign")
-    assert "mathematically the same here" in str(diagnosis)
+    assert str(diagnosis).endswith(
+        f"mathematically the same here: {SENTENCES['transpose']}; or theta has the wrong sign."
+    )
     diagnosis = diagnose(composed((phi, theta, psi), "zxz"), composed(SYMBOLS, "zxz"))
     assert diagnosis.causes == (
         "psi and varphi have changed places",
         SENTENCES["order"],
         "the angles are in reverse order",
     )
+
+
+def test_functions_of_time_are_angles_of_a_sequence_and_time_is_none():
+    angles = me.dynamicsymbols("psi, theta, varphi")
+    assert diagnose(composed(angles[::-1], "yxz"), composed(angles, "zxy")).causes == (
+        SENTENCES["order"],
+    )
+
+
+def test_turns_with_wrong_signs_are_counted():
+    assert wrong_sign("second") == "the angle of the second turn has the wrong sign"
+    assert wrong_sign("first", "third").startswith("the angles of the first and the third turn")
+
+
+def test_angles_that_have_names_are_called_by_them_and_by_nothing_else():
+    diagnosis = diagnose(composed((-psi, theta, phi), "zxy"), composed(SYMBOLS, "zxy"))
+    assert diagnosis.causes == ("psi has the wrong sign",)
 
 
 def test_chain_of_two_turns():
@@ -400,6 +439,15 @@ def test_expected_matrix_of_a_signed_and_reordered_sequence_is_recognised():
     assert diagnose(composed((theta, -psi, phi), "yzy"), expected).causes == (
         "it is the sequence yzy, not yzx",
     )
+
+
+def test_given_angles_may_be_symbols():
+    causes = diagnose(composed((phi, 0, psi), "zxy"), composed((psi, 0, phi), "zxy")).causes
+    assert causes == ("psi and varphi have changed places",)
+    for angles in ((psi, 0, phi), sm.Matrix([psi, 0, phi])):
+        assert diagnose(
+            composed((phi, 0, psi), "zxy"), composed((psi, 0, phi), "zxy"), angles, "zxy"
+        ).causes == (*causes, "the angles are in reverse order")
 
 
 def test_given_angles_of_which_one_is_zero():
@@ -444,6 +492,7 @@ def test_symbols_that_obey_a_condition_are_not_said_to_be_at_fault():
     assert diagnose(last, quaternion).causes == (
         "the scalar part stands last; in this book it stands first",
     )
+    assert diagnose(2 * quaternion, quaternion) == (False, ())
 
 
 # --- quaternions ----------------------------------------------------------------------------------
@@ -510,6 +559,13 @@ def test_nothing_is_named_for_other_quaternions():
     )
 
 
+def test_a_quaternion_is_not_read_as_entries_of_a_matrix():
+    """These could be the first entries of turns about y, and the answer's those about z."""
+    c, s = sm.cos(psi + theta), sm.sin(psi + theta)
+    (cause,) = diagnose((c, -s, 0, s), (c, 0, s, 0)).causes
+    assert cause.startswith("it has length")
+
+
 def test_degrees_in_a_quaternion():
     expected = quaternion_from_axis_angle((1, 2, 3), theta)
     assert diagnose(expected.subs(theta, theta * 180 / sm.pi), expected).causes == (
@@ -536,12 +592,29 @@ def test_bad_input():
             function(dcm, (1, 2, 3))
         with pytest.raises(ValueError, match="is neither"):
             function(theta, dcm)
-        with pytest.raises(ValueError, match=r"\[0, 0\] is nan"):
-            function(dcm * np.nan, dcm)
+        name = "given" if function is diagnose else "first"
+        for spoilt, said in (
+            (dcm * np.nan, r"\[0, 0\] is nan"),
+            (random_dcms(2, 1) * np.nan, r"\[0, 0, 0\] is nan"),
+            (composed(SYMBOLS, "zxy") * sm.nan, " holds nan"),
+        ):
+            with pytest.raises(ValueError, match=f"^{name}{said}"):
+                function(spoilt, dcm)
         with pytest.raises(TypeError, match="must hold real numbers"):
             function(dcm, "zxy")
-    with pytest.raises(ValueError, match="one answer at a time"):
-        diagnose(random_dcms(3, 7), random_dcms(3, 7))
+    for pair in ((random_dcms(3, 7), random_dcms(3, 7)), (random_dcms(3, 7), dcm)):
+        for given, expected in (pair, pair[::-1]):
+            with pytest.raises(ValueError, match="one answer at a time"):
+                diagnose(given, expected)
+    for angles, error, said in (
+        ((1, 2), ValueError, r" has shape \(2,\)"),
+        (np.zeros((2, 3)), ValueError, r" has shape \(2, 3\)"),
+        ((1, np.nan, 2), ValueError, r"\[1\] is nan"),
+        ((psi, sm.nan, 1), ValueError, " holds nan"),
+        ("zxy", TypeError, " must hold real numbers"),
+    ):
+        with pytest.raises(error, match=f"^angles{said}"):
+            diagnose(dcm.T, dcm, angles, "zxy")
     with pytest.raises(ValueError, match="angles and sequence belong together"):
         diagnose(dcm.T, dcm, NUMBERS)
     with pytest.raises(ValueError, match="angles and sequence belong together"):

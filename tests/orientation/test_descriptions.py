@@ -195,6 +195,9 @@ def test_two_headings_half_a_turn_apart_have_no_mean():
     for metric in ("entries", "angle"):
         with pytest.raises(ValueError, match="no unique mean"):
             mean_orientation(simple_dcm("z", [0, np.pi]), metric=metric)
+    # By angle a tenth of the weight draws the mean a tenth of the way, to either side.
+    with pytest.raises(ValueError, match="no unique mean by angle.*two are 36 degrees apart"):
+        mean_orientation(simple_dcm("z", [0, np.pi]), [9, 1], "angle")
 
 
 def test_a_mean_does_not_depend_on_the_order_nor_on_one_far_away():

@@ -360,6 +360,14 @@ def test_what_was_given_can_change_afterwards():
     assert (frames.dcm("F", "A") == before[0]).all() and frames.dcm("M", "N") == before[1]
 
 
+def test_a_zero_that_was_given_has_no_sign():
+    negative = np.where(np.eye(3) == 0, -0.0, 1.0)
+    dcm = Frames().orient_dcm("A", "N", negative).dcm("A", "N")
+    assert (dcm == np.eye(3)).all() and not np.signbit(dcm).any()
+    frames = Frames().orient_axis("A", "N", (-0.0, 0, 1), -0.0)
+    assert r"(0, 0, 1),\ 0}" in str(frames.equation("A", "N"))
+
+
 def test_what_was_returned_can_change_afterwards():
     frames = (
         Frames()
@@ -405,6 +413,7 @@ def test_equation_tells_what_each_factor_is():
         .orient_quaternion("D", "C", (1, 0, 0, 0))
         .orient_axis("E_1", "D", "z", np.zeros(3))
         .orient_body_fixed("F", "E_1", SYMBOLS, "zxy")
+        .orient_axis("G", "F", (sm.sqrt(2), 0, 1), 0.5)
     )
     for target, source, said in (
         ("B", "A", r"\text{axis }(0, 1, 1),\ 0.5"),
@@ -413,6 +422,7 @@ def test_equation_tells_what_each_factor_is():
         ("D", "C", r"\text{quaternion}"),
         ("E_1", "D", r"z,\ \text{batch}"),
         ("F", "E_1", r"z,\ \psi;\ x,\ \theta;\ y,\ \varphi"),
+        ("G", "F", r"\text{axis }(\sqrt{2}, 0, 1),\ 0.5"),
         ("E_1", "F", r"y,\ - \varphi;\ x,\ - \theta;\ z,\ - \psi"),
     ):
         tex = str(frames.equation(target, source))
@@ -445,6 +455,7 @@ def test_a_frame_in_itself():
             lambda frames: frames.orient_axis("B", "A", (0, 0, 0), psi),
             "a zero vector points nowhere",
         ),
+        (lambda frames: frames.orient_axis("B", "A", "z", (psi, psi)), r"^angle has shape \(2,\)"),
         (lambda frames: frames.orient_axis("B", "A", 3, 1), r"axis has shape \(\)"),
         (
             lambda frames: frames.orient_body_fixed("B", "A", (1, 2, 3), "zzx"),

@@ -87,6 +87,15 @@ def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
     assert weights @ angle_between(dcms, found) ** 2 <= best + 1e-6
 
 
+def test_a_mean_of_far_orientations_leaves_nothing_to_chance(monkeypatch):
+    seeds, generator = [], np.random.default_rng
+    monkeypatch.setattr(
+        np.random, "default_rng", lambda seed: generator(seeds.append(seed) or seed)
+    )
+    mean_orientation(random_orientations(4, 16), metric="angle")
+    assert seeds and None not in seeds
+
+
 @pytest.mark.parametrize("metric", ["entries", "angle"])
 def test_only_the_shares_of_weights_count_and_a_share_of_none_leaves_one_out(metric):
     dcms = random_orientations(5, 3)

@@ -85,6 +85,7 @@ def test_the_angular_velocity_of_successive_turns_is_found_along_both_frames():
         assert attack(one, budget=3000).way.startswith("the angular velocity of turns")
 
 
+@pytest.mark.long
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
     """None of these is a turn about an axis through a special angle; each is one to three calls
     with what is given.
@@ -301,6 +302,7 @@ def try_roots(names):
     return tried
 
 
+@pytest.mark.long
 def test_no_root_passes_for_a_cosine():
     """Found in the first edition: these agree where the cosine is positive, and the points were
     there only.

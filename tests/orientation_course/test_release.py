@@ -106,6 +106,7 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
     assert release.differences(trial / "sealed", tmp_path / "sealed", "*") == []
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize(
     "about",
     [
@@ -289,6 +290,7 @@ def test_there_is_a_notebook_of_exercises_for_every_chapter():
     assert sum(not name.startswith("chapters/") for name in questions) >= 60
 
 
+@pytest.mark.long
 def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
     first, second = (archive(COURSE, tmp_path / name / "exercises.zip") for name in "ab")
     assert first.read_bytes() == second.read_bytes()

@@ -26,7 +26,7 @@ from coursework.authoring.source import measured_strengths, names_asked, said_be
 SOURCES = {path.stem: path for path in sorted(COURSE.sources.glob("*.ipynb"))}
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SOURCES)
 def test_every_question_passes_and_names_its_mistakes(name):
     source = release.read_source(SOURCES[name])
@@ -50,6 +50,7 @@ def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
     assert all(0 <= tries <= BUDGET for tries in measured.values())
 
 
+@pytest.mark.long
 @needs_solutions
 def test_a_question_of_a_chapter_is_attacked_with_its_text_in_the_chapter():
     """Its source has no text: without the chapter's an attack would know none of the numbers that a

@@ -136,6 +136,7 @@ def test_the_ends_of_a_path_are_frames_of_the_tree():
 # In the browser.
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("target, source", ["EA", "AE", "CD", "NC", "DN", "BB"])
 def test_the_matrix_over_a_path_is_that_of_sympy(open_figure, target, source):
     import sympy.physics.mechanics as me

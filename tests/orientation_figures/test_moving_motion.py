@@ -117,6 +117,7 @@ def integrated(moments, axis, disturbance, method, step, restored, seconds):
     }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", RUNS, ids=str)
 def test_the_figure_integrates_as_the_formulas_say(settings):
     ours = MotionFigure(**settings, time=FEW_SECONDS).run()
@@ -153,6 +154,7 @@ def test_angular_momentum_stays_where_it_is(description):
     assert abs(figure.dcm - np.eye(3)).max() > 0.5
 
 
+@pytest.mark.long
 def test_the_racket_flips_about_its_middle_axis_only():
     # What the chapter's program finds: flips after 3.3, 8.5, 13.7 and 18.9 s.
     counts = [
@@ -358,6 +360,7 @@ def as_runs(answer):
     }
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("settings", RUNS, ids=str)
 def test_trajectories_agree_to_twelve_digits(node, settings):
     answer = node(

@@ -156,6 +156,7 @@ def test_paper_and_page_see_every_point_at_the_same_place():
         ) and far == pytest.approx(depth, abs=1e-3)
 
 
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", STILLS)
 def test_still(name):
     stop = Stop(name)
@@ -178,6 +179,7 @@ def moved_by_rounding(value, draw):
     return value + 1e-14 * draw.standard_normal() if isinstance(value, float) else value
 
 
+@pytest.mark.long
 def test_no_rounding_is_seen():
     """Faces that lie as far off as others, or edge-on, are painted alike by every processor."""
     world, draw = scenes(), np.random.default_rng(1)

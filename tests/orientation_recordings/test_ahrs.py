@@ -109,6 +109,7 @@ def test_distances_means_and_ways_between():
     assert angle_between(dcm_from_quaternion(theirs), ours).max() < 1e-7
 
 
+@pytest.mark.long
 def test_the_kalman_filter_follows_the_recording_as_madgwicks_filter_does():
     """Two filters of quite different kinds, from one start, stay within some degrees while it is
     carried about.

@@ -165,7 +165,7 @@ def angles_that_fit_in_many_ways():
 @pytest.mark.parametrize("count", [10, pytest.param(2_000, marks=pytest.mark.long)])
 def test_both_say_the_same(count):
     cases = [
-        *special(),
+        *(special() if count > 10 else itertools.islice(special(), 0, None, 3)),
         *(angles_that_fit_in_many_ways() if count > 10 else ()),
         *mixtures(count, seed=8),
     ]

@@ -161,7 +161,7 @@ def test_scrambled_conventions_are_found(ways):
 # --- reading --------------------------------------------------------------------------------------
 
 
-@pytest.mark.sampled(12)
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("form", FORMS)
 def test_many_forms_hold_one_recording(form):
     """Loaded without a word to help, each sensor is the one that it is, along the right axes,

@@ -87,6 +87,7 @@ def test_few_scripts_are_fetched():
     assert {name: found for name, found in fetched.items() if len(found) > SCRIPTS} == {}
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_nothing_below_the_first_view_is_laid_out_or_measured_before_it_stands(open_page, size):
     page = open_page(LONG, size, HOLD + MEASURED)
@@ -104,6 +105,7 @@ def test_nothing_below_the_first_view_is_laid_out_or_measured_before_it_stands(o
     )
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("size", SIZES)
 def test_in_the_end_every_block_stands_where_it_stands_on_a_page_laid_out_at_once(open_page, size):
     places = whole(open_page(LONG, size)).evaluate(PLACES)

@@ -65,7 +65,7 @@ def step(page):
     return int(page.locator(BAR).inner_text().split()[0])
 
 
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_each_step_is_seen_whole_with_its_line(opened, name):
     page = opened(name)
@@ -167,6 +167,7 @@ def test_outline_black_screen_time_and_notes(opened):
     assert violations(page) == []
 
 
+@pytest.mark.long
 def test_a_hall_without_a_mouse_may_swipe(opened):
     page = opened(has_touch=True)
     page.locator("button.lecture-mode").tap()
@@ -188,6 +189,7 @@ def test_a_hall_without_a_mouse_may_swipe(opened):
     assert page.locator(".lecture-bar").count() == 0
 
 
+@pytest.mark.long
 def test_the_essay_is_lectured_by_its_stops(opened):
     page = opened("rotations", "", reduced_motion="reduce")
     begin(page)

@@ -503,6 +503,7 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     assert page.try_code(3, "print(repr(a[1]))").strip() == "np.float64(2.0)"
 
 
+@pytest.mark.long
 def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, site):
     """Byte by byte, and in place of the one before; the report needs more than this site holds, and
     says so.
@@ -999,6 +1000,7 @@ def test_stop_that_comes_while_python_looks_for_it_is_heard(shared):
     assert "kept" in shared.try_code(3, "kept")
 
 
+@pytest.mark.long
 def test_stop_ends_what_does_not_listen(shared):
     assert "Stopped." in stop(shared, 3, ONE_STEP)
     assert "here again" in shared.try_code(3, "print('here again')")
@@ -1234,6 +1236,7 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     context.close()
 
 
+@pytest.mark.long
 def test_edit_of_code_that_has_changed_is_offered(browser, site):
     context = browser.new_context()
     page = Page(context, site, QUIET)
@@ -1380,6 +1383,7 @@ class FigurePage(Page):
         )
 
 
+@pytest.mark.long
 def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context, site):
     page = FigurePage(context, site)
     as_the_code_says = page.angle()

@@ -34,6 +34,7 @@ def first_link(name):
     return page, f'.bd-article a.internal[href="{written.search(texts[page])[1]}"]'
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", LINKS)
 def test_a_preview_shows_what_the_link_leads_to_and_goes_with_escape(browser, site, name):
     address, link = first_link(name)

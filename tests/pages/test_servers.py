@@ -106,6 +106,7 @@ def run_and_stop(page, address):
     assert page.faults == []
 
 
+@pytest.mark.long
 def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
     """A server that sends nothing of its own: a service worker isolates the page, and keeps the
     book by choice.

@@ -211,7 +211,7 @@ def test_notebook_runs(name, tmp_path, readers_python, readers_variables):
     run_notebook(readers_python, name, tmp_path, readers_variables)
 
 
-@pytest.mark.sampled(2)
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", SOURCES)
 def test_script_runs(name, tmp_path, readers_python, readers_variables):
     run_script(readers_python, name, tmp_path, readers_variables)

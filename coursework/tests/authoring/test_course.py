@@ -214,6 +214,7 @@ def test_what_the_packages_import_they_ask_for():
                     assert module == "coursework" or brought_by & allowed, (name, path.name, module)
 
 
+@pytest.mark.long
 def test_a_mended_package_has_another_version(tmp_path):
     """What students hold is replaced by what is named otherwise: only what is released has the
     plain version.

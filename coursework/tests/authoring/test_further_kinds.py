@@ -102,6 +102,7 @@ MOMENT = {
 }
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     ("answer", "expected"),
     [

@@ -109,6 +109,7 @@ def variant(student):
     return variants.variant_of(student, NAME, 6)
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("number", range(6))
 def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number):
     coursework.student(student_with(number) if number else "")
@@ -672,6 +673,7 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
     ]
 
 
+@pytest.mark.long
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
     """Their pages follow upon those of the first variant, which another machine's numbers had made
     others.

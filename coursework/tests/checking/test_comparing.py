@@ -4,6 +4,7 @@ import concurrent.futures
 import hashlib
 import json
 import threading
+from dataclasses import replace
 
 import pytest
 import sympy as sm
@@ -175,7 +176,7 @@ def test_an_answer_is_the_nearest_that_is_known(answer, expected):
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
     vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
     few = {0.33: ("2 places", "0.004"), 1.3: ("1 place", "0.005"), 10.3: ("1 place", "0.01")}
-    enough = (-110.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
+    enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
     few[0.2] = ("1 place", "0.004")
     for entry, (places, allowed) in few.items():
         assert said(vector, {}, [entry, 1])[2] == (
@@ -183,6 +184,15 @@ def test_numbers_with_fewer_places_than_count_may_be_rounded():
             f"by {allowed} at most: if so, keep all digits until the end. {FORM}"
         )
     assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
+
+
+def test_large_decimal_fractions_are_as_exact_as_their_digits():
+    def precision(digits):
+        return questions._precision({"nodes": [["float", digits]]})
+
+    assert precision("12345.0000000005") == (True, False)
+    # Of so large a square hardly any digit after the point is known.
+    assert precision("123456.79") == (False, True)
 
 
 def test_numbers_that_nearly_fit_together_may_be_rounded():
@@ -309,6 +319,9 @@ def test_in_an_exam_only_the_form_is_looked_at():
     sealed = Sealed(Question("vector", salt="s", exam=True))
     reply = judge("a/b", sealed, to_plain([1, 1, 0]))
     assert (reply.question, reply.outcome) == ("a/b", "recorded")
+    form = judge("a/b", Sealed(replace(sealed.question, unit_vector=True)), to_plain([1, 1, 0]))
+    assert (form.question, form.outcome, form.note) == ("a/b", "invalid", "not unit length")
+    assert form.messages == list(said(unit, {}, [1, 1, 0])[2:])
 
 
 def test_words_and_what_a_person_reads():
@@ -322,7 +335,8 @@ def test_words_and_what_a_person_reads():
     text = Question("free text")
     for answer, words in (("One", "1 word"), ("One  two", "2 words")):
         reply = compare("a/b", text, to_plain(answer), {}.get)
-        assert reply.answer == "" and (reply.outcome, reply.note) == ("undecided", "for a person")
+        assert (reply.question, reply.answer) == ("a/b", "")
+        assert (reply.outcome, reply.note) == ("undecided", "for a person")
         assert reply.messages == [f"A person will read this text of {words} and decide."]
 
 
@@ -465,6 +479,8 @@ def test_questions_are_found_in_the_variant_of_a_student(folder):
     (folder / "variants" / "levers-1.json").unlink()
     questions.notebook_questions.cache_clear()
     assert questions.own_numbers("levers/arm", student) == (1, "")
+    with pytest.raises(NoSuchQuestion, match=r"^Your numbers .* `variants/levers-1\.json` in the "):
+        find_question("levers/arm", student)
 
 
 def test_a_variant_is_shown_with_what_is_said_of_forgetting(folder, monkeypatch):
@@ -483,13 +499,15 @@ def test_an_answer_to_other_numbers_is_told(folder):
 
     def reply(answer, who=student, sealed=sealed):
         found = judge("levers/arm", sealed, to_plain(answer), who)
+        assert found.question == "levers/arm"
         return found.outcome, found.note, *found.messages
 
     rest = questions.WHERE_ONES_OWN_ARE
     assert reply(71) == ("correct", "")
     assert reply(70) == ("wrong", "other numbers", questions.FOR_OTHERS[True] + rest)
     assert reply(72) == ("wrong", "other numbers", questions.FOR_OTHERS[False] + rest)
-    assert reply(73)[1] == reply(70, "")[1] == ""
+    nobody = judge("levers/arm", sealed, to_plain(70))
+    assert reply(73)[1] == reply(70, "")[1] == nobody.note == ""
     first = find_question("levers/arm", "")
     assert reply(72, sealed=first) == ("wrong", "other numbers", questions.FOR_OTHERS[False] + rest)
     for answer in (..., "a text", sm.gamma(x), x):
@@ -520,6 +538,7 @@ LONG = "levers/" + "a" * 90
         ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers'\?"),
         ("third/zzzzzzzz", r"Did you mean 'third/a'\?"),
         ("movd", r"^There is no question 'movd'\.$"),
+        ("moved/levers", r"^There is no question 'moved/levers'\. Did you mean 'levers'\?$"),
         ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\.$"),
         ("../levers/arm", "There is no question"),
         (LONG, f"^There is no question '{LONG[:80]}'"),

@@ -107,6 +107,8 @@ WRITTEN = [
         for one in (1 - 2j, np.complex64(1 - 2j), np.complex128(1 - 2j), mpmath.mpc(1, -2))
     ),
     (sm.UnevaluatedExpr(x), X),
+    (sm.UnevaluatedExpr(sm.ImmutableMatrix([[1, x]])), f"1x2: {ONE} {X}"),
+    (sm.UnevaluatedExpr(3 * units.meter), listed("integer(3)", ["text", "m^1"])),
     (type("L" * 70, (sm.Function,), {})(x), f"{'L' * 60}({X})"),
     # What is an atom and has parts is no number: the second coordinate is not 1, nor a[1] a.
     (sm.IndexedBase(x)[1], f"Indexed(IndexedBase({X}), {ONE})"),
@@ -115,6 +117,7 @@ WRITTEN = [
     (sm.Symbol("x", real=True), X),
     (f(t), "symbol(f)"),
     (f(t).diff(t), "symbol(f')"),
+    (sm.Derivative(f(t) + sm.pi / 2, t), "symbol(f')"),
     (f(t).diff(t, 12), "symbol(f''''''''')"),
     (sm.Function("θ")(t).diff(t, 2), "symbol(theta'')"),
     (sm.Derivative(x**2, x), "Mul(integer(2), symbol(x))"),
@@ -123,6 +126,7 @@ WRITTEN = [
     (sm.Derivative(Unknown(x), x), "constant(Derivative)"),
     (sm.sin(sm.Integral(f(t), t)), "sin(constant(Integral))"),
     (True, ["truth", True]),
+    (sm.true, ["truth", True]),
     (sm.false, ["truth", False]),
     (np.str_("zxz"), ["text", "zxz"]),
     (..., ["blank"]),
@@ -143,6 +147,8 @@ WRITTEN = [
     (sm.Eq(2 * x, f(t)), "Mul(integer(2), symbol(x))"),
     (sm.Matrix([[1, x, 2]]), "1x3: integer(1) symbol(x) integer(2)"),
     (sm.ImmutableMatrix([1, x]), "2x1: integer(1) symbol(x)"),
+    (sm.zeros(2, 0), "2x0: "),
+    (sm.zeros(0, 2), "0x2: "),
     (mpmath.matrix([[1, 2]]), "1x2: float(1.0) float(2.0)"),
     (sm.MatMul(sm.Integer(2), sm.Identity(1)), "1x1: Mul(integer(2), integer(1))"),
     ((3, units.newton), listed("integer(3)", ["text", "m^1 kg^1 s^-2"])),
@@ -171,6 +177,11 @@ WRITTEN = [
 @pytest.mark.parametrize(("answer", "expected"), WRITTEN, ids=range(len(WRITTEN)))
 def test_what_is_written_stays_what_it_is(answer, expected):
     assert written(answer) == expected
+
+
+def test_of_a_function_of_time_the_name_alone_is_written():
+    assert to_plain(f(t))["nodes"] == [["symbol", "f"]]
+    assert to_plain(f(t).diff(t))["nodes"] == [["symbol", "f'"]]
 
 
 def test_a_vector_is_written_in_each_frame():
@@ -362,7 +373,7 @@ class Quaint(sm.Basic):
 Nothing.__name__, Odd.__name__, Quaint.__name__ = "Nothing" * 10, "Odd" * 15, "Quaint" * 9
 
 REFUSED = [
-    (Nothing(), None, f"type `{('Nothing' * 10)[:40]}` cannot be read"),
+    (Nothing(), None, f"type `{('Nothing' * 10)[:40]}` cannot be read. Give a SymPy expression"),
     (3, [[1]], "asks for a function"),
     ({x: 1, y: 2}, None, "type `dict` cannot be read"),
     (of_module("scipy.spatial.transform"), None, "SciPy Rotation"),
@@ -563,7 +574,11 @@ def test_nodes_are_read_as_the_grammar_says():
 
 def test_borders_of_what_is_read():
     for depth in (8, 9):
-        for inner in (lambda one: ["list", [one]], lambda one: ["frame", "N", {"A": one}]):
+        for inner in (
+            lambda one: ["list", [one]],
+            lambda one: ["frame", "N", {"A": one}],
+            lambda one: ["frames", {"N": {"A": one}}],
+        ):
             value = ["blank"]
             for _ in range(depth):
                 value = inner(value)

@@ -57,6 +57,7 @@ def test_what_is_empty_is_left_out():
     sealed = Sealed.from_json({"kind": "vector"}, "here")
     assert sealed == Sealed(Question("vector")) and sealed.format == FORMAT
     assert sealed.as_json() == {"kind": "vector", "salt": "", "lockers": "", "worth": 1}
+    assert Question.from_json({"kind": "function", "takes": "lists"}).takes == "lists"
     one = Question.from_json({"kind": "vector", "variants": 2})
     assert one == Question("vector", variant=Variant(0, 2))
     empty = {"variant": 0, "variants": 2, "given": {}, "shown": {}, "text": ""}

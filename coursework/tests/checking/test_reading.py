@@ -135,6 +135,12 @@ ROWS = "a list of rows, one of which has"
         (MATRIX, [[1, 2, 3], [4, 5]], f"{ROWS} 2 entries"),
         (MATRIX, [[1, 2, 3], [..., ...]], f"{ROWS} 2 entries"),
         (MATRIX, [[1, 2, 3], [..., ..., ...]], "a list that is still blank in part"),
+        (MATRIX, [[1, 2, 3], [...]], "a list that is still blank in part"),
+        (
+            MATRIX,
+            [[1, 2, 3], [4, "5", 6]],
+            "a list that holds a text: numbers stand without quotation marks",
+        ),
         (MATRIX, [[1, 2, 3], 4], "a list with 2 entries, one of which is a single expression"),
         (MATRIX, [[1, 2, 3], "4"], "a list that holds a text"),
         (

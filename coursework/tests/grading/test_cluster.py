@@ -264,6 +264,7 @@ def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, m
         graded(submissions, solutions, tmp_path / "out", "tcp://127.0.0.1:1")
 
 
+@pytest.mark.long
 def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions):
     """An open scheduler runs anybody's code, on all of its machines."""
     keys = tmp_path / "keys"

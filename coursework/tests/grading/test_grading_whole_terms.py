@@ -475,6 +475,7 @@ def cache(tmp_path_factory):
     return tmp_path_factory.mktemp("terms") / "questions"
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize(
     "number",
     [

@@ -194,6 +194,7 @@ def skip_unless_there(makers, report):
         pytest.skip(f"no namespaces on this machine: {report['layers'][NAMESPACES]['why not']}")
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("makers", MAKERS, ids=lambda makers: " ".join(makers) or "no namespaces")
 def test_an_ordinary_user_is_as_safe(makers):
     skip_unless_installed(makers)
@@ -208,6 +209,7 @@ def test_an_ordinary_user_is_as_safe(makers):
     assert result["answers"]["q"]["outcome"] == "recorded"
 
 
+@pytest.mark.sampled(1)
 @pytest.mark.parametrize("makers", MAKERS[:2], ids="".join)
 @pytest.mark.skipif(os.geteuid() != 0, reason="this is not root")
 def test_root_is_as_safe(makers):

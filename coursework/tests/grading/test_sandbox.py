@@ -491,6 +491,7 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     ) == bytes_of(once)
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2, of="sandboxes under strain")
 def test_a_busy_machine_costs_nobody_an_answer():
     """What a notebook waits for while others compute is not its own time: three share one processor
@@ -567,6 +568,7 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
     assert time.monotonic() - start > 2  # or it was no strain
 
 
+@pytest.mark.long
 @pytest.mark.sampled(2, of="sandboxes under strain")
 @pytest.mark.parametrize("made_by", ["unshare", "bubblewrap"])
 def test_addresses_are_the_same_each_time(made_by):

@@ -81,8 +81,8 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct":
         reply.help = entry.help
         _offer_sibling(reply, sealed.question, reply.help)
-    if reply.outcome != "not attempted":
-        reply.messages += filter(None, [forgotten(student, sealed.question)])
+    if reply.outcome != "not attempted" and (said := forgotten(student, sealed.question)):
+        reply.messages.append(said)
     reply.tries = len(entry.answers) + (entry.outcome == "correct")
     reply.tried = [answer[:DIGITS] for answer in entry.answers[-MOST_TOLD:]]
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):

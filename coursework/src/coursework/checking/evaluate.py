@@ -129,7 +129,7 @@ def _work(node: Node, results: Sequence[Result]) -> int:
 def _value(node: Node, results: Sequence[Result], point: Mapping[str, Number]) -> Result:
     operation = cast(str, node[0])
     if operation in LEAVES:
-        return _leaf(operation, *cast(Sequence[str], node[1:]), point=point)
+        return _leaf(operation, cast(Sequence[str], node[1:]), point)
     arguments = [results[child] for child in cast(Sequence[int], node[1:])]
     if operation == "Piecewise":
         return _first_that_holds(arguments)
@@ -147,15 +147,17 @@ def _value(node: Node, results: Sequence[Result], point: Mapping[str, Number]) -
     return _bounded(FUNCTIONS[operation](*map(number, arguments)))
 
 
-def _leaf(operation: str, text: str, *denominator: str, point: Mapping[str, Number]) -> Result:
+def _leaf(operation: str, parts: Sequence[str], point: Mapping[str, Number]) -> Result:
+    if operation == "rational":
+        numerator, denominator = map(int, parts)
+        return MP.mpf(numerator) / denominator
+    (text,) = parts
     if operation == "symbol":
         if text not in point:
             raise UnknownSymbol(text)
         return point[text]
     if operation == "integer":
         return MP.mpf(int(text))
-    if operation == "rational":
-        return MP.mpf(int(text)) / int(denominator[0])
     if operation == "float":
         return _bounded(MP.mpf(text))
     if text in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero

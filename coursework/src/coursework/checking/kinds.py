@@ -191,9 +191,10 @@ def _row(whole: Value, row: Value, columns: int, wanted: str) -> list[int]:
         described = _describe(whole)
         uneven = f"a list of rows, one of which has {length} entries"
         raise shape_fault(wanted, described if "rows" in described else uneven)
-    if row[0] == "list" or row[0] == "matrix" and 1 in size_of(row):
-        return components(row, columns, wanted)
-    raise shape_fault(wanted, _holding(whole, row))
+    in_line = row[0] == "list" or row[0] == "matrix" and 1 in size_of(row)
+    if is_blank(row) or not in_line:
+        raise shape_fault(wanted, _holding(whole, row))
+    return components(row, columns, wanted)
 
 
 def _matrix(question: Question, value: Value) -> list[int]:

@@ -37,6 +37,7 @@ import mpmath
 import sympy
 from mpmath import libmp
 from sympy.core.function import AppliedUndef
+from sympy.logic.boolalg import BooleanAtom
 
 from .units import BASE
 
@@ -337,11 +338,6 @@ class _Writer:
                 "This is a SciPy Rotation, which holds no matrix of two named frames. "
                 "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
             )
-        if not any(_module(base).partition(".")[0] == "sympy" for base in type(answer).__mro__):
-            raise NotPlain(
-                f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
-                "Give a SymPy expression, a matrix, a list of numbers or a text."
-            )
         # Mechanics is slow to import; whoever has a frame or a vector has imported it.
         mechanics = sys.modules.get("sympy.physics.vector")
         if mechanics and isinstance(answer, mechanics.ReferenceFrame):
@@ -391,15 +387,20 @@ class _Writer:
             raise NotPlain(
                 "An equation is not a value: give the side of it that the question asks for."
             )
-        if answer in (sympy.true, sympy.false):
+        if isinstance(answer, BooleanAtom):
             return ["truth", bool(answer)]
+        if isinstance(answer, sympy.UnevaluatedExpr):
+            return self.value(answer.args[0], depth)  # which may be a matrix
         if _has_unit(answer):
             number, unit = _number_and_unit(answer, sys.modules["sympy.physics.units"])
             parts: list[Value] = [["expression", self.expression(number)], ["text", unit]]
             return ["list", parts]
         if isinstance(answer, sympy.Expr):
             return ["expression", self.expression(answer)]
-        raise NotPlain(f"An answer of type `{type(answer).__name__[:40]}` cannot be read.")
+        raise NotPlain(
+            f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
+            "Give a SymPy expression, a matrix, a list of numbers or a text."
+        )
 
     def result(
         self, function: Callable[[*tuple[object, ...]], object], arguments: Sequence[object]
@@ -609,18 +610,13 @@ class _Writer:
         return part
 
     def children(self, part: sympy.Basic) -> tuple[sympy.Basic, ...]:
-        if (
-            isinstance(part, (sympy.Number, sympy.NumberSymbol, sympy.Symbol, AppliedUndef))
-            or part is sympy.I
-        ):
-            return ()
-        if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
+        if isinstance(part, AppliedUndef) or _is_rate(part):
             return ()
         if _is_quantity(part):
             return (self.without_unit(part),)
         if isinstance(part, PUT_OFF) and part not in self.put_off:
             worked_out = self.worked_out(part)
-            if type(worked_out) is not type(part):
+            if type(worked_out) is not type(part) or _is_rate(worked_out):
                 return (worked_out,)
             self.put_off.add(part)
         return () if part in self.put_off else tuple(part.args)
@@ -648,7 +644,7 @@ class _Writer:
             return self.node("symbol", _name_of(part.name))
         if isinstance(part, AppliedUndef):
             return self.node("symbol", _name_of(part.func.__name__))
-        if isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef):
+        if _is_rate(part):
             return self.node(
                 "symbol",
                 _name_of(part.expr.func.__name__) + "'" * min(int(part.derivative_count), 9),
@@ -721,6 +717,11 @@ def _is_quantity(part: object) -> bool:
     return units is not None and isinstance(part, units.Quantity)
 
 
+def _is_rate(part: sympy.Basic) -> TypeGuard[sympy.Derivative]:
+    """Whether this is the derivative of a function of time itself, which has a name of its own."""
+    return isinstance(part, sympy.Derivative) and isinstance(part.expr, AppliedUndef)
+
+
 def _has_unit(part: object) -> bool:
     if not isinstance(part, sympy.Expr):
         return False
@@ -762,7 +763,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
                 plain = plain.xreplace({quantity: size})
             terms_of: dict[sympy.Expr, list[sympy.Expr]] = {}
             for term in sympy.Add.make_args(sympy.expand_mul(plain)):
-                number, rest = term.as_independent(*base.values(), as_Add=False)
+                number, rest = term.as_independent(*base.values())
                 terms_of.setdefault(rest, []).append(number)
     except TooMuchWork:
         raise NotPlain(

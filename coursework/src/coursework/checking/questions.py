@@ -15,6 +15,7 @@ from dataclasses import replace
 from fractions import Fraction
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import cast
 
 from . import format_3, sealing
 from .catalogue import by_short_name, message
@@ -72,7 +73,8 @@ Find = Callable[[str], Locker | None]
 
 
 class NoSuchQuestion(KeyError):
-    """There is no question of that name; the message names the nearest one."""
+    """There is no question of that name, and the message names the nearest one; or its numbers are
+    missing."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -105,7 +107,7 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
 
 def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Json]]]:
     """The format of a file of sealed questions, and what it says of each, by name."""
-    if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
+    if not re.fullmatch("[a-z0-9-]{1,60}", notebook) or f"{notebook}.json" == MOVED:
         return FORMAT, {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
     content = next(
@@ -180,7 +182,14 @@ def find_question(name: str, student: str) -> Sealed:
             )
             raise NoSuchQuestion(f"There is no '{name}': of '{asked}', {there}.")
         number = own_variant(student, asked, questions[asked].question, order)
-        return notebook_questions(notebook, number)[asked]
+        of_variant = notebook_questions(notebook, number)
+        if asked not in of_variant:
+            raise NoSuchQuestion(
+                f"Your numbers of '{asked}' are missing: they stand in `variants/{notebook}-"
+                f"{number}.json` in the folder `sealed`. Unpack the exercises again; what you have "
+                "written is kept."
+            )
+        return of_variant[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]
     if not found:
         raise NoSuchQuestion(
@@ -398,7 +407,7 @@ def compare(
     try:
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
-            words = len(str(reading.text).split())
+            words = len(cast(str, reading.text).split())
             said = (
                 f"A person will read this text of {words} "
                 f"{'word' if words == 1 else 'words'} and decide."
