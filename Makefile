@@ -1,5 +1,5 @@
-# The commands of the book. All that must be there is Python 3.11 or newer: each
-# command sets up what it needs in .venv and node_modules, from exact pins.
+# The commands of the book. They need nothing but Python 3.11 or newer: each
+# sets up what it needs in .venv and node_modules, from exact pins.
 
 PYTHON ?= python3
 PORT ?= 8000
@@ -19,30 +19,32 @@ KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
 help:
 	@echo "make book       build the site into _build/html"
-	@echo "make serve      build it, serve it on a local address and print that"
+	@echo "make serve      build it, serve it on a local address and print the address"
 	@echo "make take-away  build it with the whole book as a PDF, as an EPUB and as a zip"
 	@echo "make numpy      fetch NumPy and Matplotlib for browsers; BOOK_NUMPY=_build/numpy make book then puts them beside the pages"
-	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   a chapter with all its parts"
+	@echo "make new-chapter NAME=belt-trick TITLE='The belt trick'   a chapter with all its parts (AFTER=gimbal-lock: not the last one)"
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   a question for it"
-	@echo "make check      style, types, pins and what a chapter needs (a minute at most; nothing is built)"
+	@echo "make check      style, types, pins and what a chapter needs (nothing is built)"
 	@echo "make test       try every part of the book and its software (minutes)"
 	@echo "make test-all   run every test, as every night"
 	@echo "make notebooks  run every notebook and store it with its outputs"
-	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: one)"
+	@echo "make release    make the exercises from the notebooks with solutions, and try them (ONLY=belt-trick: those of one)"
 	@echo "make anywhere   compare all numbers with those of other processors, and with WebAssembly"
 	@echo "make mutants    change the mathematics and the checking in thousands of places, and see which change no test notices (hours)"
-	@echo "make renew-pins newest versions of all that is installed"
+	@echo "make programs   ask the programs of the convention card, in their newest versions, what they answer now (fetches gigabytes)"
 	@echo "make benchmark  compare with other libraries"
+	@echo "make renew-pins pin the newest versions of all that is installed"
+	@echo "make setup      set up what the book needs, as the commands above do by themselves"
 	@echo "make clean      remove what was built, not what was set up"
 
-# What each command installs: the projects of this repository, with these of their extras. The book itself needs neither
-# browser nor tests.
+# What each command installs: the projects of this repository, with some of their extras. The book itself needs neither
+# a browser nor the tests.
 PROJECTS_book := ./src/orientation ./coursework ./notebook-pages .
 PROJECTS_print := ./src/orientation ./coursework ./notebook-pages[print] .
 PROJECTS_release := ./src/orientation ./coursework[tools] ./notebook-pages .
 PROJECTS_test := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test]
 PROJECTS_mutants := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test,mutants]
-# Whose installation has these in it, too.
+# What else each of these installations covers.
 COVERS_print := book
 COVERS_release := book
 COVERS_test := book print release
@@ -83,11 +85,11 @@ serve: book
 take-away: $(VENV)/ready-print book
 	@$(RUN) -m notebook_pages.whole_book
 
-# Built with BOOK_NUMPY=_build/numpy, the pages ask nobody else for anything. Each file is compared with its fingerprint.
+# Pages built with BOOK_NUMPY=_build/numpy ask no other server for anything. Each file is compared with its fingerprint.
 numpy: setup
 	@$(RUN) -m notebook_pages.live.fetch _build/numpy
 
-# What an author begins with. AFTER names the chapter that the new one follows; it is released, so that the book builds.
+# AFTER names the chapter that the new one follows. The new one's exercises are released, so that the book builds.
 new-chapter: $(VENV)/ready-release setup
 	@$(RUN) -m tools.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
 	@$(RUN) -m coursework release "$(NAME)" chapters
@@ -98,7 +100,7 @@ new-question: setup
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py
 
-# Tests run side by side, one more than there are cores. What takes long and rarely breaks is left to `make test-all`.
+# One process more than there are cores. What takes long and rarely breaks is left to `make test-all`.
 test: $(VENV)/ready-test book
 	@$(RUN) -m notebook_pages.browser || true
 	@$(RUN) -m pytest -n auto -m "not long"
@@ -115,17 +117,16 @@ release: $(VENV)/ready-release setup
 	@$(RUN) -m coursework release $(ONLY)
 	@$(RUN) -m coursework selftest $(ONLY)
 
-# Cells, releases and doctests, as other processors have their numbers (ONLY=unit-quaternions: those of one notebook); no browser.
+# Cells, releases and doctests, computed as other processors would (ONLY=unit-quaternions: those of one notebook).
 anywhere: $(VENV)/ready-test setup
 	@$(RUN) -m tools.anywhere $(ONLY)
 
-# What survives is told as it is found: a test that notices it is missing, or it is no change (ONLY="quaternions metrics").
+# Each change that survives is printed when it is found: a test is missing, or it changes nothing (ONLY="quaternions metrics").
 mutants: $(VENV)/ready-mutants setup
 	@$(RUN) -m tools.mutants orientation $(ONLY) && code=0 || code=1; \
 		$(if $(ONLY),,$(RUN) -m tools.mutants coursework.checking || code=1;) exit $$code
 
-# The programs of the convention card, each in its newest version: what they answer otherwise than stored. It fetches
-# some gigabytes.
+# Prints where an answer differs from the stored one.
 programs: setup
 	@$(RUN) -m tools.programs
 

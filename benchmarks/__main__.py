@@ -1,9 +1,7 @@
 """One table of ratios, all measured in this run: ``python -m benchmarks``.
 
-Pages have a table of their own, for which the book must be built: ``python -m benchmarks.pages``;
-so have their first views on a slow telephone: ``python -m benchmarks.first_view``, the figures that
-move: ``python -m benchmarks.moving``, the essay: ``python -m benchmarks.essay``, and grading:
-``python -m benchmarks.grading``.
+The other modules here are programs of their own, each described at its head; most measure the built
+book. Grading is measured in ``coursework/benchmarks``.
 """
 
 import itertools
@@ -22,13 +20,9 @@ def main():
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
     print(
         "The time of orientation, and how many times as long the others take (medians of processor "
-        "time; below"
+        "time; below 1 they are faster)."
     )
-    print(
-        "1 they are faster). What exactly is compared is said in benchmarks/conversions.py, "
-        "symbols.py and "
-        "imports.py.\n"
-    )
+    print("benchmarks/conversions.py, symbols.py and imports.py say what exactly is compared.\n")
     print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in PEERS)} |")
     print(f"|---|---|---|{'---|' * len(PEERS)}")
     for what, size, seconds in itertools.chain(conversions.rows(), symbols.rows(), imports.rows()):

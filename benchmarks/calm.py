@@ -1,9 +1,9 @@
-"""How calmly each chapter can be read: ``python benchmarks/calm.py [--pages]``.
+"""How calmly each chapter can be read: ``python -m benchmarks.calm [--pages]``.
 
 Prose is what stands in a chapter's text outside of its boxes. Its runs end at whatever interrupts a
 reader: a cell of code or a prediction. Headings, formulas and figures belong to the run; exercises
-and recap come after it and are counted apart. With ``--pages`` the controls of each built page are
-counted too, those of its article, once it has come alive.
+and recap come after it and are counted apart. With ``--pages`` the controls in the article of each
+built page are counted too, once the page has come alive.
 """
 
 import re

@@ -1,9 +1,8 @@
-"""What a student waits for: the time of `check` for 62 wrong answers: ``python -m
-benchmarks.checks``.
+"""How long a student waits for `check` after a wrong answer: ``python -m benchmarks.checks``.
 
-Each is read, looked up, looked up again with common slips undone, and looked up among the answers
-of classmates, since somebody has said who they are. The least of several times is kept: whatever
-else the machine does only adds.
+Each answer is read, looked up, looked up again with common slips undone, and looked up among the
+answers of classmates, since somebody has said who they are. The least of several times is kept:
+whatever else the machine does only adds.
 """
 
 import os

@@ -1,17 +1,17 @@
 """The first view of pages on a slow telephone, as Lighthouse tells it: ``python -m
 benchmarks.first_view [page ...]``.
 
-Each page that ``make book`` built is opened from a server that compresses and from one that does
-not. Lighthouse, which comes from npm, works out from the page's requests and tasks how a slow
+Some pages that ``make book`` built are opened, from a server that compresses and from one that does
+not. Lighthouse, which comes from npm, works out from a page's requests and tasks how a slow
 telephone on a slow line would fare.
 
-A task is weighed by the time for which it had the processor, not by that which passed: on a machine
-that does other things as well, Lighthouse would count those against the page. So what it has
-recorded is first set right, and then judged. The speed index alone still knows of the time that
+A task is weighed by the time for which it had the processor, not by the time that passed: on a
+machine that does other things as well, Lighthouse would count those against the page. So its
+recording is first corrected, and then judged. Only the speed index still depends on the time that
 passed: the busier the machine, the worse it is.
 
-Lighthouse takes a page for shown no sooner than all of it has come. The last column but one says
-when the first view was seen in a browser on a line as slow: the median of three.
+Lighthouse takes a page as shown only when all of it has come. The last column but one says
+when the first view was seen in a browser on an equally slow line: the median of three.
 """
 
 import bisect

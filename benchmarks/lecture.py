@@ -1,17 +1,17 @@
-"""How much of a hall's screen a lecture uses: ``python benchmarks/lecture.py [chapters...]``.
+"""How much of a hall's screen a lecture uses: ``python -m benchmarks.lecture [chapter ...]``.
 
-The book must be built. Each lecture is gone through at 1280 by 720: how many steps it has, in how
-many of them a drawing is seen, what share of the screen the largest drawing of such a step fills
-(the box round what is drawn, without the empty margin of its sheet), in how many a drawing stands
-without a word beside it, and how many are higher than the screen.
+The book must be built. Each lecture is gone through at 1280 by 720. The table says how many steps
+it has, in how many of them a drawing is seen, what share of the screen the largest drawing of such
+a step fills (the box round what is drawn, without the empty margin of its sheet), in how many a
+drawing stands without a word beside it, and how many are higher than the screen.
 """
 
 import statistics
 import sys
 
-from calm import BOOK, chapters
-
 from notebook_pages.browser import open_browser
+
+from .calm import BOOK, chapters
 
 WIDTH, HEIGHT = 1280, 720
 STEPS = """() => {

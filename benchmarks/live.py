@@ -1,13 +1,12 @@
-"""Code in the page: time from pressing Run to the first result, and what is downloaded: ``python -m
-benchmarks.live``.
+"""Code in the page, from pressing Run to the first result: ``python -m benchmarks.live``.
 
 One chapter of the book as ``make book`` built it, in headless Chromium, from a local server. Cold
 is a fresh browser with an empty cache; warm is a new visit in the same browser. The time runs from
 the press on the first SymPy cell's Run until its formula is typeset on the page. Beside it stands
 the time of the bare runtime in the same browser: Pyodide started in a worker, and SymPy imported.
-What each later cell costs beyond its own work is the time of an assignment: code, message, outcome
-and page together. JupyterLite's time runs from opening the notebook of an exercise until its first
-cell, which imports SymPy and ``coursework``, has run.
+An assignment shows what each later cell costs beyond its own work: code, message, outcome and page
+together. JupyterLite's time runs from opening the notebook of an exercise until its first
+cell, which imports SymPy and ``coursework``, has run. What is downloaded is told as well.
 """
 
 import gzip

@@ -1,12 +1,12 @@
 """What a drag of each moving figure costs, and what all of them weigh: ``python -m
 benchmarks.moving``.
 
-A figure stands alone on a page opened from disk. Its first slider is moved once for each picture,
-as a drag moves it. What the page's main thread needs for one picture is scripts, style, layout and
-painting; it is processor time, which does not count what else this machine does, and is given for a
-processor four times as slow as this one. A picture that takes longer than 16 ms comes late.
+Each figure stands alone on a page opened from disk. Its first slider is moved once for each
+picture, as a drag moves it. Scripts, style, layout and painting for one picture are counted, in the
+processor time of the page's main thread, which does not count what else this machine does, and for
+a processor four times as slow as this one. A picture that takes longer than 16 ms comes late.
 
-Weight is that of the scripts that a page loads, after gzip.
+The weight is that of the scripts that a page loads, after gzip.
 """
 
 import gzip

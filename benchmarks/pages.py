@@ -2,13 +2,13 @@
 
 One chapter of the book as ``make book`` built it, against the same notebook built the stock Jupyter
 Book way: default settings, mathematics set in the reader's browser by MathJax 3. Stock pages fetch
-MathJax from a server of others; here it comes from npm and is served from the same place as all
-else, which is kind to the stock page: no far server, no second connection. Whatever else a page
+MathJax from somebody else's server; here it comes from npm and is served with all the rest, which
+favours the stock page: no distant server, no second connection. Whatever else a page
 asks of other servers is refused and counted.
 
-Both pages are opened in turns, each time in a fresh browser with an empty cache. Weight is what
-each response weighs after gzip. Mathematics is shown when every formula is set, its typefaces are
-there, and the browser has painted two frames since.
+Both pages are opened in turn, each time in a fresh browser with an empty cache. The weight is that
+of all responses after gzip. Mathematics counts as shown when every formula is set, its typefaces
+are there, and the browser has painted two frames since.
 """
 
 import gzip

@@ -1,7 +1,7 @@
 """Symbolic matrices and their comparison, against SymPy's reference frames and ``simplify``.
 
-SymPy remembers what it has computed. Its cache is emptied before every call, for everybody, and the
-time that takes is no part of the time.
+SymPy remembers what it has computed. Its cache is emptied before every call, for all contestants,
+and emptying it does not count.
 """
 
 import itertools

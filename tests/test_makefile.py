@@ -96,6 +96,13 @@ def test_a_check_builds_nothing(make):
     assert not any("notebook_pages.build" in line for line in make("check"))
 
 
+def test_every_command_is_among_those_that_are_listed():
+    """`make programs` and `make setup` were not."""
+    text = (REPOSITORY / "Makefile").read_text("utf8")
+    (commands,) = re.findall(r"^\.PHONY: help (.*)$", text, re.M)
+    assert set(re.findall(r'@echo "make ([a-z-]+)', text)) == set(commands.split())
+
+
 def test_nothing_is_deleted_out_of_packages():
     """pip would no longer know what it has installed."""
     rule = (

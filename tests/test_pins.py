@@ -144,3 +144,22 @@ def test_every_command_that_is_named_exists():
     for path in [*(REPOSITORY / name for name in names), *(REPOSITORY / ".github").rglob("*.yml")]:
         for named in re.findall(r"(?:`|run: |\n)make ([a-z-]+)", path.read_text("utf8")):
             assert named in targets, f"{path.relative_to(REPOSITORY)} names `make {named}`"
+
+
+def test_every_program_that_is_named_exists():
+    """`python -m benchmarks.grading` was named where it does not run."""
+    roots = [
+        REPOSITORY,
+        *(REPOSITORY / name for name in ("src", "coursework/src", "notebook-pages/src")),
+    ]
+    documents = [*REPOSITORY.glob("*.md"), *REPOSITORY.glob("*/*.md"), REPOSITORY / "Makefile"]
+    scripts = [
+        path for name in ("tools", "benchmarks") for path in (REPOSITORY / name).rglob("*.py")
+    ]
+    for path in documents + scripts:
+        for name in re.findall(r"python -m\s+([a-z_]+(?:\.[a-z_]+)*)", path.read_text("utf8")):
+            places = [root.joinpath(*name.split(".")) for root in roots]
+            assert name in ("pip", "venv", "pytest") or any(
+                place.with_suffix(".py").is_file() or (place / "__main__.py").is_file()
+                for place in places
+            ), f"{path.relative_to(REPOSITORY)} names `python -m {name}`"

@@ -1,10 +1,11 @@
-"""What a wrong answer costs whoever checks it, in slow hashes: ``python -m benchmarks.checking``.
+"""What it costs to check a wrong answer, in slow hashes: ``python -m benchmarks.checking``, in the
+folder ``coursework`` of the book.
 
-To 62 questions of the course an answer is given that nobody knows: neither right, nor a mistake of
-the catalogue, so everything that is looked up for an answer is looked up. Times by the clock depend
-on the machine and on what else it does; the slow hash is measured between the answers, so that
-their ratio depends on it far less. It is said for what is released, and for the same without the
-lookup that knows a classmate's answer.
+Many questions of the course are given an answer that nobody knows: neither right nor a mistake of
+the catalogue, so that everything is looked up that can be. Times by the clock depend on the machine
+and on what else it does; the slow hash is measured between the answers, and the ratio of the two
+depends on that far less. It is given for what is released, and for the same without the lookup that
+knows a classmate's answer.
 """
 
 import contextlib

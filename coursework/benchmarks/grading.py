@@ -1,13 +1,13 @@
-"""Grading a class: ours, nbgrader and plain nbclient on the same notebooks: ``python -m
-benchmarks.grading``.
+"""Grading by coursework, nbgrader and plain nbclient: ``python -m benchmarks.grading``, in the
+folder ``coursework`` of the book.
 
-The class is the sample class: 200 notebooks of ten questions with their mistakes, broken cells and
-attacks. The whole of it goes through ``coursework grade`` with two workers, from an empty folder to
-the report. The others are given the first honest notebooks of it, one after the other, as they
-work; nbclient runs the cells and grades nothing. What one notebook more costs is without the start.
-What each has to know of the assignment is made before, and said beside: nbgrader's own version of
-it, and the right answers of all variants of our questions. Processor times count all processes, and
-hardly depend on what else the machine does; times by the clock do.
+The class is the sample class, with its mistakes, broken cells and attacks. All of it goes through
+``coursework grade``, from an empty folder to the report. The others are given the first honest
+notebooks of it, one after another, which is how they work; nbclient runs the cells and grades
+nothing. The cost of one notebook more leaves the start out. What each has to know of the assignment
+is made before, and told apart: nbgrader's own version of it, and the right answers of all variants
+of our questions. Processor times count all processes, and hardly depend on what else the machine
+does; times by the clock do.
 """
 
 import argparse
