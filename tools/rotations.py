@@ -6,8 +6,7 @@ import json
 import subprocess
 from pathlib import Path
 
-from notebook_pages.page import ESBUILD
-from notebook_pages.paths import NODE
+from notebook_pages.paths import NODE, esbuild
 from orientation_figures import rotations
 
 FILE = rotations.FOLDER / "scenes.json"
@@ -15,15 +14,8 @@ FILE = rotations.FOLDER / "scenes.json"
 
 def written(*arguments):
     """What ``js/stills.js`` writes, as text."""
-    command = [
-        NODE,
-        ESBUILD,
-        "--bundle",
-        "--platform=node",
-        "--log-level=error",
-        rotations.FOLDER / "js" / "stills.js",
-    ]
-    script = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    stills = rotations.FOLDER / "js" / "stills.js"
+    script = esbuild("--bundle", "--platform=node", "--log-level=error", stills)
     run = [NODE, "-", *arguments]
     return subprocess.run(run, input=script, capture_output=True, text=True, check=True).stdout
 

@@ -19,13 +19,13 @@ FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", HERE.parents[1]))
 PAGES = ("index", "levers", "triangles")
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory, take_compiled_wheels):
-    """The folder of the site."""
-    book = tmp_path_factory.mktemp("books") / "small"
-    shutil.copytree(HERE / "small-book", book)
-    take_compiled_wheels(book)
-    environment = os.environ | {"NOTEBOOK_PAGES_FETCHED": str(FETCHED), "NO_COLOR": "1"}
+def build(book):
+    """Build the book in a folder, and return that of its site."""
+    environment = os.environ | {
+        "NOTEBOOK_PAGES_FETCHED": str(FETCHED),
+        "NO_COLOR": "1",
+        "SOURCE_DATE_EPOCH": "1800000000",
+    }
     done = subprocess.run(
         [sys.executable, "-m", "notebook_pages.build"],
         cwd=book,
@@ -35,6 +35,15 @@ def built(tmp_path_factory, take_compiled_wheels):
     )
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return book / "_build" / "html"
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory, take_compiled_wheels):
+    """The folder of the site."""
+    book = tmp_path_factory.mktemp("books") / "small"
+    shutil.copytree(HERE / "small-book", book)
+    take_compiled_wheels(book)
+    return build(book)
 
 
 def page(site, name):
@@ -108,3 +117,27 @@ def test_every_page_with_code_can_be_taken_away(built):
 def test_the_notebook_interface_opens_it(built):
     assert (built / "lite" / "notebooks" / "index.html").is_file()
     assert (built / "lite" / "files" / "triangles.ipynb").is_file()
+
+
+@pytest.mark.long
+def test_a_book_that_was_touched_is_as_if_it_had_been_built_anew(tmp_path, take_compiled_wheels):
+    """What a build keeps of the one before, page by page, is what it would make again."""
+    book = tmp_path / "small"
+    shutil.copytree(HERE / "small-book", book)
+    take_compiled_wheels(book)
+
+    def files():
+        return {path: path.read_bytes() for path in build(book).rglob("*") if path.is_file()}
+
+    before = files()
+    notebook = nbformat.read(book / "levers.ipynb", as_version=4)
+    notebook.cells[0].source += "\n\nOne more sentence, with $x^2$ and ~~a line through it~~."
+    nbformat.write(notebook, book / "levers.ipynb")
+    touched = files()
+    for path in (book / "_build").iterdir():
+        if path.name != "runtime":  # what was compiled
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    anew = files()
+    assert touched.keys() == anew.keys()
+    assert not [path for path in anew if touched[path] != anew[path]]
+    assert [path for path in anew if path.suffix == ".html" and before.get(path) != anew[path]]

@@ -394,6 +394,9 @@ def test_a_build_with_nothing_to_do_starts_nothing(tmp_path, monkeypatch, capsys
     monkeypatch.setattr(book, "subprocess", None)  # whatever it would start fails
     book.main()
     assert "Nothing has changed" in capsys.readouterr().out
+    # Nor does it load what only a build needs: that takes longer than to look.
+    code = "import sys, notebook_pages.build; sys.exit('sphinx' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.parametrize("end", [SystemExit(1), RuntimeError("There was an error in building")])
@@ -403,7 +406,7 @@ def test_of_a_faulty_build_nothing_is_left(tmp_path, monkeypatch, end):
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(unchanged, "REPOSITORY", tmp_path)
-    monkeypatch.setattr(book.lite, "is_compiled", lambda: True)
+    monkeypatch.setattr("notebook_pages.lite.is_compiled", lambda: True)
     monkeypatch.setitem(sys.modules, "jupyter_book.cli.main", SimpleNamespace(main=build))
     (tmp_path / "_build" / "html").mkdir(parents=True)
     with pytest.raises(SystemExit, match="not built"):

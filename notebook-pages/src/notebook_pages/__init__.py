@@ -6,36 +6,37 @@ what the book is about.
 
 import gc
 
-from . import (
-    accessible,
-    alternative_text,
-    exam,
-    execution,
-    exercises,
-    finish,
-    first_view,
-    fonts,
-    install,
-    lecture,
-    lite,
-    live,
-    mathematics,
-    moved,
-    moving,
-    page,
-    pictures,
-    previews,
-    progress,
-    publish,
-    questions,
-    search,
-    sidebar,
-    subject_index,
-    take_away,
-)
-
 
 def setup(app):
+    # Here, and not above: commands of this package that make no page are there at once.
+    from . import (
+        accessible,
+        alternative_text,
+        exam,
+        execution,
+        exercises,
+        finish,
+        first_view,
+        fonts,
+        install,
+        lecture,
+        lite,
+        live,
+        mathematics,
+        moved,
+        moving,
+        page,
+        pictures,
+        previews,
+        progress,
+        publish,
+        questions,
+        search,
+        sidebar,
+        subject_index,
+        take_away,
+    )
+
     # Pages that are read back are large trees: to look through them for memory to be freed as often
     # as Python does takes longer than to read them.
     gc.set_threshold(50_000, 20, 50)

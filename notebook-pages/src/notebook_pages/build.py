@@ -8,7 +8,7 @@ import traceback
 
 import yaml
 
-from . import install, lite, unchanged, whole_book
+from . import unchanged
 from .paths import BUILD, HTML, contents, exam_edition, let_everybody_read, pages
 
 EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
@@ -67,6 +67,9 @@ def main():
     if unchanged.is_unchanged():
         print(f"Nothing has changed since this was built: {HTML / 'index.html'}")
         return
+    # With these comes Sphinx: where all is built, nobody waits for it.
+    from . import install, lite, whole_book
+
     print("Building the book ...", flush=True)
     # What was fetched for browsers is byte-compiled while the pages are read one by one.
     compiling = [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]

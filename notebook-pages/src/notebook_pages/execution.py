@@ -10,13 +10,12 @@ import json
 import logging
 from pathlib import Path
 
-import nbformat
 from jupyter_cache import get_cache
 from jupyter_cache.executors.basic import ExecutionWorkerLocalMProc, JupyterExecutorLocalMproc
 from jupyter_cache.executors.utils import single_nb_execution
 
 from .paths import WEBSITE, fingerprint
-from .used import fingerprint_of_used
+from .used import fingerprint_of_used, notebook_of
 from .warm_kernels import WarmAsyncKernelManager
 
 #: Notebooks that are shown as they were released and run by the tests; see ``execute`` in
@@ -40,7 +39,7 @@ def throw_away_old_runs(paths, folder):
     """
     notes = Path(folder, NOTES)
     made_with = json.loads(notes.read_text("utf8")) if notes.exists() else {}
-    now = {str(path): fingerprint_of_used(nbformat.read(path, as_version=4)) for path in paths}
+    now = {str(path): fingerprint_of_used(notebook_of(path)) for path in paths}
     changed = {path for path, used in now.items() if made_with.get(path) != used}
     cache = get_cache(folder)
     for record in cache.list_cache_records():

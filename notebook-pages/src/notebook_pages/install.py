@@ -114,7 +114,7 @@ def write_list(site):
     )
     # The service worker of a book at the root of an address is asked for its neighbours' pages,
     # too: it is told what belongs to the book. (The build writes the script anew each time.)
-    ours = sorted({path.partition("/")[0] for path in paths} - {"lite", WORKER})
+    ours = sorted({path.partition("/")[0] for path in (*paths, LASTING)} - {"lite", WORKER})
     script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
     (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
 

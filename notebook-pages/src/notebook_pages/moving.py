@@ -5,20 +5,19 @@ a widget for Jupyter. The page shows the still, and one script for each kind of 
 book.js asks for when the first view stands, brings it to life.
 """
 
-import os
 import shutil
-import subprocess
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
 from docutils import nodes
 
-from .page import ESBUILD, take_later
-from .paths import NODE, NODE_MODULES, REGISTERED, fingerprint, named
+from .page import take_later
+from .paths import NODE_MODULES, REGISTERED, esbuild, fingerprint, named
 from .used import files_used
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
+EMBEDDED = "embed"  # the folder of the site that holds a page for each figure alone
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
 PAGE_STYLE = """
 .cell_output .output:has(> .moving) { overflow: visible; }
@@ -114,12 +113,12 @@ def write_embedded(app, exception):
         Path(__file__),
     ]
     made_from, stamp = fingerprint(*sources), site.with_name("embedded-from")
-    embedding = named(REGISTERED["embedding"])
-    if (site / embedding.FOLDER).is_dir() and stamp.is_file() and stamp.read_text() == made_from:
+    if stamp.is_file() and stamp.read_text() == made_from and (site / EMBEDDED).is_dir():
         return
+    embedding = named(REGISTERED["embedding"])
     texts, later = scripts_and_styles([*embedding.figures(), *named(REGISTERED["figures"]).BUILT])
     write(figures_as_written(app), texts | later)
-    write(site / embedding.FOLDER, embedding.files())
+    write(site / EMBEDDED, embedding.files())
     stamp.write_text(made_from)
 
 
@@ -141,19 +140,7 @@ def bring(app, exception):
 @cache
 def built(script):
     """The text of a script with all that it imports, those of npm's packages among it."""
-    command = [
-        NODE,
-        ESBUILD,
-        "--bundle",
-        "--minify",
-        "--format=iife",
-        "--log-level=warning",
-        script,
-    ]
-    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
-    return subprocess.run(
-        command, env=environment, stdout=subprocess.PIPE, text=True, check=True
-    ).stdout
+    return esbuild("--bundle", "--minify", "--format=iife", "--log-level=warning", script)
 
 
 def setup(app):

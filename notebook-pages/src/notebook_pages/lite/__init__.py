@@ -15,6 +15,7 @@ import zipfile
 from array import array
 from collections import Counter
 from hashlib import sha256
+from operator import itemgetter
 from pathlib import Path
 
 import nbformat
@@ -24,6 +25,7 @@ from ..live import runtime, scripts
 from ..live.cells import PYTHON, kinds_of_cells
 from ..paths import BUILD, LICENCES_SAID, YAML, fingerprint, moment_of_sources
 from ..take_away import first_words, is_notebook, notebook_address, notebook_pages
+from ..used import notebook_of
 
 HERE = Path(__file__).parent
 FOLDER = "lite"
@@ -165,9 +167,9 @@ def announce_numpy(notebook, kinds, place):
 
 def notebook_for(site, page, settings):
     """The notebook of a page: exercises as they were released, others as they are taken away."""
-    notebook = stamp(nbformat.read(site / notebook_address(page), as_version=4))
+    notebook = stamp(notebook_of(site / notebook_address(page)))
     if page.startswith("exercises/"):
-        return nbformat.writes(notebook)
+        return nbformat.v4.writes(notebook)
     first = notebook.cells[0]
     notes = [
         line
@@ -182,7 +184,7 @@ def notebook_for(site, page, settings):
     setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
     if setting not in (False, "off"):
         announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
-    return nbformat.writes(notebook)
+    return nbformat.v4.writes(notebook)
 
 
 def write_workshop(site, settings, names):
@@ -254,21 +256,47 @@ def bring_answers_first(target):
     page.write_text(after, "utf8")
 
 
-def write(site):
-    """Write the notebook interface into ``site``, a folder with the built pages, if anything has
-    changed.
+def bring_notebooks(target):
+    """Put the notebooks into the interface, and write what its lists say of each: a touched chapter
+    is in it without all being built again.
     """
+    moment = f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
+    for source in (WORKSHOP / "files").rglob("*.ipynb"):
+        place = target / source.relative_to(WORKSHOP)
+        if place.read_bytes() != (content := source.read_bytes()):
+            place.write_bytes(content)
+    for listing in (target / "api" / "contents").rglob("all.json"):
+        told = json.loads(listing.read_text("utf8"))
+        told["content"].sort(key=itemgetter("path"))
+        for one in (told, *told["content"]):
+            one["created"] = one["last_modified"] = moment
+            if one["type"] != "directory":
+                one["size"] = (target / "files" / one["path"]).stat().st_size
+        listing.write_text(json.dumps(told, indent=2, sort_keys=True), "utf8")
+
+
+def write(site):
+    """Write the notebook interface into ``site``, a folder with the built pages."""
     settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
     names = write_lock(site)
     write_workshop(site, settings, names)
     target = site / FOLDER
+    made_from = [
+        fingerprint(
+            *sorted(WORKSHOP.glob("*.json")), HERE, *(LABEXTENSIONS / name for name in EXTENSIONS)
+        ),
+        scripts.folder_name(),
+        *notebook_pages(),
+    ]
     made = target / "made-from.txt"
-    made_from = (
-        fingerprint(WORKSHOP, HERE, *(LABEXTENSIONS / name for name in EXTENSIONS))
-        + scripts.folder_name()
-    )
-    if made.exists() and made.read_text("utf8") == made_from:
-        return
+    if not made.exists() or made.read_text("utf8").split() != made_from:
+        build_interface(target)
+        made.write_text("\n".join(made_from), "utf8")
+    bring_notebooks(target)
+
+
+def build_interface(target):
+    """Build the interface with all that lies in the workshop, and put it in its place."""
     # It drops local settings without a word if it finds the notes of an older run: the workshop is
     # new each time. It dates all that lies beside its own folder, too, which were all pages of the
     # site: the next build would take them for older than their sources.
@@ -283,7 +311,6 @@ def write(site):
     bring_answers_first(apart)
     shutil.rmtree(target, ignore_errors=True)
     shutil.move(apart, target)
-    made.write_text(made_from, "utf8")
 
 
 def add_link(app, pagename, templatename, context, doctree):

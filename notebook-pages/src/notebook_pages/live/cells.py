@@ -21,12 +21,10 @@ from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 
-import nbformat
-
 from ..execution import STORED
 from ..moves import moves
 from ..paths import PACKAGES, REPOSITORY, fingerprint
-from ..used import fingerprint_of_used, names_imported, parse
+from ..used import fingerprint_of_used, names_imported, notebook_of, parse
 
 PYTHON = Path(__file__).parent / "python"
 PRETTY = Path(find_spec("IPython").submodule_search_locations[0], "lib", "pretty.py")
@@ -243,7 +241,7 @@ def kept_name(path, notebook):
 
 def kinds_of(path):
     """The kinds of the code cells of a notebook, found out now or kept from before."""
-    notebook = nbformat.read(path, as_version=4)
+    notebook = notebook_of(path)
     kept = RESULTS / path.parent.name / kept_name(path, notebook)
     if not kept.exists():
         try:

@@ -2,16 +2,14 @@
 it loads.
 """
 
-import os
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
 from ..fonts import FOLDER as FONTS_FOLDER
 from ..fonts import __file__ as FONTS_PROGRAM
 from ..fonts import katex_rules
-from ..paths import NODE, NODE_MODULES, REGISTERED, WEBSITE, fingerprint, named
+from ..paths import REGISTERED, WEBSITE, esbuild, fingerprint, named
 from .cells import PRETTY, PYTHON, write_python
 from .runtime import FOLDER, HERE
 
@@ -19,7 +17,6 @@ JS = HERE / "js"
 #: What a moving figure and its widget share; the figures of the build and those of the page's
 #: Python have one.
 MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
-ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 
 
 def folder_name():
@@ -29,16 +26,8 @@ def folder_name():
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
 
 
-def esbuild(*arguments):
-    command = [
-        NODE,
-        ESBUILD,
-        "--minify",
-        "--log-level=warning",
-        "--legal-comments=none",
-        *arguments,
-    ]
-    subprocess.run(command, check=True, env=os.environ | {"NODE_PATH": str(NODE_MODULES)})
+def put_together(*arguments):
+    esbuild("--minify", "--log-level=warning", "--legal-comments=none", *arguments)
 
 
 def write(site):
@@ -51,15 +40,15 @@ def write(site):
         write_loaded(target)
     static = site / "_static"
     static.mkdir(exist_ok=True)
-    esbuild(JS / "page.js", f"--outfile={static / 'live.js'}")
-    esbuild(
+    put_together(JS / "page.js", f"--outfile={static / 'live.js'}")
+    put_together(
         JS / "progress.js",
         "--bundle",
         "--global-name=progress",
         f"--outfile={static / 'progress.js'}",
     )
     # A service worker may act for the pages below it only.
-    esbuild(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")
+    put_together(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")
 
 
 def write_loaded(target):
@@ -73,7 +62,7 @@ def write_loaded(target):
         else:
             (workshop / "js" / "model.js").write_text("export class Model {}\n", "utf8")
         write_python(workshop / "python")
-        esbuild(
+        put_together(
             *(
                 workshop / "js" / name
                 for name in ("live.js", "worker.js", "take-away.js", "notebook.js", "keep.js")

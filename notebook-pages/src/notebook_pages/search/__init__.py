@@ -6,9 +6,7 @@ places, with their numbers, first sentences and characteristic words, are those 
 """
 
 import json
-import os
 import re
-import subprocess
 from collections import Counter
 from hashlib import sha256
 from pathlib import Path
@@ -17,10 +15,9 @@ import yaml
 from bs4 import BeautifulSoup
 
 from ..finish import pages_of
-from ..paths import NODE, NODE_MODULES, YAML, is_solutions, parts
+from ..paths import YAML, esbuild, is_solutions, parts
 
 HERE = Path(__file__).parent
-ESBUILD = NODE_MODULES / "esbuild" / "bin" / "esbuild"
 SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
 WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
@@ -312,15 +309,13 @@ def write(site):
         "--legal-comments=none",
         "--log-level=warning",
     ]
-    command = [NODE, ESBUILD, HERE / "js" / "palette.js", *flags]
-    environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
-    done = subprocess.run(command, check=True, env=environment, stdout=subprocess.PIPE)
+    palette = esbuild(HERE / "js" / "palette.js", *flags)
     found, later = index(site)
     text = f"self.searchWords={json.dumps(later, ensure_ascii=False, separators=(',', ':'))};"
     (site / WORDS).write_text(text, "utf8")
     found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
     data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
-    (site / SCRIPT).write_text(f"self.searchIndex={data};\n{done.stdout.decode()}", "utf8")
+    (site / SCRIPT).write_text(f"self.searchIndex={data};\n{palette}", "utf8")
 
 
 def begin(app):
