@@ -11,6 +11,7 @@ from places import REPOSITORY
 
 from notebook_pages import execution, used
 from notebook_pages.live import cells
+from orientation_figures import moving
 
 # jupyter-cache leaves its database open, which Python tells since 3.13.
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
@@ -214,6 +215,14 @@ def test_a_chapter_that_was_never_run_can_be_seen():
     assert kind["needs"] == []
     with pytest.raises(RuntimeError, match="gives another result"):
         cells.classify([code_cell("6 * 7", text="41")])
+
+
+def test_whoever_names_a_figure_needs_anywidget_and_what_comes_with_it():
+    """A page has that at hand; of something else it would say that it is fetched from elsewhere."""
+    names = [code_cell(f"moving.{name}", ran=False) for name in moving.__all__]
+    first, *found = cells.classify([code_cell("from orientation_figures import moving"), *names])
+    assert first["needs"] == []
+    assert [kind["needs"] for kind in found] == [["anywidget"]] * len(found)
 
 
 def test_kinds_are_kept_while_only_the_prose_changes(tmp_path, monkeypatch):

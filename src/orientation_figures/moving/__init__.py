@@ -49,6 +49,7 @@ def __getattr__(name: str) -> type:
     """A figure, loaded when it is first asked for."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import_module(".figure", __name__)  # where anywidget is missing, that is what is said
     figure: type = getattr(import_module(f".{_MODULES[name]}", __name__), name)
     globals()[name] = figure
     return figure
