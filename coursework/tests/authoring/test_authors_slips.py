@@ -156,6 +156,14 @@ def changed(old, new, text=QUESTION):
             "`°C` is no unit that is known here",
         ),
         (
+            {"question": changed("symbols='x'", "symbols={'x': (1e11, 3e11)}")},
+            "'x' is tried from 1e+11 to 3e+11; a range is at most 10000 wide. It need not",
+        ),
+        (
+            {"question": changed("symbols='x'", "symbols={'x': (1, float('inf'))}")},
+            "'x' is tried from 1 to inf; a range is at most 10000 wide",
+        ),
+        (
             {"before": [("code", DRAWN)], "text": "Add {{m}}."},
             "its text shows {{m}}, which is not drawn; drawn are n.",
         ),

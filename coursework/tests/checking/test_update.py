@@ -137,7 +137,8 @@ def test_an_archive_without_a_folder_and_the_folder_where_one_is(work, tmp_path,
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda path: None, "There is no .*new.zip in "),
+        (lambda path: None, "new.zip is not there, seen from .*as you have downloaded it"),
+        (lambda path: path.mkdir(), "new.zip is a folder.*as you have downloaded it"),
         (lambda path: path.write_text("<html>"), "new.zip is no whole zip archive.*once more"),
         (lambda path: zipped(path, {"a.txt": b""}), "holds no notebook.*once more"),
         (
@@ -157,6 +158,34 @@ def test_what_is_no_newer_archive_changes_nothing(make, words, work, tmp_path):
     with pytest.raises(ArchiveRefused, match=f"(?s){words}"):
         update(tmp_path / "new.zip", work)
     assert contents(work) == before
+
+
+def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
+    """Nothing else says which is older: the package is the same in both, and so are the times of
+    the files.
+    """
+    files = [{"a.ipynb": notebook(word), NEW_WHEEL: b""} for word in ("one", "two", "three")]
+    one, two, three = (
+        zipped(tmp_path / f"{k}.zip", {**these, "manifest.json": manifest(these).encode()})
+        for k, these in enumerate(files)
+    )
+    with zipfile.ZipFile(one) as box:
+        for entry in box.namelist():
+            if not entry.endswith("/"):
+                (work / entry.removeprefix("exercises/")).write_bytes(box.read(entry))
+    update(one, work)
+    assert update(two, work)[0].startswith("replaced")
+    before = contents(work)
+    with pytest.raises(ArchiveRefused, match="0.zip was in this folder before, and a newer one"):
+        update(one, work)
+    assert contents(work) == before
+    assert [line[:8] for line in update(two, work)[:1]] == ["the same"]
+    assert contents(work) == before and update(three, work)[0].startswith("replaced")
+    for older in (one, two):
+        with pytest.raises(ArchiveRefused, match="was in this folder before"):
+            update(older, work)
+    with pytest.raises(ArchiveRefused, match="There is no folder .*elsewhere"):
+        update(three, tmp_path / "elsewhere")
 
 
 def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(work, tmp_path):

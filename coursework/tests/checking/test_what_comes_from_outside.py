@@ -83,15 +83,28 @@ def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, found, change,
     assert said in str(error.value) and str(error.value).startswith("here")
 
 
-def test_a_student_whose_sealed_file_is_damaged_is_told_what_to_do(tmp_path, monkeypatch):
+@pytest.mark.parametrize(
+    "change, share, said",
+    [
+        ({"worth": "two"}, 1, "levers/one: 'worth' should be a number.*Unpack the exercises"),
+        ({}, 0.5, "of levers are no whole file. Unpack the exercises"),
+        ({"kind": "lever"}, 1, "'levers/one' is of a kind .*, 'lever': install the package that"),
+        ({"kind": "function", "result": "lever"}, 1, "is of a kind .*, 'lever': install"),
+    ],
+)
+def test_a_student_whose_sealed_file_cannot_be_used_is_told_what_to_do(
+    change, share, said, tmp_path, monkeypatch
+):
     (tmp_path / "sealed").mkdir()
-    content = {"format": questions.FORMAT, "questions": {"levers/one": {**LEVER, "worth": "two"}}}
-    (tmp_path / "sealed" / "levers.json").write_text(json.dumps(content))
+    content = json.dumps(
+        {"format": questions.FORMAT, "questions": {"levers/one": {**LEVER, **change}}}
+    )
+    (tmp_path / "sealed" / "levers.json").write_text(content[: int(share * len(content))])
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(
-        RuntimeError, match="levers/one: 'worth' should be a number.*Unpack the exercises"
-    ):
+    questions.notebook_questions.cache_clear()
+    with pytest.raises(RuntimeError, match=said):
         questions.find_question("levers/one", "")
+    questions.notebook_questions.cache_clear()
 
 
 def test_a_record_of_a_later_version_is_refused(tmp_path):

@@ -16,6 +16,7 @@ import psutil
 import pytest
 from grading_class import handed_in, put, write_sources
 
+from coursework.grading import commands
 from coursework.grading.execution import cluster_keys
 from coursework.grading.execution.sandbox import Limits, given_up
 from coursework.grading.grade import grade
@@ -304,3 +305,10 @@ def test_a_cluster_without_keys_is_refused(tmp_path, address, keys, said):
     with pytest.raises(cluster_keys.NoKeys, match=said):
         cluster_keys.demand_keys(address, keys and tmp_path / keys)
     cluster_keys.demand_keys("tcp://127.0.0.1:8786", None)
+
+
+def test_a_cluster_without_its_package_says_which(tmp_path, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(SystemExit, match="pip install distributed"):
+        commands.cluster(str(tmp_path / "keys"), "192.0.2.7", 8786, None, None)
+    assert not (tmp_path / "keys").exists()

@@ -57,6 +57,9 @@ from ..checking.units import UnknownUnit
 #: What answers without symbols may be off by, if the question says nothing: three decimals are
 #: enough.
 TOLERANCE = 5e-4
+#: How wide the range of a symbol may be: each check looks through all quarter turns in it for
+#: points.
+WIDEST = 10_000
 #: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may
 #: cross.
 REACH = 0.5
@@ -833,4 +836,11 @@ def question(
         public = replace(Question.from_json(about, name), variant=variant)
     except Misread as error:
         raise AuthorError(str(error)) from None
+    for symbol, (low, high) in public.symbols.items():
+        if not abs(high - low) <= WIDEST:  # of what is no number, too
+            raise AuthorError(
+                f"{name}: {symbol!r} is tried from {low:g} to {high:g}; a range is at most "
+                f"{WIDEST} wide. It need not be that of practice, since forms are compared: "
+                "(0.5, 3) does for each length, force or stiffness."
+            )
     return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

@@ -98,9 +98,11 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
         for name, about in chosen.items():
             about = _on_the_first(questions[name], about) if variant else about
             found[name] = Sealed.from_json(about, f"The sealed question {name}", format)
-    except Misread as error:
+    except ValueError as error:
+        cut = f"The sealed questions of {notebook} are no whole file."
         raise RuntimeError(
-            f"{error} Unpack the exercises again; what you have written is kept."
+            f"{error if isinstance(error, Misread) else cut} "
+            "Unpack the exercises again; what you have written is kept."
         ) from None
     return found
 
@@ -188,6 +190,12 @@ def find_question(name: str, student: str) -> Sealed:
                 f"Your numbers of '{asked}' are missing: they stand in `variants/{notebook}-"
                 f"{number}.json` in the folder `sealed`. Unpack the exercises again; what you have "
                 "written is kept."
+            )
+        of_question = of_variant[asked].question
+        if unknown := {of_question.kind, of_question.kind_of_values} - set(kinds()):
+            raise RuntimeError(
+                f"'{asked}' is of a kind that is not known here, {unknown.pop()!r}: install the "
+                "package that came with the notebook."
             )
         return of_variant[asked]
     found = [file.name for folder in places() for file in folder.iterdir()]

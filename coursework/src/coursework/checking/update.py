@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from .fields import Fields, by_name, text, whole
+from .fields import Fields, by_name, many, text, whole
 
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
@@ -41,11 +41,16 @@ def manifest(files: Mapping[str, bytes]) -> str:
     >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
     {'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
     """
-    return _as_text({name: digest_of(name, data) for name, data in files.items()})
+    return _as_text(files={name: digest_of(name, data) for name, data in files.items()})
 
 
-def _as_text(digests: Mapping[str, str]) -> str:
-    return json.dumps({"format": FORMAT, "files": digests}, indent=0, sort_keys=True) + "\n"
+def _as_text(**about: object) -> str:
+    return json.dumps({"format": FORMAT, **about}, indent=0, sort_keys=True) + "\n"
+
+
+def _digest_of_all(digests: Mapping[str, str]) -> str:
+    """A digest of an archive, by those of its files."""
+    return hashlib.sha256(json.dumps(sorted(digests.items())).encode()).hexdigest()[:32]
 
 
 def digest_of(name: str, data: bytes) -> str:
@@ -86,10 +91,20 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
         Nothing was changed.
     """
     folder = Path(folder)
+    if not folder.is_dir():
+        raise ArchiveRefused(f"There is no folder {folder} in {Path.cwd()}.")
     files = _files_in(archive_file)
     files.pop(MANIFEST, None)
-    before = _handed_out(folder)
+    before, archives = _handed_out(folder)
     now = {name: digest_of(name, data) for name, data in files.items()}
+    this = _digest_of_all(now)
+    if this in archives[:-1]:
+        raise ArchiveRefused(
+            f"The archive {archive_file} was in this folder before, and a newer one since. Has the "
+            "newest another name? Nothing was changed."
+        )
+    if this not in archives:
+        archives.append(this)
     older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
     said = []
@@ -122,7 +137,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
             said.append(f"kept yours  {name}; the new one is {beside}")
-    (folder / MANIFEST).write_text(_as_text({**before, **now}), "utf8")
+    (folder / MANIFEST).write_text(_as_text(files={**before, **now}, archives=archives), "utf8")
     if to_install:
         command = [
             "python" if sys.platform == "win32" else sys.executable,
@@ -139,15 +154,15 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
 def _files_in(archive_file: str | Path) -> dict[str, bytes]:
     """What an archive of exercises holds, by the place of each file in a student's folder."""
     once_more = "Nothing was changed: download it once more."
+    if not (place := Path(archive_file)).is_file():
+        raise ArchiveRefused(
+            f"{place} is {'a folder' if place.is_dir() else f'not there, seen from {Path.cwd()}'}. "
+            "Put the archive there as you have downloaded it, or write where it is."
+        )
     try:
         with zipfile.ZipFile(archive_file) as box:
             entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
             files = {_place(entry): box.read(entry) for entry in entries}
-    except FileNotFoundError:
-        raise ArchiveRefused(
-            f"There is no {archive_file} in {Path.cwd()}. Put the archive that you have downloaded "
-            "there, or write where it is."
-        ) from None
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
         raise ArchiveRefused(
             f"{archive_file} is no whole zip archive. Did the download break off, or was a page "
@@ -231,19 +246,21 @@ def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
     return beside.name
 
 
-def _handed_out(folder: Path) -> dict[str, str]:
-    """What was handed out into a folder, by name: the digest of each file. Nothing, if that was
-    before manifests.
+def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
+    """What was handed out into a folder, by name: the digest of each file; and the archives that it
+    came in, the newest last. Nothing, if that was before manifests.
     """
     try:
         about = Fields(json.loads((folder / MANIFEST).read_text("utf8")), MANIFEST)
         format, files = about.get("format", whole), about.get("files", by_name(text))
+        # One that was unpacked says what it holds, and names no archive.
+        archives = about.maybe("archives", many(text)) or (_digest_of_all(files),)
     except (OSError, ValueError):
-        return {}  # what is not known to be as it was handed out is the student's
+        return {}, []  # what is not known to be as it was handed out is the student's
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder is of format {format}, and the coursework that is "
             f"installed reads {FORMAT}: "
             "install the package that lies in this folder, and run this again. Nothing was changed."
         )
-    return files
+    return files, list(archives)

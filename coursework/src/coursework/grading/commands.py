@@ -570,12 +570,15 @@ def cluster(
     keys: str, host: str | None, port: int, worker: str | None, workers: int | None
 ) -> None:
     import os
+    from importlib.util import find_spec
     from pathlib import Path
 
     from .execution import cluster_keys
     from .workers import processors
 
     folder = Path(keys).absolute()
+    if find_spec("distributed") is None:
+        sys.exit("coursework cluster: install what it needs: python -m pip install distributed")
     try:
         if worker:
             command = cluster_keys.worker(folder, worker, workers or processors())
