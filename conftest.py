@@ -36,8 +36,8 @@ def pytest_xdist_auto_num_workers(config):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Share the tests out among processes by file: the cells of a notebook have one kernel, many
-    tests one fixture.
+    """Share the tests out among processes by file: the cells of a notebook share a kernel, and many
+    tests a fixture.
 
     Those that stand apart come one by one, after the larger files, so that no process is left
     without work.
@@ -64,10 +64,8 @@ def pytest_configure(config):
     config.pluginmanager.register(times.Times(config), "times")
     config.addinivalue_line(
         "markers",
-        "sampled(number, of=None): of the test's cases, or for a whole file of its tests, or of "
-        "all tests of the file "
-        "that name the same thing, only so many run every time, spread evenly over all; the "
-        "rest is long",
+        "sampled(number, of=None): of a test's cases, of a file's tests, or of a file's tests with "
+        "the same `of`, only so many run every time, spread evenly over all; the rest are long",
     )
 
 

@@ -2,8 +2,8 @@
 
 Every cell is run, all that is sealed or released is made, and every doctest is tried as if this
 processor were another one: with each kernel of OpenBLAS, without the instructions that NumPy would
-not have there, on one thread and on many; and what needs SymPy only in WebAssembly, in the Python
-of browsers. A table says what moved and by how much.
+not have there, on one thread and on many. What needs only SymPy is also run in WebAssembly, in the
+Python of browsers. A table says what moved and by how much.
 """
 
 import argparse

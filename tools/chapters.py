@@ -1,5 +1,5 @@
-"""What every chapter has, and where one has it not: ``python -m tools.chapters`` tells file, line
-and cell.
+"""What every chapter must have, and where one lacks it, by file, line and cell: ``python -m
+tools.chapters``.
 """
 
 import re

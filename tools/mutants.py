@@ -1,20 +1,21 @@
-"""``python -m tools.mutants``: which small change of the code does no test notice?
+"""``python -m tools.mutants``: which small changes of the code does no test notice?
 
 mutmut says what can be changed. The tests are collected once, and run once to see which lines each
 of them reaches. For every change a copy of that process (a fork) gets the changed function in place
-of the right one, and runs the tests that reach the changed statement, those first that noticed
+of the right one, and runs the tests that reach the changed statement, first those that noticed
 something there before, then the quick ones, until one fails. A change that all of them pass
-survives, and is printed: a test is missing, or it is no change. Those that are none stand in
-``mutants.txt``, each with the reason, and are passed over; one that nothing makes any more is told.
+survives, and is printed: either a test is missing, or the change changes nothing. Changes of the
+second kind are listed in ``mutants.txt``, each with the reason, and are skipped; an entry there
+that no change matches any more is reported.
 
     python -m tools.mutants orientation [MODULE...] [--jobs 2]
     python -m tools.mutants coursework.checking [MODULE...]
 
 Texts with spaces, or in pieces, are left as they are: no test asks for exact wording. So are the
-types that only a type checker reads; the letters of a codec's name, of which only their case could
-change; the codec of a file, which is the machine's own wherever the tests run; and the border
-itself of a comparison with a tolerance, or with a number that is not whole: what has been rounded
-lies on it, or beside it, by chance.
+types that only a type checker reads; the case of the letters in a codec's name; the codec of a
+file, which is the machine's own wherever the tests run; and the border itself of a comparison with
+a tolerance, or with a number that is not whole: what has been rounded lies on it, or beside it, by
+chance.
 """
 
 import __future__

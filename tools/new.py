@@ -1,7 +1,6 @@
-"""``python -m tools.new``: a new chapter or a new question, with every part that the book asks of
-one.
+"""``python -m tools.new``: a new chapter or a new question, with every part that it needs.
 
-What an author has to say stands there as TO BE WRITTEN, and :mod:`tools.chapters` tells where it
+Where the author has something to say stands TO BE WRITTEN, and :mod:`tools.chapters` tells where it
 still does.
 """
 
@@ -301,7 +300,7 @@ def main():
     chapter = commands.add_parser("chapter")
     chapter.add_argument("name")
     chapter.add_argument("title")
-    chapter.add_argument("--after", help="the chapter that it follows; the last one")
+    chapter.add_argument("--after", help="the chapter that it follows (default: the last one)")
     chapter.set_defaults(make=new_chapter)
     question = commands.add_parser("question")
     question.add_argument("name")

@@ -1,4 +1,4 @@
-"""What the release of a notebook follows from, as short digests: runs here and in the Python of
+"""What the release of a notebook depends on, as short digests: it runs here and in the Python of
 browsers.
 """
 

@@ -12,7 +12,7 @@ for hidden tests, with a call of :func:`question`:
              solution='The shared axis is $x$, so ...')
     ### END HIDDEN TESTS
 
-CONTRIBUTING.md explains each argument with an example.
+The manual of coursework explains each argument.
 """
 
 from __future__ import annotations
