@@ -34,7 +34,7 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments=None):
     parser = _Parser(
         prog="orientation",
-        description="Where the world's numbers meet the book Orientation of Reference Frames.",
+        description="What numbers from elsewhere mean: those of two programs, or a recording.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
@@ -57,29 +57,36 @@ def _add_explain(commands):
         "3 the input cannot be read.",
     )
     parser.add_argument("first", help="a file, or the numbers themselves: one pose a line")
-    parser.add_argument("second", help="the same poses by the other program")
+    parser.add_argument("second", help="the same poses, from the other program")
     parser.add_argument(
-        "--json", action="store_true", help="the answer as JSON, with a format number"
+        "--json", action="store_true", help="give the answer as JSON, with a format number"
     )
-    parser.add_argument("--all", action="store_true", help="every other reading that fits, too")
+    parser.add_argument(
+        "--all", action="store_true", help="also give every other reading that fits"
+    )
     parser.add_argument(
         "--noise",
         type=float,
         default=0.0,
         metavar="DEGREES",
-        help="what the two may differ by anyway",
+        help="how far the two may differ all the same (default: 0)",
     )
-    for side in ("first", "second"):
+    for side, programs, known in (
+        (
+            "first",
+            f"one of {', '.join(PROGRAMS)}",
+            f"a kind ({', '.join(COUNTS)}) or a choice such as 'zyx', 'space fixed', 'degrees', "
+            "'xyzw'; may be repeated",
+        ),
+        ("second", "as with --first", "as with --first-is"),
+    ):
         parser.add_argument(
             f"--{side}", dest=f"{side}_program", metavar="PROGRAM",
-            help=f"the program that gave the {side} numbers, as far as its manual is known here: "
-                f"{', '.join(PROGRAMS)}",
+            help=f"the program that gave the {side} numbers: {programs}",
         )  # fmt: skip
         parser.add_argument(
             f"--{side}-is", action="append", default=[], metavar="WHAT",
-            help=f"what is known of the {side} numbers: a kind ({', '.join(COUNTS)}) or a choice "
-                "such as "
-            f"'zyx', 'space fixed', 'degrees', 'xyzw'",
+            help=f"what is known of the {side} numbers: {known}",
         )  # fmt: skip
     parser.set_defaults(run=_explain)
 
@@ -87,13 +94,10 @@ def _add_explain(commands):
 def _add_recording(commands):
     parser = commands.add_parser(
         "recording",
-        help="what is in a recording of an instrument that turns, and whether a filter is "
-        "honest on it",
-        description="Put a recording on the bench: what its columns are, their units, "
-        "axes, signs and "
-        "errors, the "
-        "convention of an orientation in it, and whether a filter tells the truth about "
-        "itself on it.",
+        help="say what is in a recording of an instrument that turns",
+        description="Put a recording on the bench: what its columns are, their units, axes, signs "
+        "and errors, the convention of an orientation in it, and whether a filter is honest about "
+        "its own errors on it.",
         epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it "
         "cannot be read.",
     )
@@ -101,10 +105,10 @@ def _add_recording(commands):
         "files",
         nargs="+",
         metavar="FILE",
-        help="a table of numbers, a zip or a folder of them; several share a clock",
+        help="a table of numbers, or a zip or a folder of tables; several files share a clock",
     )
     parser.add_argument(
-        "--rate", type=float, help="samples a second, where the file only counts them"
+        "--rate", type=float, help="samples per second, where the file only counts them"
     )
     parser.add_argument(
         "--html", type=Path, metavar="REPORT", help="write the report with its plots as one page"
@@ -113,7 +117,9 @@ def _add_recording(commands):
         "--csv", type=Path, metavar="FILE", help="write the corrected recording with an orientation"
     )
     parser.add_argument(
-        "--convention", default="wxyz", help="of that orientation: wxyz, xyzw, yaw-pitch-roll"
+        "--convention",
+        default="wxyz",
+        help="how --csv writes the orientation: wxyz (default), xyzw or yaw-pitch-roll",
     )
     parser.add_argument(
         "--quick", action="store_true", help="leave out the filter, which takes longest"

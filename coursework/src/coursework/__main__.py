@@ -24,13 +24,19 @@ def main(arguments: Sequence[str] | None = None) -> None:
         else "Authors and instructors install the package from its repository, which has more "
         "commands."
     )
-    parser = argparse.ArgumentParser(prog="coursework", description=__doc__, epilog=missing)
-    commands = parser.add_subparsers(dest="command", required=True)
+    parser = argparse.ArgumentParser(
+        prog="coursework",
+        description="Exercises that check themselves: make them, grade them, renew them.",
+        epilog=missing or "coursework COMMAND --help says what a command takes.",
+    )
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     update = commands.add_parser(
         "update", help="unpack a newer archive beside your work, which stays as it is"
     )
-    update.add_argument("archive")
-    update.add_argument("--folder", default=".")
+    update.add_argument(
+        "archive", metavar="ARCHIVE", help="the newer archive, such as exercises.zip"
+    )
+    update.add_argument("--folder", default=".", help="where your work is (default: here)")
     for room in rooms:
         room.add_commands(commands)
     options = vars(parser.parse_args(arguments))

@@ -25,25 +25,27 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "release", help="make the exercises, the sealed questions and the archive for students"
     )
     release.add_argument(
-        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to make; all of them"
+        "only", nargs="*", metavar="NOTEBOOK", help="the notebooks to make, by name (default: all)"
     )
     for name, says in (
         ("sources", "folder of the notebooks with solutions"),
         ("exercises", "where the exercise notebooks go"),
         ("sealed", "where the sealed questions go"),
     ):
-        release.add_argument(f"--{name}", type=Path, help=f"{says}, if not as course.toml says")
+        release.add_argument(f"--{name}", type=Path, help=f"{says} (default: as course.toml says)")
     release.add_argument(
-        "--no-archive", action="store_true", help="leave the archive for students out"
+        "--no-archive", action="store_true", help="do not make the archive for students"
     )
     publish = commands.add_parser(
         "publish", help="make a site: the exercises as pages that check themselves"
     )
-    publish.add_argument("--site", type=Path, help="the folder to make; `site` beside the archive")
+    publish.add_argument(
+        "--site", type=Path, help="the folder to make (default: site beside the archive)"
+    )
     publish.add_argument(
         "--room",
         action="store_true",
-        help="also fetch all wheels that are needed, for a room without a network",
+        help="also fetch all packages that are needed, for a room without a network",
     )
     trial = commands.add_parser(
         "try", help="show a question as students will meet it, with every reply"
@@ -56,26 +58,28 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     wheels = commands.add_parser(
         "wheels", help="write the packages of coursework, to be installed elsewhere"
     )
-    wheels.add_argument("folder", type=Path)
+    wheels.add_argument("folder", type=Path, metavar="FOLDER", help="where they go")
     selftest = commands.add_parser(
         "selftest", help="try every question as students will, and look for leaks"
     )
     selftest.add_argument(
-        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to try; all of them"
+        "only", nargs="*", metavar="NOTEBOOK", help="the notebooks to try, by name (default: all)"
     )
     selftest.add_argument(
         "--sources",
         type=Path,
-        help="folder of the notebooks with solutions, if not as course.toml says",
+        help="folder of the notebooks with solutions (default: as course.toml says)",
     )
     selftest.add_argument(
         "--budget",
         type=int,
         default=2**16,
-        help="slow hashes that the attack on one question may need",
+        help="how many slow hashes the attack on one question may need (default: %(default)s)",
     )
     for parser, page in ((trial, "try"), (selftest, "selftest")):
-        parser.add_argument("--page", help=f"where the page goes; {page}.html beside the archive")
+        parser.add_argument(
+            "--page", help=f"where the page goes (default: {page}.html beside the archive)"
+        )
 
 
 def _course(

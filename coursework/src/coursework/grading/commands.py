@@ -18,20 +18,26 @@ if TYPE_CHECKING:
     from .store import Store
 
 
+SOLUTIONS = "folder of the notebooks with solutions (default: as course.toml says)"
+
+
 def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
+    marks = {"metavar": "MARKS", "help": "the folder that `coursework grade --out` made"}
     grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
     grade.add_argument(
         "submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook"
     )
-    grade.add_argument("--out", required=True, help="folder for marks, feedback and reports")
-    grade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    grade.add_argument(
+        "--out", required=True, metavar="MARKS", help="folder for marks, feedback and reports"
+    )
+    grade.add_argument("--solutions", help=SOLUTIONS)
     grade.add_argument(
         "--assignment",
         action="append",
         default=[],
         metavar="NAME[=NOTEBOOK,...]",
-        help="grade this assignment only; with = the notebooks of the exercises that make it up",
+        help="grade this assignment only; after = the notebooks of exercises that it consists of",
     )
     grade.add_argument(
         "--roster",
@@ -41,12 +47,16 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     grade.add_argument("--student", help="the one student who handed all of it in")
     grade.add_argument(
         "--dry-run",
-        "--only-list",  # what it was called
         action="store_true",
         help="say whose each file is, how that is known, and how many would be run; run nothing",
     )
+    grade.add_argument(  # what that was called
+        "--only-list", dest="dry_run", action="store_true", help=argparse.SUPPRESS
+    )
     grade.add_argument(
-        "--workers", type=int, help="how many notebooks are run at a time (one for each processor)"
+        "--workers",
+        type=int,
+        help="how many notebooks are run at a time (default: one for each processor)",
     )
     grade.add_argument(
         "--scheduler",
@@ -61,19 +71,19 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     grade.add_argument(
         "--allow-weak-isolation",
         action="store_true",
-        help="run student code although this machine cannot keep it apart; only on a machine you "
-        "can lose",
+        help="run students' code even if this machine cannot keep it apart; only on a machine that "
+        "you can afford to lose",
     )
     grade.add_argument(
         "--as-listed",
         action="store_true",
-        help="go on although many notebooks say that they are of somebody else than the list shows",
+        help="go on even if many notebooks claim to be somebody else's than the list says",
     )
     regrade = commands.add_parser(
         "regrade", help="judge the stored answers again, after a question or a decision changed"
     )
-    regrade.add_argument("out", metavar="DIR")
-    regrade.add_argument("--solutions", help="folder of the notebooks with solutions")
+    regrade.add_argument("out", **marks)
+    regrade.add_argument("--solutions", help=SOLUTIONS)
     regrade.add_argument(
         "--dry-run", action="store_true", help="say which marks would move, and move none"
     )
@@ -85,16 +95,15 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         default=[],
         metavar="QUESTION",
-        help="nobody loses by this question's mending",
+        help="nobody loses by the mending of this question",
     )
     regrade.add_argument(
         "--full-credit",
         action="append",
         default=[],
         metavar="QUESTION[@VARIANT]",
-        help="all have its points, or all with a variant: its name, or taken-out for "
-        "those that the "
-        "source has no more",
+        help="everybody gets its points, or everybody with a variant: its name, or taken-out for "
+        "those that the source no longer has",
     )
     regrade.add_argument(
         "--void",
@@ -106,33 +115,33 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     review = commands.add_parser(
         "review", help="judge answers on a page that this machine alone sees"
     )
-    review.add_argument("out", metavar="DIR")
-    review.add_argument("--grader", help="your name, for the ledger; your user's if it is not said")
+    review.add_argument("out", **marks)
+    review.add_argument("--grader", help="your name, for the ledger (default: your user name)")
     review.add_argument(
         "--share",
         default="1/1",
         metavar="K/N",
-        help="the K-th of N shares, if several people judge: 2/3",
+        help="the K-th of N shares, if several people judge, such as 2/3",
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument(
-        "--port", type=int, default=0, help="the port; any that is free if it is not said"
-    )
+    review.add_argument("--port", type=int, default=0, help="the port (default: any that is free)")
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
-    merge.add_argument("out", metavar="DIR")
-    merge.add_argument("ledgers", nargs="+", metavar="ledger.jsonl")
+    merge.add_argument("out", **marks)
+    merge.add_argument(
+        "ledgers", nargs="+", metavar="ledger.jsonl", help="the ledger in their folder of marks"
+    )
     merge.add_argument(
         "--dry-run", action="store_true", help="say what would be taken in, and take in nothing"
     )
     term = commands.add_parser(
         "term", help="what a whole course comes to: due dates, weights, statistics"
     )
-    term.add_argument("out", metavar="DIR")
+    term.add_argument("out", **marks)
     term.add_argument(
         "--rules",
         required=True,
         metavar="FILE.toml",
-        help="due dates, extensions, weights: see the book",
+        help="due dates, extensions, weights: section 7 of the manual has an example",
     )
     term.add_argument(
         "--earlier",
@@ -145,7 +154,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--dry-run", action="store_true", help="print the table of the course, and keep nothing"
     )
     export = commands.add_parser("export", help="hand the marks on")
-    export.add_argument("out", metavar="DIR")
+    export.add_argument("out", **marks)
     export.add_argument(
         "--lms",
         metavar="FILE.csv",
@@ -154,7 +163,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     export.add_argument(
         "--filled",
         metavar="FILE.csv",
-        help="where the filled gradebook goes; FILE-filled.csv if not said",
+        help="where the filled gradebook goes (default: FILE-filled.csv)",
     )
     export.add_argument("--column", help="the column to fill, by its name or the beginning of it")
     export.add_argument(
@@ -162,13 +171,13 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         default=[],
         metavar="OURS=THEIRS",
-        help="what a column is called there, in a gradebook of another language: --name "
-        "'identifier=ID'",
+        help="what a column is called in a gradebook of another language, such as "
+        "--name identifier=ID",
     )
     export.add_argument(
         "--rules",
         metavar="FILE.toml",
-        help="the rules of the term: what is late costs points, who is excused has none",
+        help="the rules of the term, by which lateness costs points and some are excused",
     )
     export.add_argument(
         "--as-graded",
@@ -179,7 +188,8 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--as-of",
         metavar="TIME",
         type=_moment,
-        help="by what was decided and due then, such as 2026-12-01T12:00; now, if it is not said",
+        help="hand on what had been decided and was due by then, such as 2026-12-01T12:00 "
+        "(default: now)",
     )
     export.add_argument(
         "--dry-run", action="store_true", help="say what would be filled in, and write nothing"
@@ -189,7 +199,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         default=[],
         metavar="STUDENT",
-        help="fill in also where somebody entered another mark for this student; an excuse stays",
+        help="replace a mark that somebody entered for this student by hand; an excuse stays",
     )
     export.add_argument(
         "--assignment", help="the assignment whose points are handed on, if there are several"
@@ -209,9 +219,16 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     gradescope = commands.add_parser(
         "gradescope", help="make an autograder of one assignment for Gradescope"
     )
-    gradescope.add_argument("--out", required=True, metavar="FILE.zip")
-    gradescope.add_argument("--solutions", help="folder of the notebooks with solutions")
-    gradescope.add_argument("--assignment", required=True, metavar="NAME[=NOTEBOOK,...]")
+    gradescope.add_argument(
+        "--out", required=True, metavar="FILE.zip", help="where the autograder goes"
+    )
+    gradescope.add_argument("--solutions", help=SOLUTIONS)
+    gradescope.add_argument(
+        "--assignment",
+        required=True,
+        metavar="NAME[=NOTEBOOK,...]",
+        help="the assignment; after = the notebooks of exercises that it consists of",
+    )
     gradescope.add_argument(
         "--roster", metavar="FILE.csv", help="who is in the course, with their addresses"
     )
@@ -224,29 +241,40 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     cluster.add_argument(
         "--host", help="the address of this machine at which the others reach the scheduler"
     )
-    cluster.add_argument("--port", type=int, default=8786)
+    cluster.add_argument(
+        "--port", type=int, default=8786, help="the scheduler's port (default: %(default)s)"
+    )
     cluster.add_argument(
         "--worker",
         metavar="ADDRESS",
         help="work for the scheduler at this address, such as tls://...",
     )
     cluster.add_argument(
-        "--workers", type=int, help="how many notebooks at a time (one for each processor)"
+        "--workers", type=int, help="how many notebooks at a time (default: one for each processor)"
     )
     sample = commands.add_parser("sample-class", help="make a class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
-    sample.add_argument("--students", type=int, default=200)
-    sample.add_argument("--seed", type=int, default=1)
+    sample.add_argument(
+        "--students", type=int, default=200, help="how many students (default: %(default)s)"
+    )
+    sample.add_argument(
+        "--seed",
+        type=int,
+        default=1,
+        help="another seed makes another class (default: %(default)s)",
+    )
     sample.add_argument(
         "--notebooks",
         default="",
-        help="the exercises to hand in, separated by commas; they become one notebook",
+        help="the exercises to hand in, separated by commas; they become one notebook (default: "
+        "the first)",
     )
-    sample.add_argument("--solutions", help="folder of the notebooks with solutions")
+    sample.add_argument("--solutions", help=SOLUTIONS)
     sample.add_argument(
         "--layout",
         default="folders",
         choices=("folders", "canvas", "moodle", "brightspace", "nbgrader"),
+        help="how they are handed in (default: %(default)s)",
     )
 
 
