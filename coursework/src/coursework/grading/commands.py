@@ -18,12 +18,12 @@ if TYPE_CHECKING:
     from .store import Store
 
 
+MARKS = "the folder that `coursework grade --out` made"
 SOLUTIONS = "folder of the notebooks with solutions (default: as course.toml says)"
 
 
 def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
-    marks = {"metavar": "MARKS", "help": "the folder that `coursework grade --out` made"}
     grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
     grade.add_argument(
         "submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook"
@@ -82,7 +82,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     regrade = commands.add_parser(
         "regrade", help="judge the stored answers again, after a question or a decision changed"
     )
-    regrade.add_argument("out", **marks)
+    regrade.add_argument("out", metavar="MARKS", help=MARKS)
     regrade.add_argument("--solutions", help=SOLUTIONS)
     regrade.add_argument(
         "--dry-run", action="store_true", help="say which marks would move, and move none"
@@ -115,7 +115,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     review = commands.add_parser(
         "review", help="judge answers on a page that this machine alone sees"
     )
-    review.add_argument("out", **marks)
+    review.add_argument("out", metavar="MARKS", help=MARKS)
     review.add_argument("--grader", help="your name, for the ledger (default: your user name)")
     review.add_argument(
         "--share",
@@ -126,7 +126,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
     review.add_argument("--port", type=int, default=0, help="the port (default: any that is free)")
     merge = commands.add_parser("merge", help="take in the decisions of another grader")
-    merge.add_argument("out", **marks)
+    merge.add_argument("out", metavar="MARKS", help=MARKS)
     merge.add_argument(
         "ledgers", nargs="+", metavar="ledger.jsonl", help="the ledger in their folder of marks"
     )
@@ -136,7 +136,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     term = commands.add_parser(
         "term", help="what a whole course comes to: due dates, weights, statistics"
     )
-    term.add_argument("out", **marks)
+    term.add_argument("out", metavar="MARKS", help=MARKS)
     term.add_argument(
         "--rules",
         required=True,
@@ -154,7 +154,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--dry-run", action="store_true", help="print the table of the course, and keep nothing"
     )
     export = commands.add_parser("export", help="hand the marks on")
-    export.add_argument("out", **marks)
+    export.add_argument("out", metavar="MARKS", help=MARKS)
     export.add_argument(
         "--lms",
         metavar="FILE.csv",
