@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import zipfile
+from importlib import import_module
 
 import nbformat
 import pytest
@@ -116,6 +117,12 @@ def test_every_question_of_the_second_edition_is_there_or_has_left_word():
                 assert find_question(f"{notebook}/{name}", "")
             except NoSuchQuestion as error:
                 assert "is called" in str(error), error
+
+
+def test_every_name_of_the_second_edition_is_there():
+    """CHANGELOG.md promises a warning, in a version before, of each that goes."""
+    for module, names in SECOND["names"].items():
+        assert [name for name in names if not hasattr(import_module(module), name)] == []
 
 
 @pytest.mark.long
