@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 import sympy as sm
 from forms_by_chance import random_form
+from quick_keys import keys_are_quick  # noqa: F401
 from seed import SEED
 from sympy.physics import units
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols

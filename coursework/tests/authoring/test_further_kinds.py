@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import sympy as sm
+from quick_keys import keys_are_quick  # noqa: F401
 from seed import SEED
 from sympy.physics import units
 from trial_course import made_in, write_source

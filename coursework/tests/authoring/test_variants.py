@@ -18,6 +18,7 @@ from pathlib import Path
 import nbformat
 import pytest
 import sympy
+from quick_keys import keys_are_quick  # noqa: F401
 from trial_course import made_in, write_source
 
 import coursework
