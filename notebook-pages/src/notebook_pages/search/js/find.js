@@ -2,7 +2,8 @@
 //
 // A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare
 // it is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and
-// of itself that was asked for. The shares below were fitted to titles of forums (``questions.txt``).
+// of itself that was asked for. Several good phrases of a place speak for it more than one. The shares below were fitted
+// to titles of forums (``questions.txt``).
 import SearchableMap from "minisearch/SearchableMap";
 import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
@@ -32,10 +33,11 @@ const KINDS = {
 const IN_LONG = { term: 0.85 }; // a question of more than two words asks for more than a term
 const ASKED = 0.95; // what a place counts at least that readers ask for in words of their own
 const WITHIN = { about: 0.45, text: 0.25 }; // what a word counts that stands not in a phrase, but there
-const SYNONYM = 0.8, SAME = 1.12; // for a synonym, the very words
+const SYNONYM = 0.8, SAME = 1.5; // for a synonym, the very words
 const OF_WEAK = 0.4, OF_OTHERS = 0.6; // for words that say little, and of no subject
 const APART = 0.7; // for a word of a name of several words, without the others
 const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that of a phrase's own words
+const TOGETHER = 4; // the power in which what the phrases of a place are worth is added: the best counts most
 const ENDS = 6, ENDED = 0.7; // with how many ends a last word is tried; what that counts where it is a word as it stands
 const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
@@ -216,7 +218,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       for (const [k, like] of likes.entries()) raise(beside.get(one.entry), k, like * WITHIN[one.within]);
     }
     const best = new Map(), all = new Map(), ways = new Set(signs.filter(isWay).map(({ term }) => term));
-    const take = (id, score) => best.set(id, Math.max(best.get(id) ?? 0, score));
+    const take = (id, score) => best.set(id, (best.get(id) ?? 0) + score ** TOGETHER);
     for (const [one, { likes, own, back }] of states) if (!one.within) {
       const used = sum(own.map((like, j) => one.worths[j] * like)) / one.worth;
       const text = one.alone ? undefined : beside.get(one.entry);
@@ -234,9 +236,9 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     // What no one phrase of a place answers, all of them may; and its text, where none does.
     for (const [id, { likes, used, way }] of all) take(id, answered(likes) * (1 - OWN + OWN * used) * way);
     for (const [id, likes] of beside) take(id, answered(likes) * (1 - OWN));
-    return [...best].map(([id, score]) => {
+    return [...best].map(([id, powers]) => {
       const { kind, page, asked: phrases } = entries[id], weight = pages[page][3];
-      return [id, score * KINDS[kind] * (list.length > 2 ? IN_LONG[kind] ?? 1 : 1)
+      return [id, powers ** (1 / TOGETHER) * KINDS[kind] * (list.length > 2 ? IN_LONG[kind] ?? 1 : 1)
         * (phrases ? Math.max(weight, ASKED) : weight)];
     });
   }
