@@ -66,15 +66,15 @@ WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter
   && ["auto", "scroll"].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth + 1
   && !getComputedStyle(box).backgroundImage.includes("gradient") && !box.closest("textarea")).map((box) =>
   `${box.tagName}.${box.className}: ${box.textContent.trim().slice(0, 80)}`)"""
-# A full stop, comma or ’s after a formula that has come to begin a line.
-STRAY = """() => [...document.querySelectorAll(".bd-article .katex")].filter((formula) => {
-  const after = formula.nextSibling, last = [...formula.getClientRects()].at(-1);
+# A full stop, comma, bracket or ’s after a formula, or in the call of a function, that has come to begin a line.
+STRAY = """() => [...document.querySelectorAll(".bd-article :is(.katex, .sig-param)")].filter((formula) => {
+  const after = formula.nextSibling?.firstChild ?? formula.nextSibling, last = [...formula.getClientRects()].at(-1);
   if (after?.nodeType !== Node.TEXT_NODE || !/^(?:[.,;:!?)]|['’]s)/.test(after.data) || !last?.width) return false;
   const range = document.createRange();
   range.setStart(after, 0);
   range.setEnd(after, 1);
   return range.getBoundingClientRect().left < last.left;
-}).map((formula) => formula.querySelector("math").textContent)"""
+}).map((formula) => (formula.querySelector("math") ?? formula).textContent)"""
 # Rules that the page's scripts bring, and that the page would have needed before them, or that name a file: it would be
 # looked for beside the page.
 TOO_LATE = r"""async () => {
@@ -450,6 +450,39 @@ def test_a_box_that_does_not_scroll_has_no_stroke_at_its_edges(browser, site):
             strokes.add(len(np.unique(colours, axis=0)))
     page.close()
     assert strokes == {1}
+
+
+@pytest.mark.parametrize(
+    "name", ["exercises/orientation-from-sensors.html", "appendix/reference-going-further.html"]
+)
+def test_no_line_begins_with_a_full_stop_however_wide_the_page_is(browser, site, name):
+    """Behind a formula that is so long that it may be broken; in the call of a function."""
+    page = browser.new_page(viewport=NARROW)
+    page.goto(site + name)
+    page.wait_for_selector("html:not(.settling, .in-parts)")
+    for width in range(320, 500, 6):
+        page.set_viewport_size(NARROW | {"width": width})
+        assert page.evaluate(STRAY) == [], width
+    page.close()
+
+
+def test_a_name_in_the_contents_of_the_page_is_broken_behind_its_low_lines(browser, site):
+    page = browser.new_page(viewport=WIDE)
+    page.goto(f"{site}appendix/reference-going-further.html")
+    page.wait_for_selector("html:not(.settling, .in-parts)")
+    lines = """(names) => names.map((name) => {
+      const range = document.createRange(), texts = document.createTreeWalker(name, NodeFilter.SHOW_TEXT), tops = new Map();
+      while (texts.nextNode()) [...texts.currentNode.data].forEach((sign, k) => {
+        range.setStart(texts.currentNode, k), range.setEnd(texts.currentNode, k + 1);
+        const { top } = range.getBoundingClientRect();
+        tops.set(top, (tops.get(top) ?? "") + sign);
+      });
+      return [...tops.values()];
+    })"""
+    names = page.locator(".page-toc code").evaluate_all(lines)
+    page.close()
+    broken = [parts for parts in names if len(parts) > 1 and "_" in "".join(parts)]
+    assert broken and all(part.endswith("_") for parts in broken for part in parts[:-1])
 
 
 @pytest.mark.parametrize("name", PAGES)

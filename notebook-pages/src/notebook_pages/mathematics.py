@@ -106,12 +106,12 @@ def signs(tex):
 
 
 def keep_punctuation(app, doctree, docname):
-    """Let no line begin with the full stop, comma or ’s after a short formula, nor end with the
-    bracket before it.
+    """Let no line begin with the full stop, comma or ’s after a formula, nor end with the bracket
+    before it.
+
+    A short formula is not broken; of a longer one, which may be, they become the ends.
     """
     for formula in list(doctree.findall(nodes.math)):
-        if signs(formula.astext()) > SHORT:
-            continue
         parent = formula.parent
         place = parent.index(formula)
         before, after = (
@@ -122,13 +122,19 @@ def keep_punctuation(app, doctree, docname):
         )
         opening = before[-1:] if before.endswith(OPENING) else ""
         closing = next((mark for mark in CLOSING if after.startswith(mark)), "")
-        if opening or closing:
+        if not (opening or closing):
+            continue
+        tex = formula.astext()
+        if signs(tex) > SHORT:
+            ends = [rf"\text{{{mark}}}" if mark else "" for mark in (opening, closing)]
+            parent[place] = nodes.math("", tex.join(ends))
+        else:
             parent[place] = together = nodes.inline("", "", classes=["together"])
             together += [nodes.Text(opening), formula, nodes.Text(closing)]
-            if closing:
-                parent[place + 1] = nodes.Text(after[len(closing) :])
-            if opening:
-                parent[place - 1] = nodes.Text(before[:-1])
+        if closing:
+            parent[place + 1] = nodes.Text(after[len(closing) :])
+        if opening:
+            parent[place - 1] = nodes.Text(before[:-1])
 
 
 def visit_inline(translator, node):

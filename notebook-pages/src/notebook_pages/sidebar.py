@@ -1,5 +1,5 @@
 """The contents at the side, in parts that open and close: the part of this page stands open, or
-else the first.
+else the first. At the other side those of the page, with the names of functions.
 """
 
 from bs4 import BeautifulSoup
@@ -37,11 +37,20 @@ def fold(soup):
     return soup
 
 
+def divide_names(soup):
+    """Let a name that is too long for the line go on after one of its low lines."""
+    for name in soup.select("code .pre") if soup else ():
+        name.replace_with(BeautifulSoup(str(name).replace("_", "_<wbr>"), "html.parser"))
+    return soup
+
+
 def fold_contents(app, pagename, templatename, context, doctree):
     if generate := context.get("generate_toctree_html"):
         context["generate_toctree_html"] = lambda *given, **named: fold(
             BeautifulSoup(str(generate(*given, **named)), "html.parser")
         )
+    if list_sections := context.get("generate_toc_html"):
+        context["generate_toc_html"] = lambda: divide_names(list_sections())
 
 
 def setup(app):
