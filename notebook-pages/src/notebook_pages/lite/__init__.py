@@ -239,11 +239,13 @@ def bring_answers_first(target):
     before = page.read_text("utf8")
     start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
     script = f"../../{scripts.folder_name()}/notebook.js"
-    # Asked for by another name, a script that did not come is fetched once more; without it the
-    # notebook opens as it is kept here, and the page's answers come into it another time.
+    # Asked for by another name, a script that did not come is fetched once more; without it, or
+    # where nothing comes at all, the notebook opens as it is kept here, and the page's answers come
+    # into it another time. What it asks the reader may take as long as it likes.
     wait = (
-        f"await import('{script}').catch(() => import('{script}?again')).then((first) => "
-        "first.prepare())"
+        f"await Promise.race([import('{script}').catch(() => import('{script}?again')), "
+        "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('it does not come')))])"
+        ".then((first) => first.prepare())"
         ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: "
         "${error.message}`));\n"
         "        "
