@@ -1,9 +1,10 @@
-// What somebody has pasted, if it is nothing but the numbers of an orientation.
-const WRAPPING = /\b(?:np|numpy|sm|sympy|array|asarray|Matrix|matrix|Quaternion|quaternion|Rotation|R|q|dtype|float64)\b\.?|[=()[\]{},;|<>\s]/g;
-const NUMBER = /[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*°?/gi;
+// What somebody has pasted, if it is nothing but the numbers of an orientation, with what programs write around them: the
+// workbench reads these, too.
+const WRAPPING = /\b(?:np|numpy|sm|sympy|array|asarray|dtype|float64|geometry_msgs|msg|Matrix|Quaternion|Rotation|R|q|q?[wxyz0-3]|[ijk]|roll|pitch|yaw|deg(?:rees)?|rad(?:ians)?)\b\.?|[-+−=:'"()[\]{},;|<>\s]/gi;
+const NUMBER = /(?<![\w.])[-+−]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?\s*°?/gi;
+const KINDS = { 3: "triple", 4: "quaternion", 9: "matrix", 12: "matrix", 16: "matrix" }; // some with a place beside it
 
-export function pasted(text) {
-  const numbers = text.match(NUMBER) ?? [];
-  if (text.replace(NUMBER, "").replace(WRAPPING, "") !== "") return null;
-  return { 9: "matrix", 4: "quaternion", 3: "triple" }[numbers.length] ?? null;
-}
+const kind = (text) => (text.replace(NUMBER, "").replace(WRAPPING, "") === "" ? KINDS[text.match(NUMBER)?.length] : undefined);
+
+// A comma parts numbers, or else stands within them.
+export const pasted = (text) => kind(text) ?? kind(text.replace(/(\d),(?=\d)/g, "$1.")) ?? null;
