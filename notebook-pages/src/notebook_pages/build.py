@@ -64,7 +64,8 @@ def make_pages():
 
 def main():
     start = time.monotonic()
-    if unchanged.is_unchanged():
+    made_from = unchanged.of_sources()
+    if unchanged.is_unchanged(made_from):
         print(f"Nothing has changed since this was built: {HTML / 'index.html'}")
         return
     # With these comes Sphinx: where all is built, nobody waits for it.
@@ -89,7 +90,7 @@ def main():
     whole_book.withdraw_outdated()
     install.write_list(HTML)
     let_everybody_read(HTML)
-    unchanged.note()
+    unchanged.note(made_from)
     print(f"Built in {time.monotonic() - start:.0f} s: {HTML / 'index.html'}")
 
 

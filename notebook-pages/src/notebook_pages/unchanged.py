@@ -27,10 +27,12 @@ def sources(folder: Path) -> Iterator[Path]:
         yield from (Path(place, name) for name in files)
 
 
-def fingerprint_of_all() -> str:
-    """A text that changes with the sources, with what is installed, or when a file of the site has
-    gone.
-    """
+def fingerprint(said: list[str]) -> str:
+    return hashlib.sha256("\n".join(sorted(said)).encode("utf8", "surrogateescape")).hexdigest()
+
+
+def of_sources() -> str:
+    """A text that changes with the sources, and with what is installed."""
     roots = dict.fromkeys((Path.cwd(), REPOSITORY))
     files = [path for root in roots for path in sources(root)]
     files += [path for root in roots for name in SET_UP if (path := root / name).is_file()]
@@ -49,15 +51,23 @@ def fingerprint_of_all() -> str:
         sys.version,
         commit.stdout,
     ]  # the version of the package for students follows from the commit
-    said += [f"{path} {path.stat().st_size}" for path in HTML.rglob("*") if path.is_file()]
-    return hashlib.sha256("\n".join(sorted(said)).encode("utf8", "surrogateescape")).hexdigest()
+    return fingerprint(said)
 
 
-def is_unchanged() -> bool:
-    """Whether all is as it was when :func:`note` was called last."""
-    return STAMP.is_file() and STAMP.read_text("utf8") == fingerprint_of_all()
+def of_site() -> str:
+    """A text that changes when a file of the site has gone."""
+    return fingerprint(
+        [f"{path} {path.stat().st_size}" for path in HTML.rglob("*") if path.is_file()]
+    )
 
 
-def note() -> None:
-    """Write down what the site was made from, now that it is whole."""
-    STAMP.write_text(fingerprint_of_all(), "utf8")
+def is_unchanged(made_from: str) -> bool:
+    """Whether these sources, and the site, are those that :func:`note` was told of last."""
+    return STAMP.is_file() and STAMP.read_text("utf8") == made_from + of_site()
+
+
+def note(made_from: str) -> None:
+    """Write down what the site was made from, now that it is whole: the sources as they were when
+    the build began. What is saved meanwhile is for the next one.
+    """
+    STAMP.write_text(made_from + of_site(), "utf8")
