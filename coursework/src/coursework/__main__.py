@@ -44,7 +44,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "update": _update,
         **{name: run for room in rooms for name, run in room.COMMANDS.items()},
     }
-    runs[options.pop("command")](**options)
+    command = options.pop("command")
+    try:
+        runs[command](**options)
+    except OSError as error:  # what the system refused, and not where in the code that happened
+        where = f": {error.filename}" if error.filename else ""
+        sys.exit(f"coursework {command}: {error.strerror or error}{where}")
 
 
 def _update(archive: str, folder: str) -> None:
@@ -52,7 +57,7 @@ def _update(archive: str, folder: str) -> None:
 
     try:
         print(*update(archive, folder), sep="\n")
-    except (ArchiveRefused, OSError) as error:
+    except ArchiveRefused as error:
         sys.exit(f"coursework update: {error}")
 
 

@@ -288,11 +288,17 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
     """
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
+    (course / "solutions" / "strengths.json").unlink(missing_ok=True)
+    (course / "solutions" / "strengths.json").symlink_to("nowhere/strengths.json")
     monkeypatch.chdir(course)
+    monkeypatch.setattr(selftest, "BUDGET", 64)  # what is found within all of it is kept
     with pytest.raises(SystemExit, match="selftest.html cannot be written.*--page"):
         main(["selftest"])
     with pytest.raises(SystemExit, match="try.html cannot be written.*--page"):
         main(["try", "first-steps"])
+    for command in ("new", "wheels"):
+        with pytest.raises(SystemExit, match=f"^coursework {command}: Not a directory: .*build"):
+            main([command, "build/inside"])
     main(["selftest", "--page", str(tmp_path / "page.html"), "--budget", "64"])
     assert (
         "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()

@@ -645,20 +645,7 @@ def sample_class(
     print(f"{students} students in {made}")
 
 
-def _told(name: str, command: Callable[..., None]) -> Callable[..., None]:
-    """A command that says what the system refused, in place of where in the code that happened."""
-
-    def told(**options: object) -> None:
-        try:
-            command(**options)
-        except OSError as error:
-            where = f": {error.filename}" if error.filename else ""
-            sys.exit(f"coursework {name}: {error.strerror or error}{where}")
-
-    return told
-
-
-RUNS: dict[str, Callable[..., None]] = {
+COMMANDS: dict[str, Callable[..., None]] = {
     "grade": grade,
     "regrade": regrade,
     "review": review,
@@ -669,4 +656,3 @@ RUNS: dict[str, Callable[..., None]] = {
     "cluster": cluster,
     "sample-class": sample_class,
 }
-COMMANDS = {name: _told(name, run) for name, run in RUNS.items()}
