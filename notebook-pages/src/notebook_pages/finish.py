@@ -5,6 +5,7 @@
 - Each page names the policy by which it lives (Content-Security-Policy): what the browser may load,
   and from where.
 - Pages with code say what it weighs to start Python.
+- No line begins with blanks, outside of programs: they are two kilobytes of a chapter.
 """
 
 import base64
@@ -21,6 +22,8 @@ VERSIONED = re.compile(
     r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
 )
 INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
+#: Programs and what a reader writes in, which stay; and where a line begins with blanks.
+INDENTED = re.compile(r"(<(pre|textarea)\b.*?</\2>)|\n\s+", re.DOTALL)
 CHARSET = re.compile(
     r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?'
 )
@@ -92,6 +95,7 @@ def write(site):
             return f'{match[1]}{match[2]}?v={found}"' if found else match[0]
 
         text = VERSIONED.sub(with_version, before)
+        text = INDENTED.sub(lambda match: match[1] or "\n", text)
         text = re.sub(r'("bytes":)\d+', rf"\g<1>{lock['bytes']}", text)
         text = re.sub(r'("lock":")[^"]*', rf"\g<1>{listed.parent.name}/", text)
         text = re.sub(r'("variants":")[^"]*', rf"\g<1>{variants}", text)
