@@ -194,7 +194,8 @@ def test_students_have_the_command_that_updates_and_no_other(
     told = subprocess.run(
         [*command, "--help"], env=readers_variables, capture_output=True, text=True, check=True
     )
-    assert "{update}" in told.stdout and "from its repository" in told.stdout
+    assert re.findall(r"^    (\w\S*)", told.stdout, re.M) == ["update"]
+    assert "from its repository" in told.stdout
     archive = FOLDER / "exercises.zip"
     done = subprocess.run(
         [*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True

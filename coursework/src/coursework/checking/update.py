@@ -97,6 +97,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     files.pop(MANIFEST, None)
     before, archives = _handed_out(folder)
     now = {name: digest_of(name, data) for name, data in files.items()}
+    older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     this = _digest_of_all(now)
     if this in archives[:-1]:
         raise ArchiveRefused(
@@ -105,7 +106,6 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
         )
     if this not in archives:
         archives.append(this)
-    older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
     said = []
     for name, data in files.items():
