@@ -1,7 +1,7 @@
 """One table of ratios, all measured in this run: ``python -m benchmarks``.
 
 The other modules here are programs of their own, each described at its head; most measure the built
-book. Grading is measured in ``coursework/benchmarks``.
+book. Checking and grading are measured in ``coursework/benchmarks``.
 """
 
 import itertools
