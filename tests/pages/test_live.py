@@ -1422,7 +1422,6 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     assert page.outside() == [] and page.errors == []
 
 
-@pytest.mark.long
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
     """Where the server gives no shared memory, the first run loads the page again, by a service
     worker.

@@ -20,14 +20,16 @@
   const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
   const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
   const frame = () => new Promise(requestAnimationFrame);
+  let ran;
+  window.figuresRan = new Promise((end) => { ran = end; }); // for whoever asks them for something
   const begin = async () => {
     while (root.classList.contains("settling")) await frame();
     // The frame that shows the first view is drawn before anything is asked for that it does not need.
     await frame();
     await frame();
-    for (const { href } of document.querySelectorAll("link[rel='figure-script']")) {
-      document.head.append(Object.assign(document.createElement("script"), { src: href, async: false })); // in their order
-    }
+    ran(Promise.all([...document.querySelectorAll("link[rel='figure-script']")].map(({ href: src }) => new Promise((end) => {
+      document.head.append(Object.assign(document.createElement("script"), { src, async: false, onload: end, onerror: end })); // in their order
+    }))));
     if (!later.length) return;
     await Promise.race([faces(), aWhile()]);
     whenIdle(goOn, { timeout: 200 });

@@ -249,9 +249,11 @@
     edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
-    // What the reader has moved before stands there again; the scripts of the figures have run by now.
-    document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
-    ask(again.number);
+    // What the reader has moved before stands there again, before a cell asks for it.
+    window.figuresRan.then(() => {
+      document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
+      ask(again.number);
+    });
   }
   else if (store.isNewer) tools.say(globalThis.progress.whyNotKept());
   else if (store.keys().some(isOwn) || store.waits(`code of ${data.page}`)) ask();
