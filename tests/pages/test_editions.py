@@ -303,17 +303,9 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
         shutil.copytree(
             REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__")
         )
-    for name in (
-        "index.ipynb",
-        "_config.yml",
-        "_toc.yml",
-        "references.bib",
-        "CITATION.cff",
-        "course.toml",
-    ):
-        shutil.copy(REPOSITORY / name, tmp_path / name)
-    for name in ("pyproject.toml", "LICENSE", "LICENSE-CODE", "README.md"):
-        shutil.copy(REPOSITORY / name, tmp_path / name)
+    for path in REPOSITORY.iterdir():
+        if path.is_file():
+            shutil.copy(path, tmp_path / path.name)
     if (REPOSITORY / "_build" / "jupyter_cache").is_dir():
         shutil.copytree(
             REPOSITORY / "_build" / "jupyter_cache", tmp_path / "_build" / "jupyter_cache"
