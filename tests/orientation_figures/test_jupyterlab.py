@@ -200,7 +200,7 @@ def test_python_and_every_figure_move_together(browser, laboratory):
         assert kernel.value("heard[-1][:2]") == [kind, name]
         # Keys move Python, and nothing else of the notebook.
         count = kernel.value("len(heard)")
-        slider = cell.locator("input[type=range]:visible, .entries input")
+        slider = cell.locator("input:is([type=range], [type=number]):visible, .entries input")
         if slider.count():
             slider.first.focus()
             page.keyboard.press("ArrowDown")
