@@ -174,6 +174,7 @@ def make_zip(settings):
 def main():
     if not (HTML / FRONT).is_file():
         sys.exit("There is no book yet to take away: run `make book` first.")
+    made_from = unchanged.of_sources()
     settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
     withdraw_outdated()
     for path, make in ((PDF, make_pdf), (EPUB, make_epub), (ZIP, make_zip)):
@@ -189,7 +190,7 @@ def main():
     write_front_page()
     install.write_list(HTML)
     let_everybody_read(HTML)
-    unchanged.note()
+    unchanged.note(made_from)
 
 
 if __name__ == "__main__":

@@ -66,7 +66,7 @@ REACH = 0.5
 #: What is known of an answer is rounded to this share of what it may be off by; no finer than its
 #: doubles hold, and never to more than the last share: a seal must not follow from the last bits,
 #: which other processors have otherwise.
-ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-2")
+ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-1")
 #: Where rounding tips from one number to the next: no number of few digits or small denominator
 #: lies there.
 TIPS = MP.mpf("0.6371")
