@@ -36,11 +36,11 @@ def pytest_xdist_auto_num_workers(config):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Share the tests out among processes by file: the cells of a notebook share a kernel, and many
-    tests a fixture.
+    """Share the tests out among processes by file: the cells of a notebook share a
+    kernel, and many tests a fixture.
 
-    Those that stand apart come one by one, after the larger files, so that no process is left
-    without work.
+    Those that stand apart come one by one, after the larger files, so that
+    no process is left without work.
     """
 
     class ByFile(LoadFileScheduling):
@@ -51,8 +51,8 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_configure(config):
-    # What is installed must be what stands in pyproject.toml: entry points are read from the
-    # installed metadata.
+    # What is installed must be what stands in pyproject.toml: entry points are
+    # read from the installed metadata.
     if not any(
         entry.value == "orientation_course"
         for entry in metadata.entry_points(group="coursework.plugins")

@@ -1,11 +1,11 @@
 """Conversions of numbers, against SciPy and pytransform3d.
 
-Each library is given the same orientations as float arrays in the form that it documents,
-and must return the same ones in that form, which is checked before anything is timed. So matrices
-are transposed for SciPy and pytransform3d beforehand, outside of the time. SciPy always goes
-through a ``Rotation``; it has no axis with an angle, so a rotation vector is made of the two, and
-split again, within the time. At N = 1 one item is converted by one call, with the functions for one
-item. Where pytransform3d has no function for batches there is no time.
+Each library is given the same orientations as float arrays in the form that it documents, and must
+return the same ones in that form, which is checked before anything is timed. So matrices are
+transposed for SciPy and pytransform3d beforehand, outside of the time. SciPy always goes through a
+``Rotation``; it has no axis with an angle, so a rotation vector is made of the two, and split
+again, within the time. At N = 1 one item is converted by one call, with the functions for one item.
+Where pytransform3d has no function for batches there is no time.
 """
 
 import numpy as np

@@ -1,15 +1,15 @@
 """How soon and how smoothly the essay's gimbal can be dragged: ``python -m benchmarks.essay [page
 ...]``.
 
-The book must be built. The pages with the gimbal, the essay and the front page, are opened
-as on a telephone, by a browser that pretends to have a much slower processor, from a server that
+The book must be built. The pages with the gimbal, the essay and the front page, are opened as on
+a telephone, by a browser that pretends to have a much slower processor, from a server that
 compresses. The table gives, in seconds since the page was asked for, its largest paint, when the
 gimbal was there, and when the first drag had moved it; by how much the page shifted; and what a
 dragged picture costs the page's script: its event and its frame, the median and the slowest
 twentieth, by the clock and, beside it, in the main thread's own processor time, which does not
-count what else this machine does. Where the processor draws the graphics, as in headless browsers,
-pictures come only as fast as it draws them; that is given as pictures a second, and has nothing to
-do with the script.
+count what else this machine does. Where the processor draws the graphics, as in headless
+browsers, pictures come only as fast as it draws them; that is given as pictures a second, and
+has nothing to do with the script.
 """
 
 import os

@@ -10,8 +10,8 @@ machine that does other things as well, Lighthouse would count those against the
 recording is first corrected, and then judged. Only the speed index still depends on the time that
 passed: the busier the machine, the worse it is.
 
-Lighthouse takes a page as shown only when all of it has come. The last column but one says
-when the first view was seen in a browser on an equally slow line: the median of three.
+Lighthouse takes a page as shown only when all of it has come. The last column but one says when the
+first view was seen in a browser on an equally slow line: the median of three.
 """
 
 import bisect
@@ -95,8 +95,8 @@ def program():
 
 
 def by_processor_time(trace):
-    """Give each task of a trace the time for which it had the processor, and what happened in it
-    its share of that.
+    """Give each task of a trace the time for which it had the processor, and what
+    happened in it its share of that.
     """
     threads = defaultdict(list)
     for event in trace["traceEvents"]:

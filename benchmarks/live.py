@@ -5,8 +5,8 @@ is a fresh browser with an empty cache; warm is a new visit in the same browser.
 the press on the first SymPy cell's Run until its formula is typeset on the page. Beside it stands
 the time of the bare runtime in the same browser: Pyodide started in a worker, and SymPy imported.
 An assignment shows what each later cell costs beyond its own work: code, message, outcome and page
-together. JupyterLite's time runs from opening the notebook of an exercise until its first
-cell, which imports SymPy and ``coursework``, has run. What is downloaded is told as well.
+together. JupyterLite's time runs from opening the notebook of an exercise until its first cell,
+which imports SymPy and ``coursework``, has run. What is downloaded is told as well.
 """
 
 import gzip
@@ -80,8 +80,8 @@ WRITE = """
 
 
 def visit(context, address):
-    """Press Run on the first SymPy cell; return the page, the cell's number, the seconds and what
-    was asked for.
+    """Press Run on the first SymPy cell; return the page, the cell's number,
+    the seconds and what was asked for.
     """
     page = context.new_page()
     asked = []
@@ -95,8 +95,8 @@ def visit(context, address):
 
 
 def open_notebook(context, site):
-    """Open a notebook in JupyterLite and run its first cell; return the seconds and what was asked
-    for.
+    """Open a notebook in JupyterLite and run its first cell; return
+    the seconds and what was asked for.
     """
     page = context.new_page()
     asked = []

@@ -1,5 +1,5 @@
-"""What a drag of each moving figure costs, and what all of them weigh: ``python -m
-benchmarks.moving``.
+"""What a drag of each moving figure costs, and what all of them
+weigh: ``python -m benchmarks.moving``.
 
 Each figure stands alone on a page opened from disk. Its first slider is moved once for each
 picture, as a drag moves it. Scripts, style, layout and painting for one picture are counted, in the
@@ -97,8 +97,7 @@ def main():
         browser = playwright.chromium.launch(executable_path=executable, args=list(FLAGS))
         print(
             f"Chromium {browser.version}, {platform.machine()}; a processor {SLOWED} times as "
-            "slow; a picture has "
-            f"{FRAME} ms.\n"
+            f"slow; a picture has {FRAME} ms.\n"
         )
         print("| figure | main thread, ms for each picture of a drag | kB after gzip |")
         print("|---|---|---|")
@@ -110,8 +109,8 @@ def main():
         browser.close()
     print(f"| what they share | | {weights[0] / 1000:.1f} |")
     print(
-        f"| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of "
-        f"{HEAVIEST // 1000} at most |"
+        f"| all of our own JavaScript | | {sum(weights) / 1000:.1f}, of {HEAVIEST // 1000} at most "
+        "|"
     )
 
 

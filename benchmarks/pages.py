@@ -1,9 +1,9 @@
 """Weight of a page, and time until its mathematics is shown: ``python -m benchmarks.pages``.
 
-One chapter of the book as ``make book`` built it, against the same notebook built the stock Jupyter
-Book way: default settings, mathematics set in the reader's browser by MathJax 3. Stock pages fetch
-MathJax from somebody else's server; here it comes from npm and is served with all the rest, which
-favours the stock page: no distant server, no second connection. Whatever else a page
+One chapter of the book as ``make book`` built it, against the same notebook built the stock
+Jupyter Book way: default settings, mathematics set in the reader's browser by MathJax 3. Stock
+pages fetch MathJax from somebody else's server; here it comes from npm and is served with all the
+rest, which favours the stock page: no distant server, no second connection. Whatever else a page
 asks of other servers is refused and counted.
 
 Both pages are opened in turn, each time in a fresh browser with an empty cache. The weight is that
@@ -50,8 +50,8 @@ FORMULAS = "() => document.querySelectorAll('.katex, mjx-container').length"
 
 
 def stock_book():
-    """Build the chapter with nothing but what a new Jupyter Book has, and return the site's
-    folder.
+    """Build the chapter with nothing but what a new Jupyter Book
+    has, and return the site's folder.
     """
     if SCRATCH.exists():
         shutil.rmtree(SCRATCH)
@@ -101,8 +101,8 @@ def stock_book():
 
 
 def visit(playwright, executable, address, slowed=1):
-    """Open a page in a fresh browser, and return it when its mathematics is shown, with its
-    responses.
+    """Open a page in a fresh browser, and return it when its
+    mathematics is shown, with its responses.
     """
     browser = playwright.chromium.launch(executable_path=executable, args=[*FLAGS, ALONE])
     page = browser.new_context(viewport={"width": 1300, "height": 900}).new_page()

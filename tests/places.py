@@ -27,8 +27,8 @@ def html_pages():
 
 
 def every_day(cases, *chosen):
-    """Cases for a test of which those that are chosen run every day; the others, which are much
-    like them, are long.
+    """Cases for a test of which those that are chosen run every day; the others,
+    which are much like them, are long.
     """
     if lost := set(chosen) - set(cases):
         raise ValueError(f"not among the cases: {lost}")

@@ -1,5 +1,5 @@
-"""The commands of the book, without what they run: what is set up, how often, and side by side or
-not.
+"""The commands of the book, without what they run: what is set up,
+how often, and side by side or not.
 """
 
 import os
@@ -22,8 +22,8 @@ echo "end $*" >> "$LOG"
 
 @pytest.fixture
 def make(tmp_path):
-    """``make(*arguments)``: what the Makefile runs in a folder of its own, each program as a line
-    of text.
+    """``make(*arguments)``: what the Makefile runs in a folder of its
+    own, each program as a line of text.
     """
     for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)

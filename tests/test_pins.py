@@ -92,8 +92,8 @@ def test_nothing_is_renewed_by_a_newer_python(monkeypatch):
 
 
 def newer_pythons():
-    """The Pythons of this machine that are newer than this one, and that the README names; the
-    newest last.
+    """The Pythons of this machine that are newer than this one, and that
+    the README names; the newest last.
     """
     named = re.findall(
         r"3\.(\d+)", re.search(r"Python 3[^(]*", (REPOSITORY / "README.md").read_text("utf8"))[0]
@@ -129,8 +129,8 @@ def test_a_newer_python_needs_no_compiler(tmp_path):
 
 
 def test_every_command_that_is_named_exists():
-    """`make renew-pins` was named where requests for newer versions are switched off, and was not
-    there.
+    """`make renew-pins` was named where requests for newer versions are
+    switched off, and was not there.
     """
     targets = set(re.findall(r"^([a-z-]+):", (REPOSITORY / "Makefile").read_text("utf8"), re.M))
     names = [

@@ -1,5 +1,5 @@
-"""The rooms of the house: imports run one way, and a course meets coursework through its plug-in
-only.
+"""The rooms of the house: imports run one way, and a course meets
+coursework through its plug-in only.
 """
 
 import ast
@@ -27,8 +27,8 @@ MAY_IMPORT = {
     "orientation_course": ("coursework", "orientation"),
     "notebook_pages": (),
 }
-#: In grading, what follows a notebook on its way uses only what comes before it, and what stands
-#: beside the rooms.
+#: In grading, what follows a notebook on its way uses only what comes before it,
+#: and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
 BESIDE = ("locks", "record", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
@@ -73,11 +73,8 @@ def test_imports_run_one_way(room):
 
 @pytest.mark.parametrize("room", WAY)
 def test_grading_follows_a_notebook_on_its_way(room):
-    before = [
-        *WAY[: WAY.index(room)],
-        *BESIDE,
-        *(["grade"] if room == "export" else []),
-    ]  # Gradescope grades there
+    # Gradescope grades there.
+    before = [*WAY[: WAY.index(room)], *BESIDE, *(["grade"] if room == "export" else [])]
     allowed = [
         "coursework.checking",
         "coursework.authoring",
@@ -111,8 +108,8 @@ def test_every_package_is_registered():
 
 
 def test_checking_needs_no_course():
-    """Without any plug-in there are the kinds that no course owns, and a check that says where it
-    looked.
+    """Without any plug-in there are the kinds that no course owns, and a
+    check that says where it looked.
     """
     program = (
         "from importlib import metadata\nmetadata.entry_points = lambda **wanted: []\n"
@@ -177,8 +174,8 @@ def circles():
             for path in folder.rglob("*.py")
         }
         for path, parts in modules.items():
-            # The number of the package's version, which stands in the package itself, is no use of
-            # its modules.
+            # The number of the package's version, which stands in the package
+            # itself, is no use of its modules.
             names = {
                 name for name in imported(path, folder.parent) if not name.endswith(".__version__")
             }
@@ -213,8 +210,8 @@ def private(name):
 
 
 def test_no_private_name_crosses_a_room():
-    """A module that begins with an underscore is for its folder, a name that does so for its
-    module.
+    """A module that begins with an underscore is for its folder, a
+    name that does so for its module.
     """
     found = []
     for folder in (*PACKAGES.values(), PAGES):

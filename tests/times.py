@@ -1,7 +1,7 @@
 """What each part of the suite costs: processor time by file, so that growth is seen.
 
-Every run ends with its dearest parts. Processor time, unlike the clock's, changes little with what
-else runs.
+Every run ends with its dearest parts. Processor time, unlike the clock's,
+changes little with what else runs.
 """
 
 import resource

@@ -1,3 +1,3 @@
-"""What this book's authors run: to begin a chapter or a question, to check chapters, to compare
-with other machines.
+"""What this book's authors run: to begin a chapter or a question, to check
+chapters, to compare with other machines.
 """

@@ -42,8 +42,8 @@ from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
 from .released import digests_of
 
-#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a processor has not that
-#: is as old as that.
+#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a
+#: processor has not that is as old as that.
 KERNELS = {
     "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
@@ -69,8 +69,8 @@ BROWSERS = "WebAssembly"
 
 
 def numbers_here(only):
-    """What this process finds: the moves of cells, the failed doctests, and a digest of all that is
-    released.
+    """What this process finds: the moves of cells, the failed doctests, and
+    a digest of all that is released.
     """
     return {
         "kernel": kernel_in_use(),
@@ -81,8 +81,8 @@ def numbers_here(only):
 
 
 def kernel_in_use():
-    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty where NumPy has another
-    library.
+    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty
+    where NumPy has another library.
     """
     import numpy  # loads it
 
@@ -99,15 +99,14 @@ def notebooks(only):
 
 
 def moves_of_cells(only):
-    with ProcessPoolExecutor(
-        os.cpu_count()
-    ) as pool:  # each has a process of its own that forks kernels
+    # Each has a process of its own that forks kernels.
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
         return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
 
 
 def moves_in(path):
-    """Run a notebook; give each move as its place, its words, and which share it is of what is
-    allowed.
+    """Run a notebook; give each move as its place, its words, and
+    which share it is of what is allowed.
     """
     stored, now = (nbformat.read(path, as_version=4) for _ in range(2))
     NotebookClient(
@@ -163,8 +162,8 @@ def failed_doctests():
 
 
 def digests_of_releases(only):
-    """What is released of each notebook and sealed of each variant, before the slow hash that seals
-    it.
+    """What is released of each notebook and sealed of each variant,
+    before the slow hash that seals it.
     """
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         return {
@@ -221,8 +220,8 @@ json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
 
 
 def numbers_in_a_browser(only):
-    """The moves of those cells that need SymPy only, and the digests of the sources that need no
-    more.
+    """The moves of those cells that need SymPy only, and the digests
+    of the sources that need no more.
     """
     kinds, stored = kinds_of_cells(), {}
     for path in notebooks(only):
@@ -283,8 +282,8 @@ def moves_in_a_browser(place, cell, told):
 
 
 def machines():
-    """Each machine that this processor can be, with what is to be said to its libraries; and those
-    it cannot be.
+    """Each machine that this processor can be, with what is to be said to its
+    libraries; and those it cannot be.
     """
     import numpy._core._multiarray_umath as umath
 
@@ -331,8 +330,8 @@ def main():
     possible, impossible = machines()
     faults, first = [], None
     print(
-        "| machine | cells that moved | the largest move | doctests that fail | "
-        "released otherwise |"
+        "| machine | cells that moved | the largest move | doctests that fail | released otherwise "
+        "|"
     )
     print("| --- | ---: | --- | ---: | ---: |")
     for name, environment in [*possible.items(), (BROWSERS, None)]:

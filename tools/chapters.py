@@ -1,5 +1,5 @@
-"""What every chapter must have, and where one lacks it, by file, line and cell: ``python -m
-tools.chapters``.
+"""What every chapter must have, and where one lacks it, by file, line and
+cell: ``python -m tools.chapters``.
 """
 
 import re
@@ -109,8 +109,8 @@ def faults():
             yield f"{CONTENTS}:{last_exercise}: exercises/{name} is not in the table of contents"
         if f"{{doc}}`{name}`" not in index:
             yield (
-                f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} "
-                "are not listed"
+                f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} are not "
+                "listed"
             )
     for path in [*chapters, *SOLUTIONS, *sorted(SOURCES.glob("*.ipynb"))]:
         yield from (

@@ -1,7 +1,7 @@
 """Write down how the labels of drawings are set, so that a page draws them without Matplotlib.
 
-Run it with ``python -m tools.labels`` when a drawing has a new label: it runs the notebooks that
-draw.
+Run it with ``python -m tools.labels`` when a drawing has a new
+label: it runs the notebooks that draw.
 """
 
 import json

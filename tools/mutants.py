@@ -8,8 +8,8 @@ survives, and is printed: either a test is missing, or the change changes nothin
 second kind are listed in ``mutants.txt``, each with the reason, and are skipped; an entry there
 that no change matches any more is reported.
 
-    python -m tools.mutants orientation [MODULE...] [--jobs 2]
-    python -m tools.mutants coursework.checking [MODULE...]
+    python -m tools.mutants orientation [MODULE...] [--jobs 2] python -m
+    tools.mutants coursework.checking [MODULE...]
 
 Texts with spaces, or in pieces, are left as they are: no test asks for exact wording. So are the
 types that only a type checker reads; the case of the letters in a codec's name; the codec of a
@@ -60,8 +60,8 @@ PARTS = {
 }
 #: Changes that change nothing, with the reasons.
 KNOWN = Path(__file__).with_name("mutants.txt")
-#: Seconds of the processor, and how many times its own, that a test has before it counts as
-#: endless.
+#: Seconds of the processor, and how many times its own, that a
+#: test has before it counts as endless.
 PATIENCE, TIMES = 2.0, 10.0
 MEMORY = 4 << 30
 ORDERS = (cst.LessThan, cst.LessThanEqual, cst.GreaterThan, cst.GreaterThanEqual)
@@ -349,8 +349,8 @@ class Run:
 
 
 def put_in_place(mutant):
-    """Give a function the code of its mutant, wherever it has been imported to; False if there is
-    no such function."""
+    """Give a function the code of its mutant, wherever it has been imported to;
+    False if there is no such function."""
     module = sys.modules[mutant.module]
     names = dict(vars(module))
     flags = __future__.annotations.compiler_flag

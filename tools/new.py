@@ -20,8 +20,8 @@ NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
 
 class Example(NamedTuple):
-    """An answer of one kind: its variable, the statements that make it, what it is, and what the
-    author says of it.
+    """An answer of one kind: its variable, the statements that make it, what it
+    is, and what the author says of it.
     """
 
     variable: str
@@ -149,18 +149,24 @@ def chapter_cells(name, title):
     return [
         markdown(
             f"(chapter-{name})=\n# {title}",
-            ":::{admonition} Learning objectives\n:class: objectives\nAfter this "
-            "chapter you can\n\n"
-            f"- {TO_BE_WRITTEN}: what a reader can do, in a verb that can be checked.\n:::",
+            ":::{admonition} Learning objectives\n"
+            ":class: objectives\n"
+            "After this chapter you can\n"
+            "\n"
+            f"- {TO_BE_WRITTEN}: what a reader can do, in a verb that can be checked.\n"
+            ":::",
             f"{TO_BE_WRITTEN}: a question from practice, which the chapter answers.",
             f"## {TO_BE_WRITTEN}: the first idea",
             f"{{numref}}`figure-{name}` {TO_BE_WRITTEN}: a picture before the formula.",
         ),
         code(
-            "import numpy as np\n\nfrom orientation import simple_dcm\n"
-            "from orientation_figures.drawing import Drawing\n\n"
-            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does "
-            "not see it.')\n"
+            "import numpy as np\n"
+            "\n"
+            "from orientation import simple_dcm\n"
+            "from orientation_figures.drawing import Drawing\n"
+            "\n"
+            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does not see "
+            "it.')\n"
             "drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', np.radians(30)))",
             **figure,
         ),

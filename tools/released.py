@@ -1,5 +1,5 @@
-"""What the release of a notebook depends on, as short digests: it runs here and in the Python of
-browsers.
+"""What the release of a notebook depends on, as short digests: it runs
+here and in the Python of browsers.
 """
 
 import contextlib
@@ -12,8 +12,8 @@ from coursework.authoring.source import read_source
 
 
 def digests_of(path):
-    """What is sealed of a notebook with solutions, before the slow hash: a digest of each question
-    in each variant.
+    """What is sealed of a notebook with solutions, before the slow hash: a digest
+    of each question in each variant.
     """
     with contextlib.redirect_stdout(io.StringIO()):
         first = read_source(path)

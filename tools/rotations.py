@@ -1,5 +1,5 @@
-"""``python -m tools.rotations``: write down the scenes of the essay's stops, from the scripts that
-its page runs.
+"""``python -m tools.rotations``: write down the scenes of the essay's stops,
+from the scripts that its page runs.
 """
 
 import json

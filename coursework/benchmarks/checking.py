@@ -48,8 +48,8 @@ def main():
 
 
 def wrong_answers(count):
-    """The name, the sealed question and a wrong answer, of so many questions; those with variants
-    first.
+    """The name, the sealed question and a wrong answer, of so many
+    questions; those with variants first.
     """
     course, found = find_course(), []
     for path in notebooks_in(course.sources):

@@ -91,16 +91,15 @@ def main():
         )
         print(
             "| what | notebooks | by the clock | each | processor time each | times ours, by the "
-            "clock | times "
-            "ours, processor |"
+            "clock | times ours, processor |"
         )
         print("|---|---|---|---|---|---|---|")
         own = ours[1] / ours[0], ours[2] / ours[0]
         for what, count, clock, processor in rows:
             print(
                 f"| {what} | {count} | {clock:.1f} s | {1000 * clock / count:.0f} ms | "
-                f"{1000 * processor / count:.0f} ms "
-                f"| {clock / count / own[0]:.2g} | {processor / count / own[1]:.2g} |"
+                f"{1000 * processor / count:.0f} ms | {clock / count / own[0]:.2g} | "
+                f"{processor / count / own[1]:.2g} |"
             )
         print()
         for what, number in ("by the clock", 1), ("of processor time", 2):
@@ -113,28 +112,25 @@ def main():
             before = first[number + 2], prepared[number - 1]
             print(
                 f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one "
-                "notebook more "
-                f"({1000 * other:.0f} and {1000 * mine:.0f} ms), and {all_theirs / all_ours:.0f} "
-                "times as long for 40 "
-                f"from a cold start; with what is made before ({before[0]:.1f} and "
-                f"{before[1]:.1f} s), "
+                f"notebook more ({1000 * other:.0f} and {1000 * mine:.0f} ms), and "
+                f"{all_theirs / all_ours:.0f} times as long for 40 from a cold start; with what is "
+                f"made before ({before[0]:.1f} and {before[1]:.1f} s), "
                 f"{(all_theirs + before[0]) / (all_ours + before[1]):.0f} times."
             )
         each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
         print(
             f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor "
-            "time. Beyond it and "
-            "beyond the cells "
-            f"a notebook costs {1000 * each:.0f} ms of processor time."
+            "time. "
+            f"Beyond it and beyond the cells a notebook costs {1000 * each:.0f} ms of processor "
+            "time."
         )
         print("\n| one notebook more | by the clock | processor time |\n|---|---|---|")
         for what, (clock, processor) in margins.items():
             print(f"| {what} | {1000 * clock:.0f} ms | {1000 * processor:.0f} ms |")
         alone_clock, together, clustered = (clock for clock, _ in margins.values())
         print(
-            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the "
-            "cluster costs "
-            f"{1000 * (clustered - together):.0f} ms more for each notebook, by the clock."
+            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the cluster "
+            f"costs {1000 * (clustered - together):.0f} ms more for each notebook, by the clock."
         )
 
 
@@ -152,8 +148,8 @@ def _only(students, submissions, place):
 
 @contextlib.contextmanager
 def measured():
-    """The seconds by the clock and of processor time, of this process and all that it waited
-    for.
+    """The seconds by the clock and of processor time, of this
+    process and all that it waited for.
     """
 
     def used():
@@ -192,8 +188,8 @@ def of_grading(submissions, place, workers, scheduler=None):
 
 
 def of_cluster(submissions, place):
-    """Grading on a scheduler and two workers in processes of their own; their start and end count,
-    too.
+    """Grading on a scheduler and two workers in processes of their
+    own; their start and end count, too.
     """
     folder = Path(tempfile.mkdtemp(dir=place))
     file = folder / "scheduler.json"
@@ -215,8 +211,8 @@ def of_cluster(submissions, place):
 
 
 def of_cells(paths):
-    """Run the code of notebooks in copies of one process that has loaded everything, with a check
-    that does nothing.
+    """Run the code of notebooks in copies of one process that has loaded
+    everything, with a check that does nothing.
 
     Each copy is new, as caches that are warm from a neighbour's notebook would make the cells look
     cheaper than they are. What is counted is the time between the first cell and the last; making
@@ -272,8 +268,8 @@ def of_nbclient(paths):
 
 
 def of_nbgrader(paths, place):
-    """nbgrader's own commands: how many notebooks, the seconds of grading, and those of what is
-    made before.
+    """nbgrader's own commands: how many notebooks, the seconds of grading,
+    and those of what is made before.
     """
     course = place / "course"
     name = paths[0].name

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-# A plug-in is found by what its distribution says of itself, here and in the processes that tests
-# start.
+# A plug-in is found by what its distribution says of itself, here and
+# in the processes that tests start.
 PLUGIN = str(Path(__file__).parent / "plugin")
 sys.path.append(PLUGIN)
 os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), PLUGIN]))
@@ -32,8 +32,8 @@ def warm_parent():
 
 @pytest.fixture(scope="module")
 def libraries_are_loaded_once(warm_parent):
-    """Whoever grades a class loads SymPy for it, which takes a second; here one process has, for
-    those of all tests.
+    """Whoever grades a class loads SymPy for it, which takes a second; here one
+    process has, for those of all tests.
 
     Not for tests of the sandbox itself, or of how it is started.
     """

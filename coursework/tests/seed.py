@@ -1,5 +1,5 @@
-"""What tests draw by lot they draw from this: the same every day, and another lot where it is set,
-as at night.
+"""What tests draw by lot they draw from this: the same every day, and
+another lot where it is set, as at night.
 """
 
 import os

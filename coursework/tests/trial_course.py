@@ -41,14 +41,15 @@ def write_source(folder, *cells, name="trial"):
 
 SETUP = 'import sympy as sm\nfrom coursework import check\ntheta = sm.symbols("theta")'
 SOLUTION = (
-    "### BEGIN SOLUTION\nworking = sm.sin(theta)\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), "
-    "working], "
-    "[0, -working, sm.cos(theta)]])\n### END SOLUTION"
+    "### BEGIN SOLUTION\n"
+    "working = sm.sin(theta)\n"
+    "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), working], [0, -working, sm.cos(theta)]])\n"
+    "### END SOLUTION"
 )
 HIDDEN = (
-    "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='rotation matrix', frames=('A', 'N'), "
-    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, "
-    "which does not "
+    "### BEGIN HIDDEN TESTS\n"
+    "question('trial/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta', "
+    "turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
     "move.')\n"
     "### END HIDDEN TESTS"
 )

@@ -1,5 +1,5 @@
-"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how files fail
-PDF/UA-1 (ISO 14289-1).
+"""What a program can tell of a PDF by the Matterhorn Protocol 1.1, the list of how
+files fail PDF/UA-1 (ISO 14289-1).
 
 It reads the file with pikepdf alone, and shares nothing with what makes it. Each fault begins with
 the number of the condition. Left out are conditions on what the book has none of: forms, sound,
@@ -14,10 +14,8 @@ import pikepdf
 HEADINGS = {f"H{level}": level for level in range(1, 7)}
 STANDARD = set(HEADINGS) | set(
     "Document Part Art Sect Div BlockQuote Caption TOC TOCI Index NonStruct Private P H L LI Lbl "
-    "LBody Table TR TH TD "
-    "THead TBody TFoot Span Quote Note Reference BibEntry Code Link Annot Ruby RB RT RP Warichu WT "
-    "WP Figure Formula "
-    "Form".split()
+    "LBody Table TR TH TD THead TBody TFoot Span Quote Note Reference BibEntry Code Link Annot "
+    "Ruby RB RT RP Warichu WT WP Figure Formula Form".split()
 )
 #: What may stand in what, for lists and tables.
 WITHIN = {
@@ -131,8 +129,8 @@ def of_structure(pdf):
 
 
 def marks(pdf, stream, where, used):
-    """Faults of one stream, and of the forms that it draws; the numbers of its marked pieces are
-    added to ``used``.
+    """Faults of one stream, and of the forms that it draws; the numbers of its
+    marked pieces are added to ``used``.
     """
     stack, resources = [], stream.get("/Resources", {})
     for operands, operator in pikepdf.parse_content_stream(stream):
@@ -170,8 +168,8 @@ def marks(pdf, stream, where, used):
 
 
 def pieces(pdf):
-    """How often each marked piece is named by the structure: by the page or form that holds it, and
-    its number.
+    """How often each marked piece is named by the structure: by the page or
+    form that holds it, and its number.
     """
     found = Counter()
     for node, _, _ in elements(pdf):

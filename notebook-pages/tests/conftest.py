@@ -1,5 +1,5 @@
-"""What the tests of pages share, where they are run by themselves: a small book to be in, and a
-browser.
+"""What the tests of pages share, where they are run by themselves: a
+small book to be in, and a browser.
 """
 
 import os
@@ -35,11 +35,11 @@ def pytest_collection(session):
 
 @pytest.fixture(scope="session")
 def take_compiled_wheels():
-    """``take_compiled_wheels(folder)``: a book there finds the wheels that the book around it has
-    byte-compiled.
+    """``take_compiled_wheels(folder)``: a book there finds the wheels that the
+    book around it has byte-compiled.
 
-    That takes some twenty seconds for each book, and gives the same bytes. By themselves, these
-    tests compile them.
+    That takes some twenty seconds for each book, and gives the same bytes. By
+    themselves, these tests compile them.
     """
 
     def take(folder):

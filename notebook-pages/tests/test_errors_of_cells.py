@@ -1,5 +1,5 @@
-"""What an error in a cell shows: the cell's own lines, and of the packages that it calls nothing
-but what they say.
+"""What an error in a cell shows: the cell's own lines, and of the packages that
+it calls nothing but what they say.
 """
 
 import sys

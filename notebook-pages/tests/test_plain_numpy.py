@@ -1,5 +1,5 @@
-"""What stands in for NumPy on a page: the same answers as the real one, written the same, or none
-at all.
+"""What stands in for NumPy on a page: the same answers as the real
+one, written the same, or none at all.
 """
 
 import importlib.util
@@ -205,9 +205,8 @@ def test_views_share_their_entries_and_copies_do_not(line):
 
 def test_normal_numbers_are_numpys_own():
     ours, theirs = STAND_IN.random.default_rng(42), np.random.default_rng(42)
-    drawn = [
-        ours.normal(scale=0.5) for _ in range(30_000)
-    ]  # some from the tail, some from every layer
+    # Some from the tail, some from every layer.
+    drawn = [ours.normal(scale=0.5) for _ in range(30_000)]
     assert drawn == [float(value) for value in theirs.normal(scale=0.5, size=30_000)]
     assert max(map(abs, drawn)) / 0.5 > 3.66, "none from the tail"
 
@@ -255,8 +254,8 @@ def test_factors_multiply_to_the_matrix():
 
 
 def test_who_looks_for_numpy_finds_what_stands_in(monkeypatch):
-    """As a moving figure does, which then asks for Matplotlib too: without a word it would be an
-    error of Python's.
+    """As a moving figure does, which then asks for Matplotlib too: without a word
+    it would be an error of Python's.
     """
     for part in (STAND_IN, *plain_numpy.PARTS.values()):
         monkeypatch.setitem(sys.modules, part.__name__, part)

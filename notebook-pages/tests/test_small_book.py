@@ -1,5 +1,5 @@
-"""A book of three pages, built in one command: all that a page has, and nothing of any other
-book.
+"""A book of three pages, built in one command: all that a page
+has, and nothing of any other book.
 """
 
 import json

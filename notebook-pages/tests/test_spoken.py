@@ -11,8 +11,8 @@ SAID = {
     r"{}^T\mathbf{C}^B": "T bold C B",
     r"({}^A\mathbf{C}^N)^T": "open bracket A bold C N close bracket transpose",
     r"\mathbf{C}^T": "bold C transpose",
-    r"{}^B\mathbf{C}^T = {}^B\mathbf{C}^N\,{}^N\mathbf{C}^T": "B bold C T equals B bold C "
-    "N N bold C T",
+    r"{}^B\mathbf{C}^T = {}^B\mathbf{C}^N\,{}^N\mathbf{C}^T": "B bold C T equals B bold C N N bold "
+    "C T",
     r"\mathbf{P}^{-1}": "bold P inverse",
     r"{}^A\boldsymbol{\omega}^N": "A bold omega N",
     r"\hat{n}_x\cdot\hat{a}_y": "n hat x dot a hat y",

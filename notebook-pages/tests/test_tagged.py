@@ -1,5 +1,5 @@
-"""What a screen reader is told of a PDF: a small one, printed and put in order as the book is, and
-each way to fail.
+"""What a screen reader is told of a PDF: a small one, printed and put in order as
+the book is, and each way to fail.
 
 The whole book's PDF is held against the same list in test_whole_book.py.
 """
@@ -98,8 +98,8 @@ def test_all_that_is_there_to_read_is_read_once_and_in_order(printed):
 
 def test_a_picture_says_where_it_stands(book):
     left, bottom, right, top = map(float, find(book, "Figure").A.BBox)
-    # The square is 60 pixels wide, 45 points; its corner is 9 pixels from that of the drawing,
-    # which is indented.
+    # The square is 60 pixels wide, 45 points; its corner is 9 pixels from that
+    # of the drawing, which is indented.
     assert (right - left, top - bottom) == pytest.approx((45, 45), abs=0.5)
     assert 37.5 < left < 200 and 37.5 < bottom < 262
 

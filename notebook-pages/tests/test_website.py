@@ -99,8 +99,8 @@ anything else
 
 
 def build(folder, chapters, **changed):
-    """Build a book of ``chapters``, cells by file name, with a small book's settings but for some
-    that are ``changed``.
+    """Build a book of ``chapters``, cells by file name, with a small book's settings
+    but for some that are ``changed``.
 
     Returns the exit code and the words.
     """
@@ -244,8 +244,8 @@ def own_labels(cells, name):
 
 @pytest.fixture(scope="module")
 def faulty_book(tmp_path_factory, take_compiled_wheels):
-    """One book with a chapter for each fault: the exit code, and the warnings, each with its
-    lines.
+    """One book with a chapter for each fault: the exit code, and
+    the warnings, each with its lines.
     """
     names = {file_name(fault): cells for fault, (cells, _) in FAULTS.items()}
     chapters = {name: own_labels(cells, name) for name, cells in names.items()}

@@ -343,9 +343,9 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, a whole turn: there the rate of a rotation "
-            "vector is not "
-            f"defined. Keep it below half a turn, by taking a whole turn off, or use a quaternion"
+            f"vector{where} is {components}, a whole turn: there the rate of a rotation vector is "
+            "not defined. "
+            "Keep it below half a turn, by taking a whole turn off, or use a quaternion"
         )
 
     def formula(
@@ -361,8 +361,8 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
         half = length / 2
-        # The digits that the difference loses at small angles are multiplied by squares of small
-        # numbers.
+        # The digits that the difference loses at small angles are
+        # multiplied by squares of small numbers.
         factor = f.where(turning, (1 - half * f.cos(half) / f.sin(half)) / length / length, 0.0)
         a, b, c = y * r - z * q, z * p - x * r, x * q - y * p
         return (

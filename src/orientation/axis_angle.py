@@ -42,8 +42,9 @@ def _explain_zero(components: Sequence[float], where: str) -> None:
             f"compute with; divide it by its largest component"
         )
     raise ValueError(
-        f"axis{where} is {tuple(components)}: a zero vector points nowhere, so there is "
-        f"nothing to turn about. Was a difference of equal vectors taken?"
+        f"axis{where} is {tuple(components)}: a zero vector points nowhere, so there is nothing to "
+        "turn about. "
+        "Was a difference of equal vectors taken?"
     )
 
 

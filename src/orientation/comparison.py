@@ -44,8 +44,8 @@ Match: TypeAlias = Callable[[Sequence[complex], Sequence[complex]], bool]
 
 
 def _read(value: Values, name: str) -> Sequence[Column]:
-    """Components of a matrix or a quaternion: SymPy expressions, floats, or the columns of a
-    batch.
+    """Components of a matrix or a quaternion: SymPy expressions,
+    floats, or the columns of a batch.
     """
     if not is_symbolic(value):
         for item in ((3, 3), (4,)):
@@ -61,8 +61,8 @@ def _read(value: Values, name: str) -> Sequence[Column]:
         flat = array.reshape(*array.shape[: array.ndim - len(item)], math.prod(item))
         return [flat[..., k] for k in range(math.prod(item))]
     raise ValueError(
-        f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, "
-        "of shape (4,)"
+        f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape "
+        "(4,)"
     )
 
 
@@ -151,8 +151,8 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
 
 
 class Diagnosis(NamedTuple):
-    """What :func:`diagnose` found: whether the answer is right, and every mix-up that explains
-    it.
+    """What :func:`diagnose` found: whether the answer is right,
+    and every mix-up that explains it.
     """
 
     same: bool
@@ -256,8 +256,8 @@ def diagnose(
 
 
 def _fault(values: Iterable[Sequence[complex]], tolerance: float) -> str | None:
-    """What is wrong with numbers that should be an orientation at every point; None if nothing
-    is.
+    """What is wrong with numbers that should be an orientation at
+    every point; None if nothing is.
     """
     for entries in values:
         try:

@@ -88,8 +88,8 @@ def simple_dcm(axis: str, angle: Values) -> Array | Matrix:
     """
     if not isinstance(axis, str) or axis not in AXES:
         raise ValueError(
-            f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction "
-            f"use dcm_from_axis_angle, and for -y turn about y through the negative angle"
+            f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction use "
+            "dcm_from_axis_angle, and for -y turn about y through the negative angle"
         )
     first = AXES.index(axis)
     second, third = (first + 1) % 3, (first + 2) % 3
@@ -175,8 +175,8 @@ def dcm_excess(
     zy: Number,
     zz: Number,
 ) -> Number:
-    """Largest departure of the rows from being orthonormal, and of the third from the cross
-    product.
+    """Largest departure of the rows from being orthonormal, and of
+    the third from the cross product.
     """
     return f.largest(
         abs(xx * xx + xy * xy + xz * xz - 1),
@@ -189,8 +189,8 @@ def dcm_excess(
 
 
 def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None:
-    """Raise the error that says what is wrong with nine numbers, which are no direction cosine
-    matrix.
+    """Raise the error that says what is wrong with nine numbers,
+    which are no direction cosine matrix.
     """
     rows = {"x": entries[:3], "y": entries[3:6], "z": entries[6:]}
     names = list(rows)
@@ -206,9 +206,9 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     determinant = a * (e * m - g * k) - b * (d * m - g * h) + c * (d * k - e * h)
     if abs(worst) <= TOLERANCE and determinant < 0:
         raise ValueError(
-            f"{name}{where} is orthogonal but left-handed: its determinant is "
-            f"{determinant:.6g}, not +1. One row or column has the wrong sign, or two "
-            f"have changed places"
+            f"{name}{where} is orthogonal but left-handed: its determinant is {determinant:.6g}, "
+            "not +1. "
+            "One row or column has the wrong sign, or two have changed places"
         )
     if p == q:
         fault = f"row {p} has length {products[p, q] ** 0.5:.12g}, not 1"
@@ -293,11 +293,9 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
         where = f" (item {[int(k) for k in worst]})" if worst else ""
         raise ValueError(
             f"several direction cosine matrices are equally near to matrix{where}: its singular "
-            "values are "
-            f"{', '.join(f'{scale:z.6f}' for scale in scales[worst])} and its determinant is "
-            f"{numpy.linalg.det(array[worst]):z.6f}. It is a mirror image, or its rows "
-            "all lie "
-            f"along one line"
+            f"values are {', '.join(f'{scale:z.6f}' for scale in scales[worst])} and its "
+            f"determinant is {numpy.linalg.det(array[worst]):z.6f}. "
+            "It is a mirror image, or its rows all lie along one line"
         )
     return NearestDCM(dcm, numpy.linalg.norm(dcm - array, axis=(-2, -1)))
 

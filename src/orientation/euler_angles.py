@@ -203,8 +203,8 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
         # What remains once the first turn is undone: column j of the matrix of the last two turns.
         jj = c(j, j) * cosine + c(j, k) * sine
         if proper:
-            # The sine has the sign of the order, and the size alone keeps the middle angle in [0,
-            # pi].
+            # The sine has the sign of the order, and the size alone
+            # keeps the middle angle in [0, pi].
             theta = sign * f.atan2(abs(c(i, j) * sine - c(i, k) * cosine), c(i, i))
             phi = f.atan2(-c(k, j) * cosine - c(k, k) * sine, jj)
         else:

@@ -1,5 +1,5 @@
-"""A filter that follows an orientation: gyroscope in, directions in, orientation and its
-uncertainty out.
+"""A filter that follows an orientation: gyroscope in, directions in,
+orientation and its uncertainty out.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 class Innovation(NamedTuple):
-    r"""By how much a measured direction differs from what a filter expected, and by how much it
-    might.
+    r"""By how much a measured direction differs from what a filter
+    expected, and by how much it might.
 
     Attributes
     ----------
@@ -35,11 +35,11 @@ class Innovation(NamedTuple):
 
     @property
     def normalised_square(self) -> numpy.float64 | Array:
-        r"""The square :math:`(\tilde{y} - \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape
-        ``(...)``.
+        r"""The square :math:`(\tilde{y} -
+        \hat{y})^T\mathbf{S}^{-1}(\tilde{y} - \hat{y})`, shape ``(...)``.
 
-        A direction differs from another in two ways, so of a true claim this is 2 on average. No
-        truth is needed.
+        A direction differs from another in two ways, so of a true claim this is 2
+        on average. No truth is needed.
         """
         import numpy
 
@@ -59,8 +59,8 @@ class MultiplicativeKalmanFilter:
 
        {}^B\mathbf{C}^N = \exp\left(-[\boldsymbol\delta]_\times\right)\,{}^{\hat B}\mathbf{C}^N ,
 
-    followed by the error of the bias :math:`\mathbf{b}`. Everything works for one orientation and
-    for a batch.
+    followed by the error of the bias :math:`\mathbf{b}`. Everything works for
+    one orientation and for a batch.
 
     Parameters
     ----------

@@ -168,8 +168,8 @@ class Frames:
         return self._with(frame, reference, _MatrixTurn(own, r"\text{matrix}"))
 
     def orient_quaternion(self, frame: str, reference: str, quaternion: Values) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` by a unit quaternion, scalar
-        first.
+        """Return frames with ``frame`` turned in ``reference`` by a
+        unit quaternion, scalar first.
         """
         return self._with(
             frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}")
@@ -190,14 +190,14 @@ class Frames:
         if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
         raise ValueError(
-            f"{frame} and {reference} are already connected, by "
-            f"{self.path(frame, reference)}: a second "
-            f"path could contradict the first. To change an orientation, build the frames anew"
+            f"{frame} and {reference} are already connected, by {self.path(frame, reference)}: a "
+            "second path could contradict the first. "
+            "To change an orientation, build the frames anew"
         )
 
     def _walk(self, target: str, source: str) -> tuple[_Edge, ...] | None:
-        """Edges from the source to the target, each turned the way it is walked; None if there are
-        none.
+        """Edges from the source to the target, each turned the way it is
+        walked; None if there are none.
         """
         reached: dict[str, tuple[_Edge, ...]] = {source: ()}
         waiting = [source]
@@ -231,8 +231,8 @@ class Frames:
         )
 
     def dcm(self, target: str, source: str) -> Array | Matrix:
-        r"""Direction cosine matrix of ``target`` with respect to ``source``, over the path between
-        them.
+        r"""Direction cosine matrix of ``target`` with respect to
+        ``source``, over the path between them.
 
         ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy.
         Successive turns about one axis are joined to one turn before anything is multiplied.
@@ -257,8 +257,8 @@ class Frames:
         return zero
 
     def equation(self, target: str, source: str) -> Equation:
-        r"""Return :math:`{}^D\mathbf{C}^A` as the product over the path, each factor with its
-        turns.
+        r"""Return :math:`{}^D\mathbf{C}^A` as the product over the
+        path, each factor with its turns.
         """
         edges = self._edges_between(target, source)
         factors = [
@@ -268,8 +268,8 @@ class Frames:
         return Equation(f"{_symbol(target, source)} = " + r"\; ".join(factors or [r"\mathbf{I}"]))
 
     def reference_frames(self) -> dict[str, ReferenceFrame]:
-        """Return a dictionary of new SymPy ``ReferenceFrame`` objects, oriented like these
-        frames.
+        """Return a dictionary of new SymPy ``ReferenceFrame``
+        objects, oriented like these frames.
         """
         import sympy.physics.mechanics as me
 
@@ -324,8 +324,8 @@ def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> No
 
 
 def _own(value: Values, item: tuple[int, ...], name: str, symbolic: bool) -> Sequence[Angle]:
-    """The frames' own copy of the components that they were given: SymPy expressions, or columns of
-    a float array.
+    """The frames' own copy of the components that they were given: SymPy
+    expressions, or columns of a float array.
     """
     if symbolic:
         return symbol_components(value, item, name)
@@ -342,8 +342,8 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
     shapes = dict.fromkeys(turn.batch() for turn in turns if turn.batch())
     if shapes and any(turn.is_symbolic() for turn in turns):
         raise ValueError(
-            "this path holds symbols and a batch of numbers: put numbers in for the symbols "
-            "first, or one item for the batch"
+            "this path holds symbols and a batch of numbers: put numbers in for the symbols first, "
+            "or one item for the batch"
         )
     if shapes:
         import numpy

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from ._types import Array, Number, NumberFunctions, Scalars, Values
 
 METRICS = ("entries", "angle")
-#: The mean by angle is looked for from so many of the orientations, if they are spread too far to
-#: be sure of one.
+#: The mean by angle is looked for from so many of the orientations, if they are
+#: spread too far to be sure of one.
 STARTS = 100
-#: Steps towards a mean after which it is taken as it is; a few are enough unless orientations lie
-#: half a turn apart.
+#: Steps towards a mean after which it is taken as it is; a few are enough unless
+#: orientations lie half a turn apart.
 MOST_STEPS = 200
 
 
@@ -137,8 +137,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
         except ValueError:
             raise ValueError(
                 "these orientations have no unique mean by their entries: several direction cosine "
-                "matrices are "
-                "equally near to their average. They are spread too evenly"
+                "matrices are equally near to their average. "
+                "They are spread too evenly"
             ) from None
     return _mean_by_angle(dcms, shares, average)
 
@@ -184,8 +184,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
         begun = [(guess, angles)]
     except ValueError:
         pass  # no one place to begin
-    # From places between them too: from one that is half a turn from another, rounding would choose
-    # the way.
+    # From places between them too: from one that is half a turn from
+    # another, rounding would choose the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
     found = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
     least = min(cost for cost, _ in found)
@@ -194,8 +194,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     if apart > 1e-6:
         raise ValueError(
             "these orientations have no unique mean by angle: among those that are equally good, "
-            "two are "
-            f"{numpy.degrees(apart):.4g} degrees apart. They are spread too evenly"
+            f"two are {numpy.degrees(apart):.4g} degrees apart. "
+            "They are spread too evenly"
         )
     return best[0]
 

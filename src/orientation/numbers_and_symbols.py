@@ -142,8 +142,8 @@ def _all_at_a_glance(arguments: Sequence[Argument]) -> list[float] | None:
 
 
 def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
-    """The floats of one item in a row, where a look is enough to be sure that they are right; else
-    None.
+    """The floats of one item in a row, where a look is enough to be
+    sure that they are right; else None.
     """
     entries: Sequence[float] | None = None
     if type(value) is float or type(value) is int:
@@ -249,9 +249,8 @@ def _evaluate_item(
     result = formula(NUMBERS, *components)
     if not shape:
         return result[0]
-    result = [
-        entry + 0.0 for entry in result
-    ]  # adding zero turns -0 into 0, which would look like a wrong sign
+    # Adding zero turns -0 into 0, which would look like a wrong sign.
+    result = [entry + 0.0 for entry in result]
     from numpy import array
 
     return array(result).reshape(shape) if len(shape) > 1 else array(result)
@@ -306,9 +305,8 @@ def _evaluate_batch(
                     f" (item {index})",
                 )
         block = result[start : start + BLOCK]
-        rows = numpy.empty(
-            block.shape[::-1]
-        )  # written one after another, and turned around at once
+        # Written one after another, and turned around at once.
+        rows = numpy.empty(block.shape[::-1])
         for row, values in zip(rows, formula(functions, *components)):
             row[:] = values
         rows += 0.0
@@ -333,9 +331,9 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
         and all(getattr(entry, "ndim", 0) for entry in value)
     ):
         raise ValueError(
-            f"{name} is a sequence of {len(value)} arrays, which can be read in two ways: "
-            f"join separate components with numpy.stack(..., axis=-1), "
-            f"or a list of items with numpy.stack(...)"
+            f"{name} is a sequence of {len(value)} arrays, which can be read in two ways: join "
+            "separate components with numpy.stack(..., axis=-1), or a list of items with "
+            "numpy.stack(...)"
         )
     value = _unmasked(value)
     try:
@@ -359,11 +357,11 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
 
 
 def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
-    """Return a float, or nested tuples of floats of exactly this shape, or raise an error that
-    explains.
+    """Return a float, or nested tuples of floats of exactly this shape,
+    or raise an error that explains.
 
-    What :func:`number_array` takes, without batches, and without NumPy; True and False are no
-    numbers here.
+    What :func:`number_array` takes, without batches, and without NumPy;
+    True and False are no numbers here.
     """
     result = _tuples(value, name, value)
     found = _shape(result)
@@ -437,8 +435,8 @@ def _floats(value: object, name: str) -> object:
     except TypeError:
         raise SymbolsNotPossible(
             f"{name} holds {value}, and this conversion needs numbers: which branch it takes "
-            "depends "
-            f"on their sizes and signs. Put numbers in first, with .subs(...)"
+            "depends on their sizes and signs. "
+            "Put numbers in first, with .subs(...)"
         ) from None
 
 

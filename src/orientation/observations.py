@@ -78,9 +78,8 @@ def _triad(pair: Array, name: str) -> Array:
     if not numpy.all(sine > PARALLEL):
         raise ValueError(
             f"the two {name} directions are parallel or opposite (the sine of their angle is "
-            f"{sine.min():.1e}): "
-            "the turn around them cannot be found. Take a second direction well away "
-            "from the first."
+            f"{sine.min():.1e}): the turn around them cannot be found. "
+            "Take a second direction well away from the first."
         )
     across = across / sine
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
@@ -153,15 +152,14 @@ def dcm_from_directions(
 
     observed, reference, weights = _weighted(observed, reference, deviations)
     fitted, scales, gap = nearest_by_scales((weights * observed).swapaxes(-1, -2) @ reference)
-    # How far the least of the three turns would have to be wrong before another orientation fits as
-    # well.
+    # How far the least of the three turns would have to be wrong before
+    # another orientation fits as well.
     margin = gap / scales[..., 0]
     if not numpy.all(margin > PARALLEL):
         raise ValueError(
             f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie "
-            "along one line, or "
-            "observed and reference are mirror images of each other. Is one of the two frames "
-            "left-handed?"
+            "along one line, or observed and reference are mirror images of each other. "
+            "Is one of the two frames left-handed?"
         )
     return fitted
 

@@ -314,8 +314,9 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(
-            f"the orientations{where} are half a turn apart: both ways round are equally "
-            f"long, so there is no shorter one to follow. Go by way of a third orientation"
+            f"the orientations{where} are half a turn apart: both ways round are equally long, so "
+            "there is no shorter one to follow. "
+            "Go by way of a third orientation"
         )
 
     def formula(

@@ -1,5 +1,5 @@
-"""Expressions tried at random values of their symbols: numbers decide what algebra decides slowly,
-or not at all.
+"""Expressions tried at random values of their symbols: numbers decide what
+algebra decides slowly, or not at all.
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ def at_random_points(
 def at_random_points(
     *components: Sequence[Column],
 ) -> Iterator[tuple[Sequence[complex | Array], ...]]:
-    """For each random choice of the symbols' values, a tuple of the lists of components as
-    numbers.
+    """For each random choice of the symbols' values, a tuple of the
+    lists of components as numbers.
     """
     names = unknowns([entry for entries in components for entry in entries])
     for point in points_for(names):

@@ -1,5 +1,5 @@
-"""What this book's exercises bring to coursework: kinds of questions about orientation, and the
-sealed questions.
+"""What this book's exercises bring to coursework: kinds of questions about
+orientation, and the sealed questions.
 """
 
 from .format_3 import FORMAT_3

@@ -1,5 +1,5 @@
-"""What an attack tries for answers that are orientations: turns about the axes, in every order,
-axis and sign.
+"""What an attack tries for answers that are orientations: turns about the
+axes, in every order, axis and sign.
 """
 
 import itertools
@@ -108,8 +108,8 @@ def _times(first, second):
 
 
 def _turns_of(at, symbols, *constants):
-    """Turns through every symbol once, and through one of each list of constants, in every order,
-    axis and sign.
+    """Turns through every symbol once, and through one of each list of
+    constants, in every order, axis and sign.
     """
     count = len(symbols) + len(constants)
     orders = np.array(list(itertools.permutations(range(count)))[:120])
@@ -155,8 +155,8 @@ def _shifted(at, symbols):
 
 
 def _reframed(at, symbols):
-    """Turns with the frames named otherwise: one of the 24 quarter turns of a cube before and
-    after.
+    """Turns with the frames named otherwise: one of the 24 quarter
+    turns of a cube before and after.
     """
     inner, turned = _turns_of(at, symbols)
     cube = _cube()
@@ -236,8 +236,8 @@ def _of_turned(public, at):
 
 
 def _of_rates(public, at):
-    """Angular velocities of frames turned one after another, through the symbols whose rates are
-    among the question's.
+    """Angular velocities of frames turned one after another, through the symbols
+    whose rates are among the question's.
     """
     names = [name for name in at.angular if f"{name}'" in at.symbols]
     if not names:
@@ -310,8 +310,8 @@ SOME = (slice(1), slice(-1, None), slice(1, 2), slice(2), slice(-2, None), slice
 
 
 def _of_chains(public):
-    """Where the argument is a list of turns, each an axis and an angle: what some of them give, one
-    after another.
+    """Where the argument is a list of turns, each an axis and an angle: what some
+    of them give, one after another.
     """
     size = size_of(public)
     calls = [_turns_in(call) for call in calls_for(public)]
@@ -347,8 +347,8 @@ def _of_chains(public):
 
 
 def _turns_in(call):
-    """The axes, as unit vectors, and the angles of a call whose one argument is a list of them; or
-    ``None``.
+    """The axes, as unit vectors, and the angles of a call whose one
+    argument is a list of them; or ``None``.
     """
     if len(call) != 1 or not isinstance(call[0], list):
         return None

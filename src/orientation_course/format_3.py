@@ -1,5 +1,5 @@
-"""The order that mistakes have in sealed files of format 3, as the second edition made them. It is
-never changed.
+"""The order that mistakes have in sealed files of format 3, as the second
+edition made them. It is never changed.
 """
 
 TURNS = (0, 1, 2, 3, 4, 5)

@@ -1,5 +1,5 @@
-"""The kinds of questions that are about orientation: how an answer is read, and what makes two
-answers one.
+"""The kinds of questions that are about orientation: how an answer is
+read, and what makes two answers one.
 
 A quaternion and its negative, or the many Euler angles of one orientation, are first turned into
 something that there is one of.
@@ -37,8 +37,8 @@ def _dcm(question, value):
             raise Fault(
                 "frame",
                 f"These are the frames {listed(value[1])}; the question asks for the orientation "
-                f"of `{target}` with "
-                f"respect to `{source}`, and there is no path between two of these names.",
+                f"of `{target}` with respect to `{source}`, and there is no path between two of "
+                "these names.",
             )
         value = value[1][target][source]
     if value[0] == "frame":
@@ -49,8 +49,7 @@ def _dcm(question, value):
             raise Fault(
                 "frame",
                 f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}; "
-                "the question asks "
-                f"for the orientation of `{target}` with respect to `{source}`.",
+                f"the question asks for the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
     if value[0] == "list" and value[1] and all(row[0] == "vector" for row in value[1]):
@@ -59,8 +58,8 @@ def _dcm(question, value):
         if not all(source in row[1] for row in value[1]):
             raise Fault(
                 "frame",
-                f"These vectors are not connected with the frame `{source}` that the "
-                "question names.",
+                f"These vectors are not connected with the frame `{source}` that the question "
+                "names.",
             )
         value = ["list", [row[1][source] for row in value[1]]]
     return row_entries(value, 3, 3, "A matrix of 3 × 3")
@@ -135,15 +134,15 @@ def _dcm_fault(question, numbers):
         else:
             said = (
                 f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot "
-                "product is "
-                f"{short(_dot(rows[i], rows[j]))}{where}"
+                f"product is {short(_dot(rows[i], rows[j]))}{where}"
             )
         return Fault("not orthogonal", f"This is no direction cosine matrix: {said}.")
     if _determinant(rows) < 0:
         return Fault(
             "left-handed",
-            "The rows are perpendicular unit vectors, but their determinant is −1: they make "
-            "a left-handed triad. Has one row, or one sign too many, been turned round?",
+            "The rows are perpendicular unit vectors, but their determinant is −1: they make a "
+            "left-handed triad. "
+            "Has one row, or one sign too many, been turned round?",
         )
     return None
 
@@ -165,8 +164,10 @@ def _angles_fault(question, numbers):
     if abs(largest) > 2 * MP.pi + MP.mpf("0.01"):
         return Fault(
             "degrees",
-            f"One of the angles is {short(largest)}, which is more than a full turn of "
-            f"$2\\pi$ rad. Is it in degrees? Angles are in radians here.",
+            f"One of the angles is {short(largest)}, which is more than a full turn of $2\\pi$ "
+            "rad. "
+            "Is it in degrees? "
+            "Angles are in radians here.",
         )
     return None
 
@@ -197,17 +198,16 @@ def _determinant(rows):
 
 #: Where to begin with each kind of question.
 BEGIN = {
-    "direction cosine matrix": "Write down what one row is: the components of one unit vector "
-    "of the first "
-    "frame along those of the second. Draw the two triads for a small angle and read off one row.",
+    "direction cosine matrix": "Write down what one row is: the components of one unit vector of "
+    "the first frame along those of the second. "
+    "Draw the two triads for a small angle and read off one row.",
     "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into "
     "sine and cosine.",
-    "Euler angles": "Which turn comes first, and about which axis? Compare the matrix of the "
-    "three turns with "
-    "the one "
-    "that is given, and begin with its simplest entry.",
-    "axis and angle": "Which vector does the turn leave as it is? It is the axis; the trace "
-    "gives the angle.",
+    "Euler angles": "Which turn comes first, and about which axis? "
+    "Compare the matrix of the three turns with the one that is given, and begin "
+    "with its simplest entry.",
+    "axis and angle": "Which vector does the turn leave as it is? "
+    "It is the axis; the trace gives the angle.",
     "sequence": "Which axis do the first two frames share? And which one the next two?",
 }
 KINDS = {

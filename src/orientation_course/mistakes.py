@@ -1,5 +1,5 @@
-"""The typical mistakes with orientations: what each does to a right answer, and what the student is
-told.
+"""The typical mistakes with orientations: what each does to a right
+answer, and what the student is told.
 """
 
 import itertools
@@ -36,15 +36,14 @@ def _product(question):
 def _other_order(question):
     if question.kind_of_values == "quaternion":
         return (
-            "The quaternions are multiplied in the wrong order. The first turn goes on the left, "
-            "unlike with "
-            "matrices; in this order the same turns are about axes fixed in the first frame "
-            "(space fixed)."
+            "The quaternions are multiplied in the wrong order. "
+            "The first turn goes on the left, unlike with matrices; in this order the same turns "
+            "are about axes fixed in the first frame (space fixed)."
         )
     return (
-        "The factors are multiplied in the wrong order. The matrix of the first turn goes on the "
-        "right; in this "
-        "order the same turns are about axes fixed in the first frame (space fixed)."
+        "The factors are multiplied in the wrong order. "
+        "The matrix of the first turn goes on the right; in this order the same turns are about "
+        "axes fixed in the first frame (space fixed)."
     )
 
 
@@ -66,15 +65,15 @@ MESSAGES = {
         "The factors are multiplied in the wrong order, and the product is transposed."
     ),
     "other order, sign of one turn": lambda question, turn: (
-        f"{_product(question)} in the wrong order, and the angle of {_turn(turn)} has "
-        "the wrong sign."
+        f"{_product(question)} in the wrong order, and the angle of {_turn(turn)} has the wrong "
+        "sign."
     ),
     "angles interchanged": lambda question, first, second: (
         f"The angles of {_turn(first)} and of {_turn(second)} have been swapped."
     ),
     "another sequence": lambda question, sequence: (
-        f"These are body fixed turns in the sequence `{sequence}`. The question asks for "
-        "another one."
+        f"These are body fixed turns in the sequence `{sequence}`. "
+        "The question asks for another one."
     ),
     "another axis": lambda question, turn, axis: (
         f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about a "
@@ -152,16 +151,16 @@ DETAILS = {
     "axis": "xyz",
 }
 
-#: What the class did, by the note of a mistake or of a fault of the form: for the instructor's
-#: report.
+#: What the class did, by the note of a mistake or of a fault of the
+#: form: for the instructor's report.
 DEEDS = {
     "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
     "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
     "sign of every turn": "turned the wrong way round throughout",
     "other order": "multiplied in the other order (space fixed turns)",
     "other order, transposed": "multiplied in the other order and gave the transpose",
-    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn "
-    "the wrong sign",
+    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn the "
+    "wrong sign",
     "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
     "another sequence": "used the sequence {sequence}",
     "another axis": "made the {turn} turn about {axis}",
@@ -376,9 +375,8 @@ def of_axis_and_angle(question, answer, turns, turned):
     yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
     yield Mistake("half", {}, [axis, angle / 2])
     left = sympy.cos(angle) + 1
-    if (
-        not left.is_number or left > 1e-9
-    ):  # twice half a turn is none at all, and that is nobody's doubled angle
+    # Twice half a turn is none at all, and that is nobody's doubled angle.
+    if not left.is_number or left > 1e-9:
         yield Mistake("double", {}, [axis, 2 * angle])
 
 

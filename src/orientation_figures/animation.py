@@ -55,8 +55,8 @@ document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure
 
 
 def one_after_another(angles, progress):
-    """Return the angles as they are when ``progress`` of the turns are done, each turn after the
-    one before.
+    """Return the angles as they are when ``progress`` of the turns are
+    done, each turn after the one before.
 
     Examples
     --------
@@ -109,9 +109,8 @@ class Animation:
         for moment, shape in zip(self.moments, shapes):
             if shape != shapes[0]:
                 raise ValueError(
-                    f"the drawing at {moment:.2f} does not consist of the same marks as "
-                    "the one at 0; "
-                    "an arrow may point straight at the reader there: choose another view"
+                    f"the drawing at {moment:.2f} does not consist of the same marks as the one at "
+                    "0; an arrow may point straight at the reader there: choose another view"
                 )
 
     def texts(self):

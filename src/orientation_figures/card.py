@@ -1,5 +1,5 @@
-"""``python -m orientation_figures.card``: the convention card, a sheet with two sides, from the
-table.
+"""``python -m orientation_figures.card``: the convention card, a
+sheet with two sides, from the table.
 """
 
 import io
@@ -17,8 +17,8 @@ FILES = {
 }
 FILE = FILES["convention-card.pdf"]
 WIDTH, HEIGHT, MARGIN = 595, 842, 34  # points: A4
-# What stands in the lines: the parts of a quaternion, of a rotation vector and of a matrix, and the
-# gimbal's angles.
+# What stands in the lines: the parts of a quaternion, of a rotation vector and of
+# a matrix, and the gimbal's angles.
 QUATERNION = {"w": "q0", "x": "qi", "y": "qj", "z": "qk"}
 VECTOR = {"x": "rx", "y": "ry", "z": "rz"}
 ANGLES = {
@@ -38,8 +38,8 @@ BY_AXIS = {"az": "psi", "ax": "theta", "ay": "phi"}
 LONGEST = 82  # characters of a line of code that fit beside the name of its form
 ON_THE_FRONT = 12
 FRONT = (
-    "Orientation of Reference Frames. “As here” is the matrix whose rows are the unit "
-    "vectors of A in N;",
+    "Orientation of Reference Frames. "
+    "“As here” is the matrix whose rows are the unit vectors of A in N;",
     "a program with the transposed one gives its columns. Quaternions are Hamilton's, q0 the "
     "scalar; angles z-x-y.",
 )
@@ -67,8 +67,8 @@ QUESTIONS = (
 
 
 def rows():
-    """What the card says of each program: name, version that was run, convention, and a line of
-    code for each form.
+    """What the card says of each program: name, version that was run, convention,
+    and a line of code for each form.
     """
     found = []
     for program, facts in PROGRAMS.items():

@@ -115,8 +115,8 @@ class Drawing(Words):
     def __init__(self, alt, view=IN_SPACE, scale=120):
         if len(alt.strip()) < 40:
             raise ValueError(
-                f"alt has {len(alt.strip())} characters; a text that can stand for the "
-                "picture needs at least 40: name the arrows, the angles and what they show"
+                f"alt has {len(alt.strip())} characters; a text that can stand for the picture "
+                "needs at least 40: name the arrows, the angles and what they show"
             )
         self.view = np.asarray(view, dtype=float)
         if self.view.shape != (3, 3):
@@ -126,8 +126,8 @@ class Drawing(Words):
         self.alt, self.scale, self.marks = alt.strip(), scale, []
 
     def on_sheet(self, points):
-        """Return where points of shape ``(..., 3)`` stand: pixels right and down from the
-        origin.
+        """Return where points of shape ``(..., 3)`` stand: pixels
+        right and down from the origin.
         """
         return self.scale * (np.asarray(points, dtype=float) @ self.view.T)[..., :2] * (1, -1)
 
@@ -170,8 +170,8 @@ class Drawing(Words):
         size=20,
         kind="",
     ):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
-        the tip.
+        """Draw an arrow from ``start`` to ``end``, with a label beyond
+        its tip or ``shift`` from the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
@@ -219,8 +219,8 @@ class Drawing(Words):
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 
     def svg(self, motions=None, bounds=None, decimals=2):
-        """Return the SVG element; an ``Animation`` gives what goes inside each mark, and its own
-        bounds.
+        """Return the SVG element; an ``Animation`` gives what goes
+        inside each mark, and its own bounds.
         """
         bounds = self.bounds() if bounds is None else bounds
         left, top, right, bottom = np.rint(np.add(bounds, (-8.01, -8.01, 8.01, 8.01))).astype(int)
@@ -233,19 +233,19 @@ class Drawing(Words):
         glyphs = "".join(
             f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items()
         )
-        # Ids come from the content: two figures on one page cannot clash, and no run differs from
-        # the last.
+        # Ids come from the content: two figures on one page cannot clash,
+        # and no run differs from the last.
         name = "g" + hashlib.sha256((self.alt + glyphs + marks).encode()).hexdigest()[:10]
         inside = (f"<defs>{glyphs}</defs>" if glyphs else "") + marks
         return (
             f'<svg viewBox="{left} {top} {right - left} {bottom - top}" '
-            f'style="max-width:{right - left}px" '
-            f'role="img" aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
+            f'style="max-width:{right - left}px" role="img" '
+            f'aria-label="{escape(self.alt)}">{inside.replace("@", name + "-")}</svg>'
         )
 
     def picture(self):
-        """Return the drawing as an SVG file of its own, on white paper, which needs no style of any
-        page.
+        """Return the drawing as an SVG file of its own, on white paper,
+        which needs no style of any page.
         """
         inner = self.svg()
         left, top, width, height = inner.partition('viewBox="')[2].partition('"')[0].split()
@@ -260,8 +260,8 @@ class Drawing(Words):
 
 
 def collapsed(mark):
-    """Return whether a mark is a path that has shrunk to one point, as the far sides of bodies
-    do.
+    """Return whether a mark is a path that has shrunk to one
+    point, as the far sides of bodies do.
     """
     return isinstance(mark[1], str) and np.ptp(mark[2], axis=0).max() < 1e-6
 
@@ -285,8 +285,8 @@ def _element(mark, motion, outlines, decimals):
 
 @cache
 def typeset(text):
-    """Set ``text`` in Computer Modern, 1000 units to the em, right and down from the middle of a
-    small letter.
+    """Set ``text`` in Computer Modern, 1000 units to the em, right and down
+    from the middle of a small letter.
 
     Returns a list of (outline as path data, place, size), and the two corners of the ink. Where
     there is no Matplotlib, as on a page that has not fetched it, the labels of the book's own
@@ -332,8 +332,8 @@ def _kept_labels():
 
 
 def labels_to_keep(texts):
-    """Return what ``labels.json`` holds: the outlines of glyphs, and for each text where they stand
-    and its ink.
+    """Return what ``labels.json`` holds: the outlines of glyphs, and for each
+    text where they stand and its ink.
     """
     outlines, labels = {}, {}
     for text in sorted(texts):

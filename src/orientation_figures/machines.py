@@ -1,5 +1,5 @@
-"""The machines of the cases from practice: an aircraft, a robot's wrist, a satellite, a phone and a
-leg.
+"""The machines of the cases from practice: an aircraft, a robot's
+wrist, a satellite, a phone and a leg.
 """
 
 import numpy as np
@@ -16,16 +16,15 @@ NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
 
 
 def aircraft_drawing(bank=np.radians(30)):
-    """Return a drawing of an airliner in a turn to the right, banked by ``bank`` radians, seen from
-    ahead.
+    """Return a drawing of an airliner in a turn to the right, banked by
+    ``bank`` radians, seen from ahead.
     """
     drawing = Drawing(
         "An airliner seen from ahead and a little above, banked to the right by "
         f"{np.degrees(bank):.0f} degrees. "
         "Its frame D has d x out of the nose, d y along the right wing, which points down and to "
-        "the left of the "
-        "picture, and d z through the floor. Beside it stands the frame N of the ground: x north, "
-        "y east, z down.",
+        "the left of the picture, and d z through the floor. "
+        "Beside it stands the frame N of the ground: x north, y east, z down.",
         view_from(np.radians(-38), np.radians(16)),
         92,
     )
@@ -55,16 +54,16 @@ def aircraft_drawing(bank=np.radians(30)):
 
 
 def wrist_drawing(angles=(0.3, 0.9, 0.4)):
-    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body fixed z-y-z, from
-    forearm to gripper.
+    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body
+    fixed z-y-z, from forearm to gripper.
     """
     drawing = Drawing(
-        "A robot's wrist. The forearm, frame F, comes from below; f z points along it. On its end "
-        "a first joint turns "
-        "about f z through psi, a second one bends the wrist through theta about an axis across, "
-        "and a third turns the "
-        "gripper about its own length through phi. The gripper, frame G, has two fingers; g z "
-        "points out between them. "
+        "A robot's wrist. "
+        "The forearm, frame F, comes from below; f z points along it. "
+        "On its end a first joint turns about f z through psi, a second one bends the wrist "
+        "through theta about an axis across, and a third turns the gripper about its own length "
+        "through phi. "
+        "The gripper, frame G, has two fingers; g z points out between them. "
         "The three axes meet in one point.",
         view_from(np.radians(-48), np.radians(20)),
         104,
@@ -101,15 +100,15 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
 
 
 def star_cameras_drawing(apart=np.radians(102)):
-    """Return a drawing of a satellite whose two star cameras look ``apart`` (radians) from each
-    other.
+    """Return a drawing of a satellite whose two star cameras look
+    ``apart`` (radians) from each other.
     """
     drawing = Drawing(
-        "A satellite with two wings of solar cells and two star cameras on its body. Each camera "
-        "is a short tube "
-        "with a cone of view before it. The camera S looks along s z to the upper right, with s x "
-        "and s y across its "
-        "view; the camera T looks along t z to the upper left. Small dots are stars.",
+        "A satellite with two wings of solar cells and two star cameras on its body. "
+        "Each camera is a short tube with a cone of view before it. "
+        "The camera S looks along s z to the upper right, with s x and s y across its view; the "
+        "camera T looks along t z to the upper left. "
+        "Small dots are stars.",
         view_from(np.radians(-90), np.radians(14)),
         88,
     )
@@ -145,18 +144,18 @@ def star_cameras_drawing(apart=np.radians(102)):
 
 
 def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
-    """Return a drawing of a phone, turned by ``angles`` (radians, z-x-y), with what its two sensors
-    feel.
+    """Return a drawing of a phone, turned by ``angles`` (radians,
+    z-x-y), with what its two sensors feel.
     """
     drawing = Drawing(
-        "A phone lies inclined above the ground. Its frame P: p x to the right across the screen, "
-        "p y to its top edge, "
-        "p z out of the screen. From its middle an arrow points straight up; it is what the "
-        "accelerometer feels. "
+        "A phone lies inclined above the ground. "
+        "Its frame P: p x to the right across the screen, p y to its top edge, p z out of the "
+        "screen. "
+        "From its middle an arrow points straight up; it is what the accelerometer feels. "
         f"Another one points north and {np.degrees(dip):.0f} degrees into the ground; it is the "
-        "magnetic field. Up "
-        "crossed with the field is level and points west. Beside the phone stands the frame E: x "
-        "north, y west, z up.",
+        "magnetic field. "
+        "Up crossed with the field is level and points west. "
+        "Beside the phone stands the frame E: x north, y west, z up.",
         view_from(np.radians(-60), np.radians(22)),
         118,
     )
@@ -176,15 +175,15 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
 
 
 def leg_drawing(bend=np.radians(35)):
-    """Return a drawing of a leg, its knee bent by ``bend`` radians, with four markers on thigh and
-    shank.
+    """Return a drawing of a leg, its knee bent by ``bend`` radians, with
+    four markers on thigh and shank.
     """
     drawing = Drawing(
-        "A leg seen from its right side, the knee bent. On the thigh and on the shank sits a plate "
-        "with four "
-        "reflecting balls. The thigh's frame A and the shank's frame B are drawn beside the knee: "
-        "x forwards, y up "
-        "along the bone, z to the right, towards the reader. The angle between the two is theta.",
+        "A leg seen from its right side, the knee bent. "
+        "On the thigh and on the shank sits a plate with four reflecting balls. "
+        "The thigh's frame A and the shank's frame B are drawn beside the knee: x forwards, y up "
+        "along the bone, z to the right, towards the reader. "
+        "The angle between the two is theta.",
         view_from(np.radians(-74), np.radians(10)),
         98,
     )
@@ -230,8 +229,8 @@ def leg_drawing(bend=np.radians(35)):
 
 
 def slew_drawing(before, after):
-    """Return a drawing of a satellite whose telescope turns from ``before`` to ``after``, both
-    ``(3, 3)`` along N.
+    """Return a drawing of a satellite whose telescope turns from ``before`` to
+    ``after``, both ``(3, 3)`` along N.
     """
     before, after = np.asarray(before, dtype=float), np.asarray(after, dtype=float)
     turned = after @ before.T
@@ -245,9 +244,8 @@ def slew_drawing(before, after):
         "A satellite, a box with a telescope, in a sphere of the sky, before the slew in grey and "
         "after it in blue. "
         f"One turn through {degrees[0]:.0f} degrees leads the telescope's line of sight along an "
-        "arc from the one "
-        f"star to the other. Three single turns, {degrees[1]:.0f} degrees about z, "
-        f"{degrees[2]:.0f} about y and "
+        "arc from the one star to the other. "
+        f"Three single turns, {degrees[1]:.0f} degrees about z, {degrees[2]:.0f} about y and "
         f"{degrees[3]:.0f} about x, lead it along two arcs that meet in a corner; the last leaves "
         "it in its place.",
         view_from(np.radians(32), np.radians(24)),
@@ -269,18 +267,18 @@ def slew_drawing(before, after):
 
 
 def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
-    """Return a drawing of the Earth with its own frame and, at one place, the two frames of the
-    ground there.
+    """Return a drawing of the Earth with its own frame and, at one place,
+    the two frames of the ground there.
     """
     drawing = Drawing(
-        "The Earth as a sphere with its equator and one meridian. From its middle: e z to the "
-        "north pole, e x to where "
-        "the meridian of Greenwich meets the equator, e y to the east of it. At a place "
-        f"{np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} degrees north "
-        "two triads stand on "
-        "the ground. G: g x east, g y north, g z straight up. N: n x north, n y east, n z down, "
-        "into the Earth. The "
-        "angle lambda runs along the equator from e x to the meridian of the place, phi up the "
+        "The Earth as a sphere with its equator and one meridian. "
+        "From its middle: e z to the north pole, e x to where the meridian of Greenwich meets the "
+        "equator, e y to the east of it. "
+        f"At a place {np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} "
+        "degrees north two triads stand on the ground. "
+        "G: g x east, g y north, g z straight up. "
+        "N: n x north, n y east, n z down, into the Earth. "
+        "The angle lambda runs along the equator from e x to the meridian of the place, phi up the "
         "meridian from there.",
         view_from(np.radians(48), np.radians(22)),
         150,

@@ -23,8 +23,8 @@ def draw_eye(drawing, point, size=40, colour="ink"):
 
 
 def draw_book(drawing, dcm, origin=(0, 0, 0), colour="A", size=(0.8, 1.1, 0.22)):
-    """Draw a closed book: the rows of ``dcm`` point across the cover, up the cover, and out of the
-    cover.
+    """Draw a closed book: the rows of ``dcm`` point across the cover, up
+    the cover, and out of the cover.
     """
     rows, (width, height, depth) = np.asarray(dcm, dtype=float), size
     drawing.box(rows, size, origin, colour)
@@ -65,24 +65,21 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
     old, new = first.lower(), second.lower()
     alt = (
         f"Looking down the {axis} direction that the frames {first} and {second} share; {old} "
-        f"{shared} and "
-        f"{new} {shared} point "
+        f"{shared} and {new} {shared} point "
         + (
             "away from the reader, a circle with a cross. "
             if away
             else "at the reader, a circle with a dot. "
         )
-        + f"{old} {right} points to the right and {old} {up} up. {new} {right} is turned "
-        "counterclockwise from "
-        f"{old} {right} through {name}, and {new} {up} from {old} {up} through the same angle."
+        + f"{old} {right} points to the right and {old} {up} up. "
+        f"{new} {right} is turned counterclockwise from {old} {right} through {name}, and {new} "
+        f"{up} from {old} {up} through the same angle."
     )
     if components:
         alt += (
             f" Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine "
-            f"{name} along "
-            f"{old} {right} and sine {name} along {old} {up}; the tip of {new} {up} at minus sine "
-            f"{name} along "
-            f"{old} {right} and cosine {name} along {old} {up}."
+            f"{name} along {old} {right} and sine {name} along {old} {up}; the tip of {new} {up} "
+            f"at minus sine {name} along {old} {right} and cosine {name} along {old} {up}."
         )
     drawing = Drawing(alt, view, scale)
     symbol = r"\varphi" if name == "phi" else "\\" + name
@@ -120,26 +117,23 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
 
 TURNING_FRAMES_ALT = (
     "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed arrows, "
-    "C green with "
-    "dash-dotted arrows, D blue with dotted arrows. At first they are aligned, x towards the "
-    "reader and to the "
-    "left, y to the right, z up. First B, C and D turn together through 50 degrees; the arrows "
-    "marked z of B, C "
-    "and D stay where they are. Then C and D turn together through 45 degrees; the arrows marked x "
-    "of C and D "
-    "stay where they are. Last, D turns alone through 40 degrees; the arrow marked z of D stays "
-    "where it is, no "
-    "longer upright. Seen from the tip of the arrow that stays, each turn is counterclockwise. The "
-    "still picture "
-    "is the end: with each frame a thin grey triad shows the frame before it in the order A, B, C, "
-    "D, and curved "
-    "arrows lead from the grey arrows to the turned ones."
+    "C green with dash-dotted arrows, D blue with dotted arrows. "
+    "At first they are aligned, x towards the reader and to the left, y to the right, z up. "
+    "First B, C and D turn together through 50 degrees; the arrows marked z of B, C and D stay "
+    "where they are. "
+    "Then C and D turn together through 45 degrees; the arrows marked x of C and D stay where they "
+    "are. "
+    "Last, D turns alone through 40 degrees; the arrow marked z of D stays where it is, no longer "
+    "upright. "
+    "Seen from the tip of the arrow that stays, each turn is counterclockwise. "
+    "The still picture is the end: with each frame a thin grey triad shows the frame before it in "
+    "the order A, B, C, D, and curved arrows lead from the grey arrows to the turned ones."
 )
 
 
 def turning_frames_animation():
-    """Return the animation of four frames that turn one after another, for the exercise on Euler
-    angles.
+    """Return the animation of four frames that turn one after another,
+    for the exercise on Euler angles.
 
     The turns are kept here, so that the page of the exercise does not tell its answer.
 

@@ -44,8 +44,8 @@ SET = 411
 
 
 class Plot:
-    """One or more Matplotlib axes, shown as inline SVG in the colours of the light or the dark
-    page.
+    """One or more Matplotlib axes, shown as inline SVG in the
+    colours of the light or the dark page.
 
     Draw inside ``with Plot(...) as plot:``, where Matplotlib has the book's settings.
 
@@ -76,13 +76,13 @@ class Plot:
 
         if len(alt.strip()) < 40:
             raise ValueError(
-                f"alt has {len(alt.strip())} characters; a text that can stand for the "
-                "picture needs at least 40: name the axes, the curves and what they show"
+                f"alt has {len(alt.strip())} characters; a text that can stand for the picture "
+                "needs at least 40: name the axes, the curves and what they show"
             )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):
-            # Set smaller than it is shown, so that its words can still be read where a telephone
-            # shrinks the whole.
+            # Set smaller than it is shown, so that its words can still be read where
+            # a telephone shrinks the whole.
             size = [round(min(0.8, SET / width) * length) / 72 for length in (width, height)]
             self.figure = Figure(figsize=size, layout="constrained")
             self.axes = self.figure.subplots(rows, sharex=True)
@@ -128,8 +128,8 @@ def _lighten(root, name):
     to, groups without a meaning, invisible frames and the document's own style go. The ids that
     stay begin with `name`.
     """
-    # Matplotlib's style is for every element of a page: it would take the round ends of lines from
-    # all drawings.
+    # Matplotlib's style is for every element of a page: it would take the round
+    # ends of lines from all drawings.
     for child in list(root):
         if child.tag == f"{SVG}metadata" or child.find(f"{SVG}style") is not None:
             root.remove(child)
@@ -146,13 +146,8 @@ def _lighten(root, name):
         for key, value in element.attrib.items():
             if key == "d":
                 value = _short_path(value)
-            elif key in (
-                "x",
-                "y",
-                "width",
-                "height",
-                "transform",
-            ):  # scales and turns keep all of their digits
+            elif key in ("x", "y", "width", "height", "transform"):
+                # Scales and turns keep all of their digits.
                 value = re.sub(r"^-?[\d.]+$|translate\([^)]*\)", _shorter, value)
             elif key == "style":
                 value = re.sub(r"([:;]) ", r"\1", value)
@@ -163,8 +158,8 @@ def _lighten(root, name):
 
 
 def _drop_shells(element):
-    """Take out paths that draw nothing, and put the children of groups that say nothing in their
-    place.
+    """Take out paths that draw nothing, and put the children of groups
+    that say nothing in their place.
     """
     for child in list(element):
         _drop_shells(child)
@@ -220,8 +215,8 @@ def _short_path(path):
         steps.append((letter, step))
     found = ""
     for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):
-        # A letter that is repeated need not be written, and a minus parts two numbers as well as a
-        # blank does.
+        # A letter that is repeated need not be written, and a minus parts two
+        # numbers as well as a blank does.
         written = "" if letter == before != "M" else letter.lower() if found else letter
         numbers = " ".join(_short(value, digits) for value in step).replace(" -", "-")
         found += written + (" " if not written and not numbers.startswith("-") else "") + numbers

@@ -31,8 +31,8 @@ DARK = {
     "accent": "#5fd3da",
 }
 
-# Without colour, frames differ in the stroke of their arrows (width, dashes) and in the shape of
-# the head.
+# Without colour, frames differ in the stroke of their arrows (width,
+# dashes) and in the shape of the head.
 STROKES = {
     "N": (1.7, "none"),
     "A": (3.4, "none"),
@@ -49,8 +49,8 @@ STROKES = {
 
 
 def _style():
-    """Return the style sheet that goes with every figure; a page may set ``--frame-a`` and so
-    on.
+    """Return the style sheet that goes with every figure; a page
+    may set ``--frame-a`` and so on.
     """
 
     def colours(table):

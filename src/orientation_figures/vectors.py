@@ -1,5 +1,5 @@
-"""Vectors as lists of numbers: the words of pictures, the same in Python and in
-``js/mathematics.js``.
+"""Vectors as lists of numbers: the words of pictures, the same in
+Python and in ``js/mathematics.js``.
 
 They do without NumPy, as figures do until they are drawn.
 """

@@ -69,8 +69,8 @@ class Words:
     # Lines, areas and words.
 
     def line(self, points, colour="ink", kind=""):
-        """Draw a line through points; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or
-        'tube'.
+        """Draw a line through points; ``kind`` is '', 'guide'
+        (dashed), 'faint', 'thick' or 'tube'.
         """
         places, depth = [self.on_sheet(point) for point in points], self.depth_of(points)
         for k, layer in enumerate(layers(kind)):
@@ -78,8 +78,8 @@ class Words:
         return self
 
     def area(self, points, colour="ink", fill=16, edge=True):
-        """Fill the polygon with these corners; ``fill`` is 8, 16, 26 or 38 per cent of the
-        colour.
+        """Fill the polygon with these corners; ``fill`` is 8, 16,
+        26 or 38 per cent of the colour.
         """
         places = [self.on_sheet(point) for point in points]
         kind = f"fill-{fill} {'' if edge else 'bare '}{colour}"
@@ -110,8 +110,8 @@ class Words:
         return self.label(point, text, colour, scale(pixels, unit(self.on_sheet(point))))
 
     def shadow(self, vector, direction, colour="accent"):
-        """Draw the part of one vector that lies along another: its shadow, the line that drops it,
-        and a right angle.
+        """Draw the part of one vector that lies along another: its shadow, the line
+        that drops it, and a right angle.
         """
         along = unit(direction)
         foot = scale(dot(vector, along), along)
@@ -126,8 +126,8 @@ class Words:
     # Arrows and frames.
 
     def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, size=20, kind=""):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond its tip or ``shift`` from
-        the tip.
+        """Draw an arrow from ``start`` to ``end``, with a label beyond
+        its tip or ``shift`` from the tip.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross.
@@ -194,8 +194,8 @@ class Words:
         kind="",
         head=True,
     ):
-        """Draw the arc swept by the direction ``start``, turned through ``angle`` (radians) about
-        ``axis``.
+        """Draw the arc swept by the direction ``start``, turned through
+        ``angle`` (radians) about ``axis``.
         """
         normal, arm = unit(axis), scale(radius, unit(start))
         swept, pieces = abs(angle) * radius * self.size, max(4, math.ceil(abs(angle) / STEEP))
@@ -238,8 +238,8 @@ class Words:
         kind="",
         head=True,
     ):
-        """Draw the angle from the direction ``start`` to the direction ``end``, the short way
-        round.
+        """Draw the angle from the direction ``start`` to the
+        direction ``end``, the short way round.
         """
         axis = cross(start, end)
         return self.turn(

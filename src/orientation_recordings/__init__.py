@@ -1,5 +1,5 @@
-"""What real instruments recorded: five small boxes with gyroscopes, carried by hands and by a
-walking leg.
+"""What real instruments recorded: five small boxes with gyroscopes,
+carried by hands and by a walking leg.
 
 The files in ``data/`` are excerpts from the recordings that come with *scikit-kinematics* 0.10.4 by
 Thomas Haslwanter (BSD licence; its text is in ``data/LICENSE.txt``).
@@ -26,14 +26,14 @@ Array: TypeAlias = "NDArray[np.float64]"
 
 #: Metres per second squared.
 STANDARD_GRAVITY = 9.80665
-#: Samples per second. The x-IMU's follows from its register ``InertialAndMagneticDataRate``, 9,
-#: which stands for 256.
+#: Samples per second. The x-IMU's follows from its register
+#: ``InertialAndMagneticDataRate``, 9, which stands for 256.
 X_IMU_RATE, XSENS_RATE, WALKING_RATE = 256, 50, 120
 
 
 class Recording(NamedTuple):
-    """What one instrument measured, sample by sample, and the orientation that it worked out
-    itself.
+    """What one instrument measured, sample by sample, and the
+    orientation that it worked out itself.
 
     Attributes
     ----------
@@ -67,8 +67,8 @@ def table(name: str) -> Array:
 
 
 def x_imu() -> Recording:
-    """Give sixteen seconds of an x-IMU in a hand: held, carried about, held. It printed on memory
-    card.
+    """Give sixteen seconds of an x-IMU in a hand: held, carried about,
+    held. It printed on memory card.
 
     Returns
     -------

@@ -1,5 +1,5 @@
-"""Cut the excerpts in ``data/`` out of the recordings they come from, and the stars out of their
-catalogue.
+"""Cut the excerpts in ``data/`` out of the recordings they come from,
+and the stars out of their catalogue.
 
 Run it with ``python -m orientation_recordings.excerpts WHEEL STARS``.
 

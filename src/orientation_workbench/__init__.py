@@ -1,5 +1,5 @@
-"""Where the world's numbers meet this book: two programs that disagree, and recordings that are to
-be judged.
+"""Where the world's numbers meet this book: two programs that disagree,
+and recordings that are to be judged.
 """
 
 __all__ = ["Convention", "Explanation", "assert_convention", "convention_of", "explain"]

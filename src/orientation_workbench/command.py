@@ -1,5 +1,5 @@
-"""The command ``orientation``: ``orientation explain FIRST SECOND`` and ``orientation recording
-FILE``.
+"""The command ``orientation``: ``orientation explain FIRST SECOND``
+and ``orientation recording FILE``.
 """
 
 import argparse
@@ -53,8 +53,7 @@ def _add_explain(commands):
         help="name the mix-up between two programs that disagree",
         description="Name the mix-up between two programs from what they give for the same poses.",
         epilog="Exit code: 0 both give the same, 1 a mix-up is named, 2 none fits or the numbers "
-        "cannot tell, "
-        "3 the input cannot be read.",
+        "cannot tell, 3 the input cannot be read.",
     )
     parser.add_argument("first", help="a file, or the numbers themselves: one pose a line")
     parser.add_argument("second", help="the same poses, from the other program")
@@ -98,8 +97,8 @@ def _add_recording(commands):
         description="Put a recording on the bench: what its columns are, their units, axes, signs "
         "and errors, the convention of an orientation in it, and whether a filter is honest about "
         "its own errors on it.",
-        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it "
-        "cannot be read.",
+        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it cannot "
+        "be read.",
     )
     parser.add_argument(
         "files",

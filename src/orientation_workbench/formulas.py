@@ -18,8 +18,8 @@ _made = {}
 
 
 class Value:
-    """A number, or what is true or false, that is not known yet: an operation, and what it is
-    applied to.
+    """A number, or what is true or false, that is not known yet: an
+    operation, and what it is applied to.
     """
 
     __slots__ = ("operation", "parts")
@@ -78,8 +78,8 @@ class Value:
 
 
 def made(operation, *parts):
-    """The value that an operation makes: the same object for the same operation on the same
-    parts.
+    """The value that an operation makes: the same object for the
+    same operation on the same parts.
     """
     key = (operation, *(id(part) if isinstance(part, Value) else (part,) for part in parts))
     if key not in _made:
@@ -226,8 +226,8 @@ def recorded(function, *arguments):
         results[:] = applied(formula, *components)
         return results.reshape(shape)
 
-    # The function looks its helpers up among the names of its module: there it finds these, and
-    # goes on.
+    # The function looks its helpers up among the names of its module:
+    # there it finds these, and goes on.
     helpers = {
         "evaluate": record,
         "evaluate_numbers": record,
@@ -246,8 +246,8 @@ def _flat(value):
     )
 
 
-#: What can be taken away: what each function takes, by the names of its arguments, and what it
-#: gives.
+#: What can be taken away: what each function takes, by the names of
+#: its arguments, and what it gives.
 FORMULAS = {
     "simple_dcm": ({"angle": "angle"}, "matrix"),
     "dcm_from_body_fixed": ({"angles": "angles"}, "matrix"),
@@ -296,8 +296,8 @@ CHOICES = {
 
 
 def formula_of(name, components, choice=None):
-    """The results of one of :data:`FORMULAS` for the components of its arguments, each a list of
-    values.
+    """The results of one of :data:`FORMULAS` for the components of its
+    arguments, each a list of values.
     """
     given = [
         [entries[k : k + 3] for k in (0, 3, 6)]

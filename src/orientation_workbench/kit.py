@@ -1,5 +1,5 @@
-"""A kit for tests: which convention a function has, found by what it answers, and asserted in one
-line.
+"""A kit for tests: which convention a function has, found by what it
+answers, and asserted in one line.
 """
 
 from typing import NamedTuple
@@ -16,8 +16,8 @@ from orientation import (
 from .mismatch import table
 from .mismatch.explanation import explain
 
-#: Three orientations that nothing special can be said of; no angle of theirs is small or near half
-#: a turn.
+#: Three orientations that nothing special can be said of; no angle of
+#: theirs is small or near half a turn.
 _TURNS = ((0.4, 0.7, -0.3), (-1.1, 0.5, 0.9), (0.8, -0.6, 1.3))
 
 #: What a function may take, and the arguments of this book's convention that it is called with.
@@ -56,8 +56,8 @@ def convention_of(
 ) -> Convention:
     """Find out by a few experiments which convention a function of orientations has.
 
-    The function is called with three orientations as this book writes them, and what it answers is
-    read in every way.
+    The function is called with three orientations as this book writes them, and what
+    it answers is read in every way.
 
     Parameters
     ----------
@@ -151,8 +151,8 @@ def assert_convention(
     world: str = "x y z",
     **expected: str,
 ) -> None:
-    """Assert in one line of a test that a function has a convention; what is not said is as in this
-    book.
+    """Assert in one line of a test that a function has a convention;
+    what is not said is as in this book.
 
     Parameters
     ----------

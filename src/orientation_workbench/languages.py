@@ -73,8 +73,11 @@ LANGUAGES = {
         functions={name: f"f64::{text}" for name, text in _SHORT.items()},
     ),
     "Julia": Language(
-        "function {function}({arguments})\n    result = zeros({count})\n{body}\n    "
-        "return result\nend",
+        "function {function}({arguments})\n"
+        "    result = zeros({count})\n"
+        "{body}\n"
+        "    return result\n"
+        "end",
         "{name}", "{name}", "    {part} = {value}", "    {part} = {condition} ? {yes} : {no}",
         result="    result[{index}] = {value}", alone="    return {value}",
         frame_alone="function {function}({arguments})\n{body}\nend", start=1, whole="{}",
@@ -105,16 +108,16 @@ LANGUAGES = {
     ),
 }  # fmt: skip
 
-# How strongly an operation binds what it is applied to: sums, signs, products, what needs no
-# brackets.
+# How strongly an operation binds what it is applied to: sums, signs,
+# products, what needs no brackets.
 _SUM, _SIGN, _PRODUCT, _ONE = range(4)
 
 
 def written(language: Language, results: list, names: dict) -> tuple[list[str], list[str]]:
     """The lines of the parts that the results need, each of them once, and the results themselves.
 
-    What is used twice, and each choice, becomes a part. ``names`` says how each variable is
-    written.
+    What is used twice, and each choice, becomes a part. ``names``
+    says how each variable is written.
     """
     uses, lines, texts = {}, [], {}
 

@@ -1,5 +1,5 @@
-"""What the numbers of each program mean: one table, for the converter, the printed card and the
-workbench.
+"""What the numbers of each program mean: one table, for the converter,
+the printed card and the workbench.
 
 A program has a ``matrix`` (``'as here'``, or ``'transposed'`` where it gives the transpose of this
 book's :math:`{}^A\\mathbf{C}^N`), a ``scalar`` (``'first'`` or ``'last'``) and a ``unit`` of its
@@ -118,11 +118,9 @@ PROGRAMS = {
         "lines": {
             "quaternion": "Quaterniond({w}, {x}, {y}, {z})",
             "body fixed angles": "AngleAxisd({a}, Vector3d::Unit{A}()) * AngleAxisd({b}, "
-            "Vector3d::Unit{B}())"
-            " * AngleAxisd({c}, Vector3d::Unit{C}())",
+            "Vector3d::Unit{B}()) * AngleAxisd({c}, Vector3d::Unit{C}())",
             "space fixed angles": "AngleAxisd({c}, Vector3d::Unit{C}()) * AngleAxisd({b}, "
-            "Vector3d::Unit{B}())"
-            " * AngleAxisd({a}, Vector3d::Unit{A}())",
+            "Vector3d::Unit{B}()) * AngleAxisd({a}, Vector3d::Unit{A}())",
         },
     },
     "MuJoCo model": {
@@ -264,8 +262,8 @@ PROGRAMS = {
         "lines": {
             "matrix": "PerspectiveCameras(R=torch.tensor([{m}]))",
             "quaternion": "quaternion_to_matrix(torch.tensor([{w}, {x}, {y}, {z}]).double())",
-            "body fixed angles": "euler_angles_to_matrix(torch.tensor([{a}, {b}, "
-            "{c}]).double(), '{S}')",
+            "body fixed angles": "euler_angles_to_matrix(torch.tensor([{a}, {b}, {c}]).double(), "
+            "'{S}')",
             "axis times angle": "axis_angle_to_matrix(torch.tensor([{x}, {y}, {z}]).double())",
         },
     },
@@ -450,8 +448,8 @@ PROGRAMS = {
 
 
 def program_named(words):
-    """The one program whose name has these words at the start of one of its own, whatever their
-    case.
+    """The one program whose name has these words at the start of one
+    of its own, whatever their case.
 
     Raises
     ------
@@ -464,8 +462,8 @@ def program_named(words):
     if len(found) != 1:
         which = ", ".join(found or PROGRAMS)
         raise ValueError(
-            f"{words!r} names "
-            f"{'several programs' if found else 'no program that is known here'}: {which}"
+            f"{words!r} names {'several programs' if found else 'no program that is known here'}: "
+            f"{which}"
         )
     return found[0]
 

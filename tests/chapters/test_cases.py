@@ -22,8 +22,8 @@ def printed(words):
 
 
 def test_the_phone_is_as_wrong_as_its_noise_says():
-    # Across the level field of 20 microtesla, and up as far as it is wrong, times the tangent of
-    # the dip.
+    # Across the level field of 20 microtesla, and up as far as it is
+    # wrong, times the tangent of the dip.
     heading = np.degrees(np.hypot(0.5 / 20, 0.03 / 9.81 * 44 / 20))
     told = float(re.search(r"heading: ([\d.]+)", printed("of which the heading"))[1])
     assert abs(told / heading - 1) < 0.05, "one draw stands for many, or the noise is another"
@@ -79,8 +79,8 @@ def test_a_wrist_near_straight_must_hurry():
 
 
 def test_an_axis_that_is_marked_wrong_makes_an_adduction():
-    # The marked frame is turned by 5 degrees about y from the true one; by SciPy, whose matrices
-    # are active.
+    # The marked frame is turned by 5 degrees about y from the true one; by
+    # SciPy, whose matrices are active.
     for line in printed("5 sin:").splitlines():
         bend, *report, _, told = numbers(line)
         true = Rotation.from_euler("z", -bend, degrees=True)
@@ -95,8 +95,8 @@ def test_an_axis_that_is_marked_wrong_makes_an_adduction():
 
 
 def walks():
-    """Heading errors by group and way: middle, least, largest of walking, by the car, after it; and
-    the verdicts.
+    """Heading errors by group and way: middle, least, largest of walking, by the
+    car, after it; and the verdicts.
     """
     text = printed("what the filter says of the heading")
     errors, _, verdicts = text.partition("\nwhat the filter")
@@ -117,11 +117,10 @@ def test_the_filter_beats_two_sensors_on_a_walk_and_what_varies_decides_what_a_c
     rows, _ = walks()
     groups = ["nothing", "pose", "all", "all, no car"]
     for group in groups:
-        assert (
-            rows[group, "filter"][2] < 4 < rows[group, "two sensors"][1]
-        )  # the worst against the best
-    # Ten microtesla across twenty turn the level field by 26.6 degrees, along it by none; steps add
-    # a little.
+        # The worst against the best.
+        assert rows[group, "filter"][2] < 4 < rows[group, "two sensors"][1]
+    # Ten microtesla across twenty turn the level field by 26.6 degrees,
+    # along it by none; steps add a little.
     assert 26.6 < rows["nothing", "two sensors"][3] < 33 and rows["all", "two sensors"][4] < 20
     # One story told many times, where only noise varies.
     after = {group: np.ptp(rows[group, "filter"][6:]) for group in groups}
@@ -155,8 +154,8 @@ def test_one_turn_is_quicker_than_three():
 
 
 def test_the_attitude_of_an_aircraft_for_a_robot():
-    """East, north, up and forwards, left, up, by SciPy: its rotations turn components of the body
-    into the ground's.
+    """East, north, up and forwards, left, up, by SciPy: its rotations turn
+    components of the body into the ground's.
     """
     text = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
     outputs = [

@@ -1,5 +1,5 @@
-"""Every chapter has its parts; what is forgotten is told by file, line and cell; what is new has
-all of them.
+"""Every chapter has its parts; what is forgotten is told by file, line and
+cell; what is new has all of them.
 """
 
 import os
@@ -131,9 +131,8 @@ def test_a_new_chapter_has_all_its_parts(book):
         "chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "quaternions-in-full"
     )
     assert done.returncode == 0, done.stderr
-    shutil.copy(
-        "tests/solutions/chapter-of-the-tests.ipynb", "exercises"
-    )  # as a release would put it there
+    # As a release would put it there.
+    shutil.copy("tests/solutions/chapter-of-the-tests.ipynb", "exercises")
     told = list(chapters.faults())
     assert told and all("TO BE WRITTEN" in fault for fault in told), told
     pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))

@@ -1,5 +1,5 @@
-"""What other libraries answered, as the convention card prints it; ``python -m tools.programs``
-asks them anew.
+"""What other libraries answered, as the convention card prints it; ``python
+-m tools.programs`` asks them anew.
 """
 
 import ast

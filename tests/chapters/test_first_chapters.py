@@ -1,5 +1,5 @@
-"""What every chapter holds; and what the first eight claim: their own code is run, and held against
-other results.
+"""What every chapter holds; and what the first eight claim: their own code is
+run, and held against other results.
 """
 
 import re
@@ -61,8 +61,8 @@ BOXES = re.compile(r"^`{3,}\{(predict|exercise|recap)\}.*?^`{3,}$", re.MULTILINE
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_chapter_is_read_first_and_practised_at_its_end(name):
-    """How many questions stand where is the author's to judge; but what interrupts no argument
-    stands after it.
+    """How many questions stand where is the author's to judge; but what
+    interrupts no argument stands after it.
     """
     text = text_of(name)
     reading, _, practice = text.partition("## Exercises\n")
@@ -91,13 +91,12 @@ def test_some_exercise_asks_for_a_proof_or_an_explanation(name):
 
 @pytest.mark.parametrize("name", ALL)
 def test_no_sentence_is_cut_in_two_by_a_cell(name):
-    """Text before a cell ends as a sentence does, or with a colon, and what follows begins as
-    one.
+    """Text before a cell ends as a sentence does, or with a colon,
+    and what follows begins as one.
     """
     for before, cell in zip(cells(name), cells(name)[1:]):
-        text = re.sub(
-            r"<!--.*?-->", "", before.source, flags=re.DOTALL
-        ).rstrip()  # without the marks of a lecture
+        # Without the marks of a lecture.
+        text = re.sub(r"<!--.*?-->", "", before.source, flags=re.DOTALL).rstrip()
         if before.cell_type == "markdown" and text:
             last = text.splitlines()[-1]
             assert re.search(r"([.:?!)*]|\$\$.*|:::|```+|</\w+>|^#.*|\|)$", last), last
@@ -277,8 +276,8 @@ def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_
     assert 1 / 5 < np.exp(np.mean(np.log(quaternion / matrix))) < 5
     constant = np.float32([np.cos(0.01), np.sin(0.01)])
     assert abs(np.hypot(*constant.astype(float)) ** 20_000 - 1) > 1e-4
-    # The matrix of a quaternion stretches by its length squared, and one step of Newton's puts a
-    # matrix right.
+    # The matrix of a quaternion stretches by its length squared, and one step
+    # of Newton's puts a matrix right.
     q = np.array([0.7, -0.2, 0.5, 0.6])
     image = multiply_quaternions(multiply_quaternions(q, [0, 1, 2, 3]), q * [1, -1, -1, -1])
     assert np.linalg.norm(image) == pytest.approx(q @ q * np.sqrt(14))
@@ -296,9 +295,8 @@ def test_two_full_turns_shrink_to_a_point_with_both_ends_held_and_one_does_not()
     )
     assert np.allclose(np.linalg.norm(loops, axis=1), 1)
     assert np.allclose(loops[:, :, [0, -1]], np.array([1, 0, 0])[:, None])
-    assert np.allclose(
-        loops[0], [np.cos(turned), np.sin(turned), 0 * turned]
-    )  # two full turns about e
+    # Two full turns about e.
+    assert np.allclose(loops[0], [np.cos(turned), np.sin(turned), 0 * turned])
     assert np.allclose(loops[-1], np.array([1, 0, 0])[:, None])  # flat
     assert abs(np.diff(loops, axis=0)).max() < 0.1  # nothing jumps
 

@@ -1,5 +1,5 @@
-"""What numbers mean on another processor: how far they may move, and that no cell prints what is
-rounding alone.
+"""What numbers mean on another processor: how far they may move, and that no
+cell prints what is rounding alone.
 """
 
 import re
@@ -109,8 +109,8 @@ def printed(notebook):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_no_cell_prints_rounding(path):
-    """Another processor rounds otherwise: what is that small is said as a bound, which the cell
-    asserts.
+    """Another processor rounds otherwise: what is that small is said as
+    a bound, which the cell asserts.
     """
     for number, text in printed(nbformat.read(path, as_version=4)):
         for found in FREE.finditer(text):

@@ -32,8 +32,8 @@ def printed(name, word):
 
 
 def test_with_one_angular_velocity_the_descriptions_differ():
-    """By the numbers of a second computation; one crude angular velocity for all had made them look
-    alike.
+    """By the numbers of a second computation; one crude angular velocity
+    for all had made them look alike.
     """
     text = printed("orientation-in-motion", "'Euler angles': euler(angle_rates")
     found = {
@@ -46,8 +46,8 @@ def test_with_one_angular_velocity_the_descriptions_differ():
 
 
 def test_over_a_whole_flight_a_matrix_and_a_quaternion_are_nearly_alike_and_lock_is_not_the_cause():
-    """The steps of Euler's method, by the tangent that they are; and what a hundred throws
-    showed.
+    """The steps of Euler's method, by the tangent that they are;
+    and what a hundred throws showed.
     """
     for angle in (0.02, 0.05, 0.1):
         tangent = nearest_dcm(np.eye(3) - angle * np.cross(np.eye(3), [0, 0, 1.0])).dcm
@@ -213,8 +213,8 @@ def prose(name):
 
 
 def test_the_part_across_the_axis_carries_its_own_label():
-    """Beside the middle of its arrow, and far from the arrow of v, whose label it had seemed to
-    be.
+    """Beside the middle of its arrow, and far from the arrow of v,
+    whose label it had seemed to be.
     """
     [cell] = [cell for cell in cells("axis-and-angle") if "def rodrigues():" in cell.source]
     names = {}
@@ -288,8 +288,8 @@ def test_a_fixed_direction_is_shown_to_be_the_axis_of_a_turn():
 
 
 def test_of_a_mirror_image_the_smallest_singular_value_is_given_up():
-    """No orientation among many near the answer, or anywhere, fits a matrix of negative determinant
-    better.
+    """No orientation among many near the answer, or anywhere, fits a
+    matrix of negative determinant better.
     """
     assert "$$ (equation-nearest-mirror)" in prose("measured-matrices")
     random = np.random.default_rng(8)
@@ -321,8 +321,8 @@ def test_the_logarithm_jumps_at_half_a_turn_and_the_exponential_fails_at_a_whole
 
 
 def test_the_square_of_the_quaternion_fits_its_line():
-    """The table is symmetric: below its diagonal stand dots, and no row is wider than a screen of
-    1300 pixels shows.
+    """The table is symmetric: below its diagonal stand dots, and no row is wider
+    than a screen of 1300 pixels shows.
     """
     [cell] = [
         cell for cell in cells("back-from-a-matrix") if "(equation-back-quaternion)" in cell.source
@@ -337,8 +337,8 @@ def test_the_square_of_the_quaternion_fits_its_line():
 
 @pytest.mark.long
 def test_the_whole_bench_shows_the_lights_of_the_walks_past_a_car():
-    """The chapter runs the filter of the bench over all walks at once; here each is a file on the
-    whole bench.
+    """The chapter runs the filter of the bench over all walks at once; here
+    each is a file on the whole bench.
     """
     names, chapter = {}, [cell for cell in cells("cases-from-practice") if cell.cell_type == "code"]
     last = next(k for k, cell in enumerate(chapter) if "def walk(" in cell.source)

@@ -1,5 +1,5 @@
-"""What the chapters on sensors claim of recordings and of filters, computed a second time, by other
-means.
+"""What the chapters on sensors claim of recordings and of filters,
+computed a second time, by other means.
 """
 
 import json
@@ -167,8 +167,8 @@ def test_both_makers_have_their_matrix_in_the_table():
 
 
 def test_turning_a_filter_turns_what_it_expects():
-    """An innovation is along the body: the same flight, seen from a turned body, has turned
-    innovations.
+    """An innovation is along the body: the same flight, seen from a
+    turned body, has turned innovations.
     """
     turned = Rotation.from_rotvec([0.3, -1.0, 0.5]).as_matrix()
     filters = [
@@ -188,8 +188,8 @@ def test_turning_a_filter_turns_what_it_expects():
 
 
 def walk(seed, car):
-    """The file of a phone on a table and then on a walk past a car, all things varied; as in the
-    chapter, by SciPy.
+    """The file of a phone on a table and then on a walk past a car, all things
+    varied; as in the chapter, by SciPy.
     """
     random, step = np.random.default_rng(seed), 0.01
     time = np.arange(0, 45, step)

@@ -13,8 +13,7 @@ def cross_product_matrix(vector):
 
 def unit_vectors_after_turn(axis, angle, unit_vectors=np.eye(3)):
     """Turn vectors, given as rows, about an axis by the right hand: the motion itself, as a limit
-    of
-    many small turns, which each add the cross product of the axis and the vector."""
+    of many small turns, which each add the cross product of the axis and the vector."""
     axis = np.asarray(axis, dtype=float)
     return unit_vectors @ expm(angle * cross_product_matrix(axis / np.linalg.norm(axis))).T
 

@@ -640,8 +640,8 @@ def test_numbers_from_a_file_are_diagnosed_with_the_tolerance_of_their_digits():
 
 
 def test_a_tolerance_holds_for_everything_that_is_asked():
-    """Four digits from a file: rounding is not blamed for a mix-up, and angles make what they make
-    to four digits.
+    """Four digits from a file: rounding is not blamed for a mix-up, and angles
+    make what they make to four digits.
     """
     right, other = composed(NUMBERS, "zxy"), composed(NUMBERS[::-1], "yxz")
     right, other = (np.round(np.array(dcm, dtype=float), 4) for dcm in (right, other))

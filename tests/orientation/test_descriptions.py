@@ -1,5 +1,5 @@
-"""Rodrigues parameters, distances, means and random orientations, against SciPy, pytransform3d and
-formulas.
+"""Rodrigues parameters, distances, means and random orientations, against
+SciPy, pytransform3d and formulas.
 """
 
 import numpy as np
@@ -228,8 +228,8 @@ def test_means_refuse_what_they_cannot_read():
 
 
 def test_random_orientations_are_uniform():
-    """The density of the angle is (1 - cos)/pi; unit vectors are even on the sphere; the mean
-    matrix vanishes.
+    """The density of the angle is (1 - cos)/pi; unit vectors are even on the
+    sphere; the mean matrix vanishes.
     """
     dcms = random_orientations(20_000, 9)
     check_dcm(dcms)

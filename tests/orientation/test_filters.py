@@ -1,5 +1,5 @@
-"""The filter of an orientation tells the truth about itself: its errors are as large as its
-covariance says.
+"""The filter of an orientation tells the truth about itself: its errors
+are as large as its covariance says.
 """
 
 import numpy as np
@@ -17,8 +17,8 @@ REFERENCES = {"up": ((0, 0, 1.0), 0.03), "north": ((0.6, 0, -0.8), 0.08)}
 
 
 def flight(runs, seconds, seed):
-    """True orientations and biases of many flights, and what their instruments say, step by
-    step.
+    """True orientations and biases of many flights, and what
+    their instruments say, step by step.
     """
     source = np.random.default_rng(seed)
     dcm = random_dcms(runs, seed)
@@ -83,8 +83,8 @@ def test_errors_are_as_large_as_the_filter_says():
 
 
 def test_a_filter_that_claims_too_much_is_found_out():
-    """The same test fails for a filter that believes its instruments to be three times as good as
-    they are.
+    """The same test fails for a filter that believes its instruments to be
+    three times as good as they are.
     """
     squares, _ = follow(claimed=1 / 3)
     assert squares.mean() > 9

@@ -45,8 +45,8 @@ def test_camera_in_handgrip(gimbal):
 
 
 def random_tree(seed, count=6):
-    """Edges of a random tree: joined in random order, each given from either end, in every way
-    there is.
+    """Edges of a random tree: joined in random order, each given from
+    either end, in every way there is.
     """
     source = np.random.default_rng(seed)
     names = [f"F{k}" for k in range(count)]
@@ -303,9 +303,8 @@ ORIENTATIONS = {
 def test_a_cell_can_be_run_again_but_not_with_another_answer(orientation, angle, changed):
     frames = orientation(Frames().orient_axis("A", "N", "x", phi), angle)
     assert orientation(frames, angle) is frames
-    assert (
-        frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames
-    )  # the same, from the other end
+    # The same, from the other end.
+    assert frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames
     with pytest.raises(
         ValueError, match="D and A are already connected, by D - A: a second path could contradict"
     ):

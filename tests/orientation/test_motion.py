@@ -169,8 +169,8 @@ def test_angular_velocity_undoes_the_rate_of_the_matrix(random):
 
 @pytest.mark.parametrize("size", [1e-12, 1e-6, 1e-3, 0.05, 1, 3, 4.5, 6.2])
 def test_rotation_vector_rate_against_differences(size, random):
-    """The matrix of r + h dr/dt must move as the angular velocity says, beyond half a turn as
-    well.
+    """The matrix of r + h dr/dt must move as the angular velocity
+    says, beyond half a turn as well.
     """
     h = 1e-5
     for _ in range(20):
@@ -285,8 +285,8 @@ def test_steps_refuse_what_they_cannot_read():
 
 
 def test_restoring_the_matrix_leaves_the_error_of_the_orientation_as_it_is():
-    """The nearest valid matrix of a Runge-Kutta run is as wrong as that of a run restored at every
-    step.
+    """The nearest valid matrix of a Runge-Kutta run is as wrong as that
+    of a run restored at every step.
     """
     from orientation import nearest_dcm
 

@@ -20,8 +20,8 @@ def seen(dcm, directions):
 
 
 def davenport(observed, reference, weights):
-    """Davenport's q-method, as a second way: the eigenvector of the largest eigenvalue of a 4 by 4
-    matrix.
+    """Davenport's q-method, as a second way: the eigenvector of the
+    largest eigenvalue of a 4 by 4 matrix.
     """
     profile = np.einsum("k,ki,kj->ij", weights, observed, reference)
     z = sum(w * np.cross(b, n) for w, b, n in zip(weights, observed, reference, strict=True))
@@ -32,8 +32,8 @@ def davenport(observed, reference, weights):
         ]
     )
     x, y, z, w = np.linalg.eigh(K)[1][:, -1]
-    # The eigenvector is the quaternion in the convention of the attitude matrix: its matrix is
-    # Shuster's (1993) A(q).
+    # The eigenvector is the quaternion in the convention of the attitude matrix: its
+    # matrix is Shuster's (1993) A(q).
     return Rotation.from_quat([x, y, z, w]).as_matrix().T
 
 
@@ -77,8 +77,8 @@ def test_batches_are_single_ones_together():
 
 
 def test_covariance_is_what_many_noisy_measurements_show():
-    """10,000 noisy sightings: the covariance of their errors is the one that is promised, within 5
-    per cent.
+    """10,000 noisy sightings: the covariance of their errors is the one
+    that is promised, within 5 per cent.
     """
     source = np.random.default_rng(11)
     dcm = dcm_from_rotation_vector((0.4, -0.9, 1.3))

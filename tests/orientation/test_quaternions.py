@@ -70,8 +70,8 @@ def test_a_quaternion_and_its_negative_are_one_orientation():
 
 @pytest.mark.parametrize("digits", (4, 6, 9))
 def test_a_printed_quaternion_is_refused_with_what_to_do_and_taken_when_it_is_done(digits):
-    """Nine digits are few enough to be refused: a tolerance that lets print through would let
-    faults through.
+    """Nine digits are few enough to be refused: a tolerance that lets print
+    through would let faults through.
     """
     exact = random_unit_vectors(200, 9, size=4)
     printed = np.array([[float(f"{number:.{digits}f}") for number in row] for row in exact])

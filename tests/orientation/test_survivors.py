@@ -1,5 +1,5 @@
-"""Changes of the mathematics that no other test had noticed: each is noticed here. `make mutants`
-looks for more.
+"""Changes of the mathematics that no other test had noticed: each is noticed
+here. `make mutants` looks for more.
 """
 
 import mpmath
@@ -54,8 +54,8 @@ def test_one_way_is_shorter_as_soon_as_they_are_nearer(scalar):
 
 @pytest.mark.parametrize("length", [1e-308, 1e-200, 1e-170, 1e-150, 1e-9])
 def test_the_square_of_a_small_rotation_vector_may_be_nothing(length):
-    """Where the square of its length is 0 in doubles, the vector itself is not, alone or in a
-    batch.
+    """Where the square of its length is 0 in doubles, the vector
+    itself is not, alone or in a batch.
     """
     vector = np.array([0.6 * length, 0, 0.8 * length])
     for found in (dcm_from_rotation_vector(vector), dcm_from_rotation_vector([vector, vector])[1]):
@@ -77,8 +77,8 @@ def cost(vector, dcms, weights):
 
 @pytest.mark.parametrize("seed", [16, 21, 41, 43])
 def test_the_mean_of_far_orientations_is_the_best_of_all(seed):
-    """Beyond a quarter turn the place that averaging leads to from the first guess need not be the
-    best.
+    """Beyond a quarter turn the place that averaging leads to from the
+    first guess need not be the best.
     """
     dcms, weights = random_orientations(4, seed), np.full(4, 0.25)
     found = mean_orientation(dcms, metric="angle")

@@ -1,8 +1,8 @@
-"""The traps that the book warns of are real in the versions it runs with, and the package has none
-of them.
+"""The traps that the book warns of are real in the versions it runs
+with, and the package has none of them.
 
-If one of these tests fails after an update, a library has changed, and so must the page that says
-so.
+If one of these tests fails after an update, a library has changed,
+and so must the page that says so.
 """
 
 import warnings

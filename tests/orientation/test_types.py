@@ -1,5 +1,5 @@
-"""What editors and type checkers are told of a result: an array for numbers, a matrix of SymPy for
-symbols.
+"""What editors and type checkers are told of a result: an array for
+numbers, a matrix of SymPy for symbols.
 """
 
 import subprocess

@@ -1,5 +1,5 @@
-"""The doors through which an answer reaches a check, each as a process of its own: run with JSON on
-standard input.
+"""The doors through which an answer reaches a check, each as a process of its
+own: run with JSON on standard input.
 
 ``laptop`` has NumPy. ``page`` is Python on a page of the book, where ``plain_numpy.py`` stands in
 for NumPy until a cell needs the real one; ``notebook interface`` is JupyterLite, where it does so
@@ -56,8 +56,8 @@ simple_dcm("z", 0.3)[0, 0] > 0.5
 space_fixed_from_dcm(dcm_from_body_fixed((0.4, 0.7, -0.3), "zxy"), "zxy")
 turns_from_angular_velocity(lambda times: [[0, 0, 0.1 * time] for time in times], [0, 0.5, 1])
 """.strip().splitlines()
-#: The program of all three: the cells of several notebooks, each in names of its own; what each
-#: check has replied.
+#: The program of all three: the cells of several notebooks, each in names of its
+#: own; what each check has replied.
 PROGRAM = r"""
 import json, os, sys
 
@@ -162,8 +162,8 @@ json.dump([json.loads(answer) for answer in answers], sys.__stdout__)
 
 
 def through(door, notebooks):
-    """For each of some notebooks, lists of cells: what each check has replied, and the cells that
-    needed NumPy.
+    """For each of some notebooks, lists of cells: what each check has replied,
+    and the cells that needed NumPy.
     """
     from notebook_pages.live.cells import write_python
 

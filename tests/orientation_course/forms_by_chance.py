@@ -1,5 +1,5 @@
-"""Answers made up by chance: the right one in forms that nobody thinks of, and such as are nearly
-right.
+"""Answers made up by chance: the right one in forms that nobody
+thinks of, and such as are nearly right.
 """
 
 import random
@@ -24,8 +24,8 @@ from coursework.checking.question import Question
 
 
 def random_form(public: Question, answer: Answer, chance: random.Random) -> Answer:
-    """Give the same answer in a form made up by chance, as one who simplifies nothing might write
-    it.
+    """Give the same answer in a form made up by chance, as one who
+    simplifies nothing might write it.
     """
     kind = public.kind
     if kind == "measurement":
@@ -101,11 +101,11 @@ def _shuffled_number(number: sympy.Expr, chance: random.Random) -> sympy.Expr:
 
 
 def roots_for_cosines(answer: Answer) -> list[Form]:
-    """Answers in which one function of one symbol is a root that agrees with it in some quadrants
-    only.
+    """Answers in which one function of one symbol is a root that
+    agrees with it in some quadrants only.
 
-    Pairs of a name and an answer: ``sqrt(1 - sin(x)**2)`` for ``cos(x)``, for every symbol and
-    function that occurs.
+    Pairs of a name and an answer: ``sqrt(1 - sin(x)**2)`` for ``cos(x)``, for every
+    symbol and function that occurs.
     """
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]
@@ -120,8 +120,8 @@ def roots_for_cosines(answer: Answer) -> list[Form]:
 
 
 def mutant(answer: Answer, chance: random.Random) -> Answer:
-    """The answer with one small thing changed by chance; it may still be right, and whoever asks
-    must look.
+    """The answer with one small thing changed by chance; it may still be
+    right, and whoever asks must look.
     """
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]

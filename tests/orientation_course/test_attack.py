@@ -87,8 +87,8 @@ def test_the_angular_velocity_of_successive_turns_is_found_along_both_frames():
 
 @pytest.mark.long
 def test_the_functions_of_the_course_are_applied_to_the_data_of_a_question():
-    """None of these is a turn about an axis through a special angle; each is one to three calls
-    with what is given.
+    """None of these is a turn about an axis through a special angle; each is one
+    to three calls with what is given.
     """
     force, field, whole = [0.087, -0.122, 0.985], [-3.1, 21.4, -40.2], [4, -2, 5, 1]
     away = np.cross(force, np.cross(field, force))
@@ -165,8 +165,8 @@ def test_turns_are_composed_of_which_one_begins_at_a_quarter_turn():
 
 @pytest.mark.long
 def test_a_function_of_turns_is_attacked_by_some_of_them():
-    """A question whose answer is a loop over the turns has candidates, and is found where one turn
-    is enough.
+    """A question whose answer is a loop over the turns has candidates, and
+    is found where one turn is enough.
     """
 
     def first(turns):
@@ -235,8 +235,8 @@ def with_formulas(names):
 
 
 def differs(one, answer):
-    """Whether an answer is another one somewhere in its domain: by SymPy's numbers, at points of
-    its own.
+    """Whether an answer is another one somewhere in its domain: by
+    SymPy's numbers, at points of its own.
     """
     first, second = (
         [in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer)
@@ -265,8 +265,8 @@ def differs(one, answer):
 
 
 def in_symbols(entry):
-    """An expression with its functions of time, and their derivatives, as the symbols that stand
-    for them.
+    """An expression with its functions of time, and their derivatives, as
+    the symbols that stand for them.
     """
     rates = {rate: sm.Symbol(f"{rate.expr.func.__name__}'") for rate in entry.atoms(sm.Derivative)}
     entry = entry.xreplace(rates)
@@ -304,8 +304,8 @@ def try_roots(names):
 
 @pytest.mark.long
 def test_no_root_passes_for_a_cosine():
-    """Found in the first edition: these agree where the cosine is positive, and the points were
-    there only.
+    """Found in the first edition: these agree where the cosine is
+    positive, and the points were there only.
     """
     assert try_roots(["cases-from-practice", "orientation-in-motion"]) >= 10
 
@@ -338,8 +338,8 @@ def test_no_mutant_of_any_answer_passes():
 
 
 def try_forms(names, number):
-    """Check right answers in many forms, and mark them at the points of a secret too; gives how
-    many were tried.
+    """Check right answers in many forms, and mark them at the points of a
+    secret too; gives how many were tried.
     """
     tried, secretly = 0, 0
     for name in names:

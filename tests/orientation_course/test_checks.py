@@ -141,8 +141,8 @@ def passes(one, answer):
 
 
 def try_forms(one, number):
-    """Draw forms of the right answer by this run's lot; there are few where algebra has nothing to
-    change.
+    """Draw forms of the right answer by this run's lot; there are few
+    where algebra has nothing to change.
     """
     chance = random.Random(f"{SEED} {one.name}")
     if one.public.kind in ("sequence", "truth values", "words", "function"):
@@ -416,8 +416,8 @@ def test_a_frame_is_not_said_to_be_connected_with_itself():
 
 @pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
 def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
-    """Of a matrix and of an axis: the remark on rounding comes before the fault of geometry, and
-    only where it may.
+    """Of a matrix and of an axis: the remark on rounding comes before the fault of
+    geometry, and only where it may.
     """
     matrix = sm.Matrix([[8, 1, 4], [-4, 4, 7], [-1, -8, 4]]) / 9
     axis = [sm.Rational(2, 7), sm.Rational(3, 7), sm.Rational(6, 7)]
@@ -447,8 +447,8 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
     ],
 )
 def test_whoever_has_rounded_right_work_hears_of_the_rounding_first(kind, answer, digits):
-    """And not that the value is wrong, which is the most discouraging thing to hear of one's own
-    right work.
+    """And not that the value is wrong, which is the most discouraging thing
+    to hear of one's own right work.
     """
     one = make("trial/rounded", kind, answer, **({"shape": (2, 2)} if kind == "matrix" else {}))
     reply = one.reply_to(to_plain(np.array(answer).round(digits).tolist()))
@@ -474,8 +474,8 @@ def test_no_turn_at_all_is_not_called_twice_half_a_turn():
 @pytest.mark.parametrize("kind", ["numbers in a matrix", "numbers in a quaternion"])
 @pytest.mark.parametrize("off", [4, 6, 8])
 def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
-    """The transpose of what is nearly right is in the cell of the mistake "transposed"; but that is
-    no mistake here.
+    """The transpose of what is nearly right is in the cell of the mistake
+    "transposed"; but that is no mistake here.
     """
     one = KINDS[kind]
     turned = np.array(
@@ -565,8 +565,8 @@ def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkey
 def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(
     threads, monkeypatch
 ):
-    """All digits that are no simple fraction's: rounded far, or with a slip? Both cost a slow
-    hash.
+    """All digits that are no simple fraction's: rounded far, or
+    with a slip? Both cost a slow hash.
     """
     right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
     one = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
@@ -605,8 +605,8 @@ TOLERANT = {
 
 @pytest.mark.parametrize("one", TOLERANT.values(), ids=TOLERANT)
 def test_the_tolerance_is_exact_on_both_sides(one):
-    """An answer within `tolerance + relative * |right|` passes, one just beyond does not: whatever
-    cell it is in.
+    """An answer within `tolerance + relative * |right|` passes, one just beyond
+    does not: whatever cell it is in.
     """
     entries, put = flat(one.answer)
     absolute, relative = one.public.tolerance, one.public.relative or 0
@@ -814,8 +814,8 @@ def test_a_locker_opens_with_its_key_only_and_notices_a_change():
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_no_page_can_be_tried_without_the_slow_hash(one):
-    """What a page says can often be known beforehand: so its key must cost as much as that of a
-    locker.
+    """What a page says can often be known beforehand: so its key must
+    cost as much as that of a locker.
     """
     sealed, text = one.sealed(), one.fingerprint_of(one.plain)
     secrets = [hashlib.sha256(text.encode()).digest(), text.encode()[:64], b""]
@@ -862,8 +862,8 @@ def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
                         ), (name, number)
     assert opened > 500
     about = {
-        "solution": "It is 7. And this is a long way of saying so, longer than the first "
-        "sentence by far."
+        "solution": "It is 7. "
+        "And this is a long way of saying so, longer than the first sentence by far."
     }
     assert make("trial/said", "expression", 7, **about).ladder == [
         plugins.kinds()["expression"].begin
@@ -871,8 +871,8 @@ def test_no_step_that_anybody_can_open_holds_anything_of_a_solution():
 
 
 def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
-    """Nothing public but the seed of the points follows from the answer: no bit of a number, no
-    order of lockers.
+    """Nothing public but the seed of the points follows from the answer: no bit
+    of a number, no order of lockers.
     """
     for one in KINDS.values():
         assert set(one.sealed().as_json()) <= {
@@ -949,8 +949,8 @@ def test_products_of_quaternions_in_the_other_order_are_named():
     "count", [3, pytest.param(2, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)]
 )
 def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
-    """And not as the transpose with all the other signs, which is the same and which nobody has
-    done.
+    """And not as the transpose with all the other signs, which is
+    the same and which nobody has done.
     """
     turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
     build = plugins.kinds()[kind].build
@@ -972,8 +972,8 @@ def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
 
 
 def test_messages_speak_of_what_was_asked_for():
-    """Quaternions, angles and sequences are no factors of a product of matrices, and have no
-    columns.
+    """Quaternions, angles and sequences are no factors of a product
+    of matrices, and have no columns.
     """
     turns = [("x", theta), ("y", alpha)]
     product = make(
@@ -996,8 +996,8 @@ def test_messages_speak_of_what_was_asked_for():
 
 
 def test_one_answer_gets_one_diagnosis():
-    """Where two mistakes lead to one answer, both are true of it; being told two things helps
-    nobody.
+    """Where two mistakes lead to one answer, both are true of it;
+    being told two things helps nobody.
     """
     one = KINDS["symbols in a matrix"]
     for entry in one.entries.values():

@@ -1,8 +1,8 @@
-"""The container that the instructors' page shows: what it allows is tried from inside, with the
-very same options.
+"""The container that the instructors' page shows: what it allows is tried from
+inside, with the very same options.
 
-The image is not built here, which needs a registry: the files of this machine are laid out in its
-place.
+The image is not built here, which needs a registry: the files of this
+machine are laid out in its place.
 """
 
 import io
@@ -42,8 +42,8 @@ print(json.dumps(found))
 
 
 def shown():
-    """The options of ``podman run`` on the instructors' page, without the volumes and the
-    command.
+    """The options of ``podman run`` on the instructors' page,
+    without the volumes and the command.
     """
     (command,) = re.findall(r"podman run (.*?) coursework grade", MANUAL, re.S)
     words = shlex.split(command.replace("\\\n", " "))
@@ -52,8 +52,8 @@ def shown():
 
 
 def podman(place, *command, given=None):
-    """Run a command in a container with these options, and the files of this machine in place of an
-    image's.
+    """Run a command in a container with these options, and the files of
+    this machine in place of an image's.
     """
     layout = place / "layout"
     for name in ("proc", "sys", "dev", "tmp", "etc", "run"):
@@ -89,12 +89,8 @@ def podman(place, *command, given=None):
         "--user",
         "65534:65534",
     ]
-    limits = [
-        "--ulimit",
-        "nofile=4096:4096",
-        "--ulimit",
-        "nproc=4096:4096",
-    ]  # a container may not raise its own
+    # A container may not raise its own.
+    limits = ["--ulimit", "nofile=4096:4096", "--ulimit", "nproc=4096:4096"]
     words = [
         "podman",
         *own,

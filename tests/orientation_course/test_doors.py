@@ -1,5 +1,5 @@
-"""What one door takes, all take: an answer on a laptop, on a page, in JupyterLite and before the
-grader.
+"""What one door takes, all take: an answer on a laptop, on a page, in
+JupyterLite and before the grader.
 """
 
 import ast
@@ -57,16 +57,16 @@ def cells_of(path):
     return [DRAW, *codes]
 
 
-#: What becomes of the author's own solution: right; taken down, in an exam; or put before a person,
-#: who alone can say.
+#: What becomes of the author's own solution: right; taken down, in an exam; or put
+#: before a person, who alone can say.
 RIGHT = {"correct", "recorded", "undecided"}
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.stem)
 @pytest.mark.sampled(2)
 def test_every_authors_solution_is_right_through_every_door(path):
-    """Where a cell needs the real NumPy, it says so, and the answer is right with it, whatever was
-    made before.
+    """Where a cell needs the real NumPy, it says so, and the answer is right
+    with it, whatever was made before.
     """
     here, *others = (doors.through(door, [cells_of(path)])[0][0] for door in doors.DOORS)
     assert here and {outcome for outcome, _ in here.values()} <= RIGHT

@@ -1,5 +1,5 @@
-"""What somebody holds already is read for ever: sealed files of an earlier edition, and what they
-say to an answer.
+"""What somebody holds already is read for ever: sealed files of an earlier
+edition, and what they say to an answer.
 """
 
 import itertools
@@ -43,8 +43,8 @@ def beside(tmp_path, monkeypatch):
 
 @pytest.fixture
 def catalogue_in_another_order(monkeypatch):
-    """What a contributor may do: mistakes above others, and a new generic message before all of
-    them.
+    """What a contributor may do: mistakes above others, and a new
+    generic message before all of them.
     """
 
     def turned_round(messages):
@@ -210,9 +210,8 @@ def test_two_mistakes_never_have_one_short_name(monkeypatch):
 
 def test_the_table_of_a_course_is_its_own(monkeypatch):
     assert set(orientation_course.FORMAT_3) == set(orientation_course.KINDS)
-    monkeypatch.setattr(
-        plugins, "plugins", lambda: []
-    )  # a course that has not frozen the order of its mistakes
+    # A course that has not frozen the order of its mistakes.
+    monkeypatch.setattr(plugins, "plugins", lambda: [])
     assert plugins.catalogue_of_format_3("order") == [
         ("turned round", {}),
         ("two interchanged", {}),

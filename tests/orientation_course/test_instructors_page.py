@@ -61,8 +61,8 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
     found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
     assert len(rows) == 4 and rows == found[:4]
-    # Something is decided, and the gradebook filled, line for line as the page prints it; only
-    # places are others.
+    # Something is decided, and the gradebook filled, line for line as the page
+    # prints it; only places are others.
     store, ledger = Store(tmp_path / "out"), Ledger(tmp_path / "out")
     (record,) = [one for one in store.all() if one.student == "student-068"]
     ledger.add(record, "unit-quaternions/two-ways", 0.5, who="Ann")

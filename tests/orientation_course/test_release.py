@@ -36,10 +36,9 @@ INSTRUCTORS = (COURSE.root / "appendix" / "instructors.md").read_text("utf8")
 
 
 HIDDEN = (
-    "### BEGIN HIDDEN TESTS\nquestion('trial/about-x', kind='direction cosine matrix', "
-    "frames=('A', 'N'), "
-    "symbols='theta', turns=[('x', theta)], worth=2, solution='The shared axis is the first one, "
-    "which does not "
+    "### BEGIN HIDDEN TESTS\n"
+    "question('trial/about-x', kind='direction cosine matrix', frames=('A', 'N'), symbols='theta', "
+    "turns=[('x', theta)], worth=2, solution='The shared axis is the first one, which does not "
     "move.')\n"
     "### END HIDDEN TESTS"
 )
@@ -117,8 +116,8 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
     ],
 )
 def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
-    """The same on every processor: of numbers of all sizes, of simple fractions, and of what should
-    be zero.
+    """The same on every processor: of numbers of all sizes, of simple
+    fractions, and of what should be zero.
     """
     random = np.random.default_rng(7)
     sizes = 10.0 ** random.uniform(-3, 5, 12)
@@ -271,9 +270,8 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
 
 @needs_solutions
 def test_nothing_is_committed_that_has_no_source():
-    assert (
-        sorted({path.stem for path in COURSE.sealed.glob("*.json")} - {"moved"}) == COMMITTED
-    )  # and what moved
+    # And what moved.
+    assert sorted({path.stem for path in COURSE.sealed.glob("*.json")} - {"moved"}) == COMMITTED
     assert sorted(path.stem for path in COURSE.exercises.glob("*.ipynb")) == sorted(
         {*COMMITTED} - {release.CHAPTERS}
     )
@@ -367,8 +365,8 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
 
 
 def test_without_a_manifest_everything_is_the_student_s(tmp_path):
-    """As in a folder that was unpacked before there were manifests, or where somebody has spoilt
-    it.
+    """As in a folder that was unpacked before there were manifests,
+    or where somebody has spoilt it.
     """
     for number, spoilt in enumerate((None, "", "[]", "{}", '{"format": 1, "files": 3}')):
         work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path / str(number))
@@ -409,8 +407,8 @@ def fake_wheel(folder, version, digest, package="sealed_trial"):
 
 
 def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, monkeypatch):
-    """Followed to the letter, in an environment of its own: pip takes the new questions and
-    nobody's work is lost.
+    """Followed to the letter, in an environment of its own: pip takes the new
+    questions and nobody's work is lost.
     """
     python = tmp_path / "venv" / "bin" / "python"
     venv.create(tmp_path / "venv", symlinks=True)
@@ -461,9 +459,8 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
         "./sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
     ]  # fmt: skip
     # Nothing new: nothing to install. An older archive: refused before anything is written.
-    assert any(
-        "pip install" in line for line in update(new, work)
-    )  # not in the Python that runs this
+    # Not in the Python that runs this.
+    assert any("pip install" in line for line in update(new, work))
     monkeypatch.setattr(
         "coursework.checking.update.version", lambda name: "1.1.0.post20261201080000"
     )
@@ -504,8 +501,8 @@ def in_bash(text, prompt):
 
 @pytest.mark.long
 def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
-    """To the letter: with a system's Python that takes no packages, and in a room without a
-    network.
+    """To the letter: with a system's Python that takes no packages,
+    and in a room without a network.
     """
     work = unpacked(archive(COURSE, tmp_path / "exercises.zip"), tmp_path)
     index = tmp_path / "index"
@@ -587,9 +584,8 @@ def test_a_version_follows_from_the_sources(tmp_path):
         at(2026, 11, 1),
     )
     touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
-    assert (
-        version() == "1.1.0.post20261101000000"
-    )  # no repository: when the newest file was written
+    # No repository: when the newest file was written.
+    assert version() == "1.1.0.post20261101000000"
     git("init", "--quiet")
     git("add", ".")
     git("commit", "-m", "first")
@@ -608,8 +604,8 @@ def test_a_version_follows_from_the_sources(tmp_path):
     os.remove(book / "src/orientation/a.py")
     os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
     assert version() == "1.1.0.post20261203000000"
-    # Released, it is plain: as long as the sources are those of its tag, whatever else the
-    # repository gets.
+    # Released, it is plain: as long as the sources are those of its tag,
+    # whatever else the repository gets.
     git("checkout", ".")
     git("tag", "maths-1.1.0")
     touch("chapters/a.ipynb", "{ }", at(2026, 12, 4))

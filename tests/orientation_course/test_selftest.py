@@ -41,8 +41,8 @@ def test_every_question_passes_and_names_its_mistakes(name):
 
 @needs_solutions
 def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
-    """It stands beside the sources, for the grader's report; a question that is gone is to go
-    there, too.
+    """It stands beside the sources, for the grader's report; a question
+    that is gone is to go there, too.
     """
     measured = measured_strengths(COURSE.sources)
     asked = {name for path in SOURCES.values() for name in names_asked(path)}
@@ -53,8 +53,8 @@ def test_what_was_measured_of_the_book_is_of_questions_that_it_asks():
 @pytest.mark.long
 @needs_solutions
 def test_a_question_of_a_chapter_is_attacked_with_its_text_in_the_chapter():
-    """Its source has no text: without the chapter's an attack would know none of the numbers that a
-    student reads.
+    """Its source has no text: without the chapter's an attack would know none of
+    the numbers that a student reads.
     """
     source = release.read_source(SOURCES[release.CHAPTERS])
     texts = [

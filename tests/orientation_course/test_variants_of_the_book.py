@@ -24,8 +24,8 @@ def of_the_book():
 
 
 def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
-    """Of a question's variants all but one have as many as each other; without variants it is a
-    multiple of eight.
+    """Of a question's variants all but one have as many as each other; without
+    variants it is a multiple of eight.
     """
     counts = collections.defaultdict(list)
     for path in COURSE.sealed.rglob("*.json"):
@@ -41,8 +41,8 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
 
 
 def test_how_many_pages_there_are_tells_nothing_of_the_answer():
-    """It told the variants of 18 questions apart; now all but the first have as many of their
-    own.
+    """It told the variants of 18 questions apart; now all but the
+    first have as many of their own.
     """
     counts = collections.defaultdict(set)
     for path in (COURSE.sealed / "variants").glob("*.json"):
@@ -58,9 +58,8 @@ def test_the_book_has_variants_that_stay_small():
     files = list(COURSE.sealed.rglob("*.json"))
     assert sum(path.stat().st_size for path in files) < 1_750_000
     for path in (COURSE.sealed / "variants").glob("*.json"):
-        assert path.stat().st_size < 20_000, (
-            path
-        )  # all that a student's own variant needs beside the first
+        # All that a student's own variant needs beside the first.
+        assert path.stat().st_size < 20_000, path
         first = json.loads(
             (COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8")
         )["questions"]

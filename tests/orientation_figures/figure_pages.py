@@ -17,8 +17,8 @@ FIGURES = {
     if issubclass(figure, moving.MovingFigure) and figure.kind
 }
 KINDS = sorted(FIGURES)
-#: What a test sets in each figure: the attribute, its value, and where the figure then shows it, if
-#: it has a field.
+#: What a test sets in each figure: the attribute, its value, and where the figure
+#: then shows it, if it has a field.
 CHANGES = {
     "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
     "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
@@ -54,8 +54,8 @@ html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212;
 body {{ max-width: 714px; margin: 0 auto; padding: 0 16px; }} figure {{ margin: 0; }}
 </style>{scripts}</head><body><main><h1>A figure</h1>{figures}
 <p id="after">The text goes on.</p></main></body></html>"""
-# Pictures are drawn before the next frame; a run that is still being computed goes on in those that
-# follow.
+# Pictures are drawn before the next frame; a run that is still being
+# computed goes on in those that follow.
 SETTLED = """async () => {
   const picture = () => new Promise((done) => requestAnimationFrame(done));
   await picture();
@@ -77,8 +77,8 @@ def front_end(tmp_path_factory):
 
 @pytest.fixture
 def open_figure(browser, front_end):
-    """``open_figure(figure, ...)``: a page from disk with that figure, or with each of a list of
-    them.
+    """``open_figure(figure, ...)``: a page from disk with that
+    figure, or with each of a list of them.
 
     A name stands for the figure as it is at first. Whatever goes wrong on a page fails the test.
     """

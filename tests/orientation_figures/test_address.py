@@ -1,5 +1,5 @@
-"""What an address of the book carries: the same in both languages, for ever, and in words where it
-cannot be read.
+"""What an address of the book carries: the same in both languages, for ever,
+and in words where it cannot be read.
 """
 
 import json
@@ -24,8 +24,8 @@ const tried = (name, parts) => {
 const jobs = JSON.parse(readFileSync(0));
 console.log(JSON.stringify(jobs.map(([name, ...parts]) => tried(name, parts))));
 """
-#: Addresses that somebody may have kept, of each version that there ever was: never changed, only
-#: added to.
+#: Addresses that somebody may have kept, of each version that there ever
+#: was: never changed, only added to.
 KEPT = {
     "#fig-gimbal=1.eyJhbmdsZXMiOlswLjUsMCwwXX0": ("fig-gimbal", {"angles": [0.5, 0, 0]}),
     "#workbench=1.eyJhIjoiMSAwIDBcbjAgMSAwXG4wIDAgMSIsImIiOiLOuCA9IDMwwrAsIPCfp60ifQ": (

@@ -1,5 +1,5 @@
-"""The converter: every program's numbers there and back, each line of code run by the library that
-it is for.
+"""The converter: every program's numbers there and back, each line of code
+run by the library that it is for.
 """
 
 import itertools
@@ -54,8 +54,8 @@ def test_each_line_makes_the_orientation_in_its_library(program):
 
 
 def test_what_one_side_writes_every_other_reads():
-    """There and back through text for every pair of programs, and each pair of forms at least
-    once.
+    """There and back through text for every pair of programs, and
+    each pair of forms at least once.
     """
     random = np.random.default_rng(3)
     everything = {program: sides(program) for program in (*PROGRAMS, OTHER)}
@@ -98,11 +98,11 @@ def known(side):
 
 @pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_converter_and_workbench_mean_the_same_by_a_program(everything):
-    """What the converter writes for a second program is what, for the workbench, both manuals
-    promise.
+    """What the converter writes for a second program is what, for the
+    workbench, both manuals promise.
 
-    Each program beside this book's, and each two neighbours of those whose axes are known; at night
-    all pairs.
+    Each program beside this book's, and each two neighbours of those whose
+    axes are known; at night all pairs.
     """
     with_axes = [program for program, facts in PROGRAMS.items() if facts.get("body")]
     pairs = [("this book", program) for program in PROGRAMS] + list(itertools.pairwise(with_axes))
@@ -161,8 +161,8 @@ def test_numbers_that_libraries_give_are_read_as_they_mean_them():
 
 
 def test_the_example_of_a_manual_that_cannot_be_run():
-    """MathWorks prints what ``angle2dcm`` gives for 0.7854, 0.1, 0, and for two triples of
-    'YXZ'.
+    """MathWorks prints what ``angle2dcm`` gives for 0.7854, 0.1,
+    0, and for two triples of 'YXZ'.
     """
     printed = [
         (
@@ -245,8 +245,8 @@ def test_a_side_that_does_not_exist_is_refused():
 
 
 def test_the_printed_card_is_what_the_table_makes():
-    """Two pages with every line of every program; the committed files are those of the
-    generator.
+    """Two pages with every line of every program; the committed
+    files are those of the generator.
     """
     text = "".join(
         page.get_textpage().get_text_bounded() for page in pypdfium2.PdfDocument(card.FILE)

@@ -1,5 +1,5 @@
-"""The pictures: their geometry is the module's, they say in words what they show, and they come out
-the same.
+"""The pictures: their geometry is the module's, they say in words what
+they show, and they come out the same.
 """
 
 import hashlib
@@ -365,8 +365,8 @@ def test_the_module_loads_no_pictures_by_itself():
 
 
 def key_frames(animation, letter, number):
-    """The tip of one arrow of a frame at every key frame, read from the SVG as the browser reads
-    it.
+    """The tip of one arrow of a frame at every key frame, read from
+    the SVG as the browser reads it.
     """
     heads = [
         part
@@ -417,9 +417,8 @@ def test_key_frames_are_the_modules_orientations(name, sequence, angles, origins
         for moment, tip in zip(animation.moments, tips):
             row = dcm_from_body_fixed(one_after_another(angles, moment), sequence)[number]
             expected = scale * ((origin + length * row) @ view[:2].T) * (1, -1)
-            np.testing.assert_allclose(
-                tip, expected, atol=0.08
-            )  # one decimal of a pixel, and its time's four digits
+            # One decimal of a pixel, and its time's four digits.
+            np.testing.assert_allclose(tip, expected, atol=0.08)
 
 
 def test_the_gimbal_ends_where_its_matrix_says():
@@ -434,8 +433,8 @@ def test_the_gimbal_ends_where_its_matrix_says():
 
 
 def test_the_words_of_the_exercise_are_what_is_seen():
-    """In each step the arrows named stay, every other arrow of the frames named moves, and nothing
-    else does.
+    """In each step the arrows named stay, every other arrow of the frames
+    named moves, and nothing else does.
     """
     animation = SAMPLES["turning"]
     told = [sentence for sentence in animation.drawings[0].alt.split(". ") if "marked" in sentence]

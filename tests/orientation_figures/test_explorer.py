@@ -1,5 +1,5 @@
-"""The explorer of sequences, without a browser: what is set in its controls, and what it then
-shows.
+"""The explorer of sequences, without a browser: what is set in
+its controls, and what it then shows.
 """
 
 import re

@@ -1,5 +1,5 @@
-"""The moving figures as a reader meets them: by mouse, by keys alone, by touch, in both themes,
-from disk.
+"""The moving figures as a reader meets them: by mouse, by keys alone,
+by touch, in both themes, from disk.
 """
 
 import gzip
@@ -43,8 +43,8 @@ def test_every_figure_is_tested():
 
 
 def test_weight(front_end):
-    """All figures together; the workbench has a page of its own, where it is alone with what all
-    share.
+    """All figures together; the workbench has a page of its own, where
+    it is alone with what all share.
     """
     kinds = [kind for kind in KINDS if kind != "workbench"]
     weights = {
@@ -123,11 +123,11 @@ def without_twin(shapes, others):
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_both_languages_draw_the_same_picture(open_figure, kind):
-    """The still comes from Python, the figure from the browser: every shape lies where its twin
-    does.
+    """The still comes from Python, the figure from the browser:
+    every shape lies where its twin does.
 
-    The first picture of each: what stands beside it grows with time in the page, and is whole on
-    paper.
+    The first picture of each: what stands beside it grows with time in
+    the page, and is whole on paper.
     """
     page = open_figure(kind)
     (still, *_), (live, *_) = (page.evaluate(SHAPES, box) for box in (".still svg", ".live .sheet"))
@@ -171,8 +171,8 @@ FOCUSED = """() => {
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("kind", KINDS)
 def test_keys_alone(open_figure, kind):
-    """Tab reaches every control in turn, each shows the focus and has a name, and each does what it
-    says.
+    """Tab reaches every control in turn, each shows the focus and has a
+    name, and each does what it says.
     """
     page = open_figure(kind)
     stops, tags = [], set()
@@ -201,8 +201,8 @@ def test_keys_alone(open_figure, kind):
             page.keyboard.press("ArrowUp")
             settle(page)
             assert drawing(page) != before
-            # A view is turned back by Home; where the keys turn a frame instead, by the opposite
-            # key.
+            # A view is turned back by Home; where the keys turn a frame
+            # instead, by the opposite key.
             page.keyboard.press("Home" if "Home" in stop["name"] else "ArrowDown")
             settle(page)
             assert drawing(page) == before
@@ -226,8 +226,8 @@ def test_keys_alone(open_figure, kind):
 @pytest.mark.parametrize("colours", ["none", "active"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_targets_are_large_enough_for_a_finger(open_figure, kind, colours):
-    """Of each control the box itself, without the words beside it; also in colours that the
-    reader's system forces.
+    """Of each control the box itself, without the words beside it; also in colours
+    that the reader's system forces.
     """
     page = open_figure(kind, viewport=NARROW, forced_colors=colours)
     boxes = page.eval_on_selector_all(
@@ -255,8 +255,8 @@ def test_touch(open_figure, kind):
     page.wait_for_function("scrollY > 50")
 
 
-# Where a part is held: the middle of a spot, or a corner of a line, which always is the same point
-# of it.
+# Where a part is held: the middle of a spot, or a corner of a line,
+# which always is the same point of it.
 HOLD = """([part, corner]) => {
   const grip = document.querySelector(`.sheet [data-part="${part}"]`), matrix = grip.getScreenCTM();
   const [x, y] = corner === null ? [grip.cx.baseVal.value, grip.cy.baseVal.value]
@@ -306,8 +306,8 @@ def test_parts_follow_the_pointer(open_figure, kind, part, corner, way, touch):
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("part, name", [("B", "psi"), ("C", "theta")])
 def test_a_ring_stays_under_the_pointer(open_figure, part, name):
-    """Places of one point of a ring, from the slider; held there, the ring follows the pointer
-    along them.
+    """Places of one point of a ring, from the slider; held there, the
+    ring follows the pointer along them.
     """
     page, places = open_figure("gimbal"), []
     for angle in (40, 20, 0, -20, 20):
@@ -464,8 +464,8 @@ def test_nine_numbers_leaves_alone_what_is_being_typed(open_figure):
     assert field.input_value() != "99"
 
 
-# How fast a drag is answered is measured by `python -m benchmarks.moving`. What makes it fast is
-# tested here.
+# How fast a drag is answered is measured by `python -m benchmarks.moving`.
+# What makes it fast is tested here.
 MOVES = """async ({ pictures, moves }) => {
   const control = document.querySelector('.live input[type=range], .live input, .live textarea');
   const [low, high] = control.type === 'range' ? [Number(control.min), Number(control.max)] : [-1, 1];
@@ -497,9 +497,8 @@ MOVES = """async ({ pictures, moves }) => {
 
 
 @pytest.mark.sampled(1)
-@pytest.mark.parametrize(
-    "kind", [kind for kind in KINDS if kind != "hands"]
-)  # that has buttons and no slider
+# That has buttons and no slider.
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "hands"])
 def test_a_drag_draws_one_picture_for_each_frame_and_writes_only_what_changes(open_figure, kind):
     # The slider of a challenge adjusts the last turn.
     page = open_figure(moving.ChallengeFigure(turns=[("z", 0.3)]) if kind == "challenge" else kind)

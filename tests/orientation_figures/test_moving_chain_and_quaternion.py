@@ -1,5 +1,5 @@
-"""The chain of turns and the quaternion with its double: in Python, and in the browser by keys,
-touch and mouse.
+"""The chain of turns and the quaternion with its double: in Python, and in
+the browser by keys, touch and mouse.
 """
 
 import json
@@ -270,8 +270,8 @@ def test_ways_show_the_numbers_of_the_module(open_figure, ends):
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("ends", ENDS)
 def test_speeds_in_the_words_are_those_of_the_table(open_figure, ends):
-    """The slowest and the fastest of the way by Euler angles: nowhere does the table show another
-    one.
+    """The slowest and the fastest of the way by Euler angles: nowhere
+    does the table show another one.
     """
     figure = QuaternionFigure(view="way", **ends)
     page = open_figure(figure)
@@ -445,8 +445,8 @@ def test_accessible_in_both_themes_and_not_wider_than_a_phone(open_figure, make,
         assert violations(page) == []
 
 
-# Pictures that come every 50 milliseconds, however fast or slow this machine is, and the times that
-# were shown.
+# Pictures that come every 50 milliseconds, however fast or slow this machine
+# is, and the times that were shown.
 STEADY = """() => {
   const field = document.querySelector('.player:not([hidden] *) input[type=number]');
   const ask = window.requestAnimationFrame.bind(window);
@@ -470,9 +470,8 @@ def test_play_reaches_the_end(open_figure, figure, start, end, motion):
     page = open_figure(figure, reduced_motion=motion)
     page.evaluate(STEADY)
     page.locator(".player:visible button", has_text="Play").click()
-    page.locator(
-        ".player:visible button", has_text="Play"
-    ).wait_for()  # the click has made it Pause
+    # The click has made it Pause.
+    page.locator(".player:visible button", has_text="Play").wait_for()
     settle(page)
     times = sorted({float(value) for value in page.evaluate("window.seen")})
     assert times[0] == start and times[-1] == end
@@ -524,8 +523,8 @@ def test_turn_once_round(open_figure):
 
 
 def test_no_speed_is_cut_off_in_silence():
-    """The scale holds all three ways; what is too fast for any scale leaves a gap, and its size is
-    told.
+    """The scale holds all three ways; what is too fast for any scale
+    leaves a gap, and its size is told.
     """
     from orientation_figures.moving.pictures.quaternion import plotted
 

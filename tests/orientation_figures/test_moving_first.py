@@ -1,5 +1,5 @@
-"""The figures of the first chapters: hands, challenges, a tree of frames and the belt, in Python
-and in the browser.
+"""The figures of the first chapters: hands, challenges, a tree of frames and the
+belt, in Python and in the browser.
 """
 
 import math
@@ -36,8 +36,8 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
     given, turns = (list(zip("zxy", random.uniform(-3, 3, 3))) for _ in range(2))
 
     def end(chain):
-        # A chain about the box's own axes is an intrinsic sequence, and SciPy's matrices are
-        # transposes of ours.
+        # A chain about the box's own axes is an intrinsic sequence, and SciPy's
+        # matrices are transposes of ours.
         return Rotation.from_euler(
             "".join(axis for axis, _ in chain).upper(), [angle for _, angle in chain]
         )

@@ -1,5 +1,5 @@
-"""The mathematics of the moving figures, run in Node, against the module: two languages, one
-book.
+"""The mathematics of the moving figures, run in Node, against
+the module: two languages, one book.
 """
 
 import json
@@ -100,8 +100,8 @@ def given(kind, seed, choice):
 
 @pytest.mark.parametrize("name, choice", CALLS)
 def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
-    """Recorded from the module, and still held to its numbers: the recording itself could be
-    wrong.
+    """Recorded from the module, and still held to its numbers: the
+    recording itself could be wrong.
     """
     columns = [given(kind, seed, choice) for seed, kind in enumerate(FORMULAS[name][0].values())]
     count = min(map(len, columns))
@@ -115,9 +115,8 @@ def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
             formulas.camel(name), *(lists * first), *columns, *(lists * (not first))
         )
     )
-    if (
-        name == "body_fixed_from_dcm"
-    ):  # where the angles have no meaning of their own, the orientation has
+    # Where the angles have no meaning of their own, the orientation has.
+    if name == "body_fixed_from_dcm":
         make = module.dcm_from_body_fixed
         assert rotation_error(make(found, choice), columns[0]) < LARGEST
         clear = module.gimbal_lock_margin(expected, choice) > 1e-2
@@ -183,9 +182,8 @@ def test_nearest_matrix(in_browser_language):
     matrices = measured(3000)
     scales = np.linalg.svd(matrices, compute_uv=False)
     gap = scales[:, 1] + np.sign(np.linalg.det(matrices)) * scales[:, 2]
-    matrices = matrices[
-        gap > 0.05 * scales[:, 0]
-    ]  # close to several equally near ones no method is exact
+    # Close to several equally near ones no method is exact.
+    matrices = matrices[gap > 0.05 * scales[:, 0]]
     assert len(matrices) > 2500 and (np.linalg.det(matrices) < 0).any()
     expected = module.nearest_dcm(matrices)
     found = in_browser_language("nearestDcm", matrices)

@@ -1,5 +1,5 @@
-"""The tumbling racket: the integration in Python and in the browser's language, and the figure in a
-browser.
+"""The tumbling racket: the integration in Python and in the browser's
+language, and the figure in a browser.
 """
 
 import json
@@ -57,8 +57,8 @@ FEW_SECONDS = 4.0
 
 
 def integrated(moments, axis, disturbance, method, step, restored, seconds):
-    """Each description at every step, by the textbook's formulas, with the angular velocity that
-    SciPy finds.
+    """Each description at every step, by the textbook's formulas, with the
+    angular velocity that SciPy finds.
     """
     moments = np.array(moments)
     start = np.array([SPIN if axis == other else disturbance for other in "xyz"])
@@ -123,8 +123,8 @@ def test_the_figure_integrates_as_the_formulas_say(settings):
     ours = MotionFigure(**settings, time=FEW_SECONDS).run()
     for name, expected in integrated(**settings, seconds=FEW_SECONDS).items():
         assert ours[name].shape == expected.shape
-        # The figure finds the angular velocity in steps of a tenth. Angles go through gimbal lock,
-        # where errors grow.
+        # The figure finds the angular velocity in steps of a tenth. Angles go through
+        # gimbal lock, where errors grow.
         most = 1e-3 if name == "angles" else 2e-6
         assert abs(ours[name] - expected).max() < most, name
 
@@ -195,8 +195,8 @@ def errors_at(time=6.0, **settings):
 
 
 def test_each_description_is_given_the_same_angular_velocity():
-    """What the book says of Euler's method at 10 milliseconds: the descriptions are far from
-    equal.
+    """What the book says of Euler's method at 10 milliseconds: the
+    descriptions are far from equal.
     """
     errors = errors_at()
     assert errors == {
@@ -316,8 +316,8 @@ def test_the_still_shows_and_tells(body, moments, time):
 
 @pytest.fixture(scope="module")
 def node(tmp_path_factory):
-    """``node(code, data)``: what the code returns of the data, with everything of the figure in
-    scope.
+    """``node(code, data)``: what the code returns of the data, with
+    everything of the figure in scope.
     """
     module = "".join(map(bundle.body, bundle.SHARED)) + bundle.whole("motion")
 

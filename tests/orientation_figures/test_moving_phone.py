@@ -32,8 +32,8 @@ SEND = """([maker, angles, force, rate, from, to]) => {
     window.dispatchEvent(moved);
   }
 }"""
-# Chromium asks too by now, and without windows it has nobody to ask and refuses: here the answer is
-# set.
+# Chromium asks too by now, and without windows it has nobody to ask
+# and refuses: here the answer is set.
 ASKED = """
   for (const kind of [DeviceOrientationEvent, DeviceMotionEvent])
     kind.requestPermission = async () => window.permission ?? 'granted';
@@ -76,9 +76,8 @@ def test_both_makers_are_read_alike(open_figure, maker):
     ) == pytest.approx(RATE, abs=0.06)
     assert "magnetic north" in page.locator(".live .words").inner_text()
     page.get_by_role("button", name="Record").click()
-    page.evaluate(
-        "window.dispatchEvent(new DeviceMotionEvent('devicemotion'))"
-    )  # tells nothing, and is no sample
+    # Tells nothing, and is no sample.
+    page.evaluate("window.dispatchEvent(new DeviceMotionEvent('devicemotion'))")
     page.evaluate(SEND, [maker, ANGLES, force.tolist(), RATE, 10, 110])
     settle(page)
     with page.expect_download() as download:

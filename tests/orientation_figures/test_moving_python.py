@@ -205,9 +205,8 @@ def test_state_goes_to_the_page_and_back(figure):
     first = figure()
     _, still = bundle_of(first)
     state = json.loads(still["data-state"])
-    told = {
-        name: state.pop(name) for name in first.trait_names(told=True)
-    }  # constants of the front end
+    # Constants of the front end.
+    told = {name: state.pop(name) for name in first.trait_names(told=True)}
     assert told == {name: getattr(first, name) for name in told}
     assert state and set(state) == set(first.state())
     second = figure(**state)

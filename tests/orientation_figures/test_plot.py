@@ -74,8 +74,8 @@ def test_matplotlib_is_left_as_it_was():
 
 
 def points(path):
-    """The points of a path with steps or places of any kind, one list for each line that it
-    draws.
+    """The points of a path with steps or places of any kind, one
+    list for each line that it draws.
     """
     lines, here = [], np.zeros(2)
     for letter, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", path):
@@ -113,8 +113,8 @@ def test_short_paths_lead_along_the_same_points():
 
 def test_steps_along_one_axis_become_one_and_turning_back_does_not():
     assert _short_path("M 1 1 \nL 2 1 \nL 4 1 \nL 3 1 \nL 3 5 \nL 3 9 \n") == "M1 1l3 0-1 0 0 8"
-    # A point twice, as at the ends of a band: the step up to it had been lost, and every band was
-    # drawn too low.
+    # A point twice, as at the ends of a band: the step up to it had been lost,
+    # and every band was drawn too low.
     assert _short_path("M 1 1 \nL 1 6 \nL 1 6 \nL 4 4 \nL 1 1 \nz\n") == "M1 1l0 5 3-2-3-3z"
 
 

@@ -1,5 +1,5 @@
-"""The essay's world: its mathematics against the book's own, its stills, and the page as a reader
-meets it.
+"""The essay's world: its mathematics against the book's own, its stills,
+and the page as a reader meets it.
 """
 
 import json
@@ -100,8 +100,8 @@ def test_what_the_text_says_is_true():
         dcm_from_body_fixed((psi, np.pi / 2, 0.4 - psi), "zxy") for psi in np.linspace(-3, 3, 7)
     ]
     assert np.ptp(locked, axis=0) == pytest.approx(np.zeros((3, 3)), abs=1e-12)
-    # Near it, a star that passes half a degree beside the zenith sends the first motor round nearly
-    # half a turn.
+    # Near it, a star that passes half a degree beside the zenith sends the
+    # first motor round nearly half a turn.
     path = np.array([(x, np.radians(0.5), 1) for x in np.linspace(-0.3, 0.3, 101)])
     heading = np.unwrap(np.arctan2(-path[:, 0], path[:, 1]))
     assert np.radians(170) < abs(heading[-1] - heading[0]) < np.pi
@@ -228,8 +228,8 @@ def open_essay(browser, essay):
     contexts, faults = [], []
 
     def open_page(fragment="", **options):
-        # Without motion every picture is the last one: nothing to wait for, where graphics are
-        # drawn by the processor.
+        # Without motion every picture is the last one: nothing to wait for, where
+        # graphics are drawn by the processor.
         context = browser.new_context(
             viewport={"width": 640, "height": 420}, reduced_motion="reduce", **options
         )
@@ -324,8 +324,8 @@ FLICK = """() => {
 
 
 def free_body(dcm, rate, seconds, off=0.0):
-    """Where a body ends that is let go at this rate, by Euler's equations; or where an instrument
-    in it believes so.
+    """Where a body ends that is let go at this rate, by Euler's equations; or where
+    an instrument in it believes so.
     """
     inertia = np.array((1.1, 0.8, 1.25))
 
@@ -409,8 +409,8 @@ PLAIN = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Min
 
 
 def test_one_line_puts_a_figure_into_any_page(browser, tmp_path):
-    """A frame, and an element that leaves no other name: both show the figure as the address
-    says.
+    """A frame, and an element that leaves no other name: both show
+    the figure as the address says.
     """
     from notebook_pages.moving import scripts_and_styles
     from orientation_figures.moving import embedding

@@ -42,9 +42,8 @@ def run_in_page(page, text, name, *arguments):
 def test_a_formula_is_taken_from_the_reference(open_figure):
     page = open_figure(Formula())
     page.locator("button.take-formula").wait_for()
-    assert (
-        page.locator("button.take-formula").count() == 1
-    )  # nothing is offered of what is no formula
+    # Nothing is offered of what is no formula.
+    assert page.locator("button.take-formula").count() == 1
     page.click("button.take-formula")
     assert page.locator("select[aria-label=Language] option").all_text_contents() == [*LANGUAGES]
     page.select_option("select[aria-label=Language]", "JavaScript")

@@ -1,5 +1,5 @@
-"""Orientation from sensors, motion and means, against the package ahrs, which others wrote for the
-same purposes.
+"""Orientation from sensors, motion and means, against the package ahrs, which
+others wrote for the same purposes.
 
 Four of its parts are no judges, as of 0.3.1: its QUEST squares a matrix entry by entry and never
 begins Newton's method, its ``sarabandi`` and ``angular_distance`` disagree with SciPy, and its
@@ -48,9 +48,8 @@ def test_two_directions_as_its_triad(seed):
     seen = noisy(TURNS[seed], known, seed, 0.05)
     theirs = TRIAD(v1=known[0], v2=known[1]).estimate(*seen)
     assert abs(dcm_from_two_directions(seen, known) - theirs).max() < 1e-14
-    assert (
-        abs(dcm_from_two_directions(seen[::-1], known[::-1]) - theirs).max() > 1e-3
-    )  # the order counts
+    # The order counts.
+    assert abs(dcm_from_two_directions(seen[::-1], known[::-1]) - theirs).max() > 1e-3
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -111,8 +110,8 @@ def test_distances_means_and_ways_between():
 
 @pytest.mark.long
 def test_the_kalman_filter_follows_the_recording_as_madgwicks_filter_does():
-    """Two filters of quite different kinds, from one start, stay within some degrees while it is
-    carried about.
+    """Two filters of quite different kinds, from one start, stay within some
+    degrees while it is carried about.
     """
     x_imu, step = recordings.x_imu(), 1 / recordings.X_IMU_RATE
     force, field = x_imu.specific_force[:128].mean(axis=0), x_imu.magnetic_field[:128].mean(axis=0)

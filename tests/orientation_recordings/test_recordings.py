@@ -14,8 +14,8 @@ def body_from_earth(recording, conjugated):
 
 
 def disagreement_with_gyroscope(recording, conjugated):
-    """How badly the turns between successive quaternions follow the gyroscope, as a share of the
-    turning.
+    """How badly the turns between successive quaternions follow the
+    gyroscope, as a share of the turning.
     """
     dcms = body_from_earth(recording, conjugated)
     turned = rotation_vector_from_dcm(dcms[1:] @ dcms[:-1].swapaxes(-1, -2))
@@ -37,8 +37,8 @@ def test_the_gyroscope_tells_in_which_convention_the_quaternion_is(name, conjuga
 
 
 def test_the_x_imu_contradicts_itself():
-    """Its matrix is that of its quaternion in the book's reading; its angles, body fixed z-y-x,
-    give the transpose.
+    """Its matrix is that of its quaternion in the book's reading; its angles, body
+    fixed z-y-x, give the transpose.
     """
     recording = recordings.x_imu()
     time, matrices = recordings.x_imu_rotation_matrix()
@@ -72,8 +72,8 @@ def test_what_the_files_hold_is_licensed():
     assert "Brandon Rhodes" in licence and "MIT" in licence
 
 
-# Hours, minutes and seconds, degrees, minutes and seconds, as tables of the sky print them for the
-# epoch 2000.
+# Hours, minutes and seconds, degrees, minutes and seconds, as tables of the
+# sky print them for the epoch 2000.
 KNOWN = {
     "Sirius": (6, 45, 8.9, -1, 16, 42, 58),
     "Vega": (18, 36, 56.3, 1, 38, 47, 1),

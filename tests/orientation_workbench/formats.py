@@ -98,8 +98,8 @@ def phyphox_table():
 
 
 def sensor_logger():
-    """A zip of one table for each sensor, z before y before x; the accelerometer without gravity;
-    beside settings.
+    """A zip of one table for each sensor, z before y before x; the accelerometer
+    without gravity; beside settings.
     """
     found, time, gyr, acc, mag, quaternion = _parts()
     clock = (1.7e18 + 1e9 * time, time)
@@ -157,8 +157,8 @@ def lists_in_json():
 
 
 def sensor_log():
-    """SensorLog of the App Store: everything in one table, times of several clocks, and gravity in
-    its own columns.
+    """SensorLog of the App Store: everything in one table, times of several
+    clocks, and gravity in its own columns.
     """
     found, time, gyr, acc, mag, quaternion = _parts()
     gravity = _gravity(found) / GRAVITY
@@ -224,8 +224,8 @@ def andro_sensor():
 
 
 def physics_toolbox():
-    """Physics Toolbox Sensor Suite: g-force, linear acceleration, turning and field, in short
-    names.
+    """Physics Toolbox Sensor Suite: g-force, linear acceleration,
+    turning and field, in short names.
     """
     found, time, gyr, acc, mag, _ = _parts()
     names = "time;gFx;gFy;gFz;ax;ay;az;wx;wy;wz;p;Bx;By;Bz".split(";")
@@ -237,8 +237,8 @@ def physics_toolbox():
 
 
 def motion_sense():
-    """Core Motion in a data set: a column without a name that counts, angles, gravity, turning,
-    acceleration.
+    """Core Motion in a data set: a column without a name that counts,
+    angles, gravity, turning, acceleration.
     """
     found, time, gyr, acc, _, _ = _parts()
     gravity = _gravity(found) / GRAVITY
@@ -274,8 +274,8 @@ def meta_wear():
 
 
 def xsens_mtw():
-    """MT Manager: remarks, tabs, columns that hold nothing, a counter, and the rate among the
-    remarks.
+    """MT Manager: remarks, tabs, columns that hold nothing, a
+    counter, and the rate among the remarks.
     """
     _, time, gyr, acc, mag, quaternion = _parts()
     head = [
@@ -394,8 +394,8 @@ def gyroflow():
 
 
 def betaflight():
-    """Blackbox as its decoder writes it: settings in quotes, then very many columns, of which six
-    are wanted.
+    """Blackbox as its decoder writes it: settings in quotes, then very many
+    columns, of which six are wanted.
     """
     _, time, gyr, acc, _, _ = _parts()
     head = [
@@ -425,8 +425,8 @@ def betaflight():
 
 
 def ardupilot():
-    """Lines of several kinds, each beginning with its name; two instruments take turns, and angles
-    that were wanted.
+    """Lines of several kinds, each beginning with its name; two instruments take
+    turns, and angles that were wanted.
     """
     found, time, gyr, acc, mag, _ = _parts()
     lines = ["FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns",
@@ -491,8 +491,8 @@ def px4():
 
 
 def rostopic():
-    """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and covariances between the
-    vectors.
+    """As `rostopic echo -p` writes it: nanoseconds, a frame's name, and
+    covariances between the vectors.
     """
     _, time, gyr, acc, _, quaternion = _parts()
     names = ["%time", "field.header.seq", "field.header.stamp", "field.header.frame_id"]
@@ -518,8 +518,8 @@ def rostopic():
 
 
 def rostopic_in_blocks():
-    """As `rostopic echo` and `ros2 topic echo` print messages: one after another, parted by three
-    hyphens.
+    """As `rostopic echo` and `ros2 topic echo` print messages: one after
+    another, parted by three hyphens.
     """
     _, time, gyr, acc, _, quaternion = _parts()
     lines = []
@@ -591,8 +591,8 @@ def uzh_fpv():
 
 
 def tum():
-    """A remark with the names, blanks between numbers, seconds since 1970; turning before
-    pushes.
+    """A remark with the names, blanks between numbers, seconds
+    since 1970; turning before pushes.
     """
     _, time, gyr, acc, _, _ = _parts()
     head = ["# IMU of a table in motion", "# file: 'desk.bag'", "# timestamp wx wy wz ax ay az"]
@@ -694,8 +694,8 @@ def matlab_mobile():
 
 
 def flight_test():
-    """As those who fly name it: p, q and r about the axes, angles as Greek letters, the time of the
-    day.
+    """As those who fly name it: p, q and r about the axes, angles as
+    Greek letters, the time of the day.
     """
     found, time, gyr, acc, _, _ = _parts()
     angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
@@ -732,8 +732,8 @@ def rates_called_after_angles():
 
 
 def ros2_table():
-    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is left of them,
-    covariances between.
+    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is
+    left of them, covariances between.
     """
     _, time, gyr, acc, _, quaternion = _parts()
     lines = []
@@ -750,8 +750,8 @@ def ros2_table():
 
 
 def witmotion():
-    """Tabs, a clock of its own whose parts have no zeros before them, angles called AngleX, a field
-    without a unit.
+    """Tabs, a clock of its own whose parts have no zeros before them, angles
+    called AngleX, a field without a unit.
     """
     found, time, gyr, acc, mag, quaternion = _parts()
     angles = found["truth"].as_euler("ZYX", degrees=True)[:, ::-1]
@@ -798,8 +798,8 @@ def witmotion():
 
 
 def polar():
-    """A table for each sensor with the same three headings; [G] is gauss, as only the name of its
-    table says.
+    """A table for each sensor with the same three headings; [G] is gauss, as
+    only the name of its table says.
     """
     _, time, gyr, acc, mag, _ = _parts()
 
@@ -826,8 +826,8 @@ def polar():
 
 
 def dat_con():
-    """A drone's log: a clock that counts ticks before the one in seconds, and a word at the end of
-    each row.
+    """A drone's log: a clock that counts ticks before the one in seconds,
+    and a word at the end of each row.
     """
     found, time, gyr, acc, mag, quaternion = _parts()
     names = ["Clock:Tick#", "Clock:offsetTime", *(f"IMU_ATTI(0):accel{axis}" for axis in "XYZ")]
@@ -912,8 +912,8 @@ def mavlogdump():
 
 
 def one_sensor_a_line():
-    """What many small telephone programs write: a line for each sensor, and its name in the second
-    column.
+    """What many small telephone programs write: a line for each sensor,
+    and its name in the second column.
     """
     found, lines = recording(), ["timestamp,sensor,x,y,z"]
     kinds = {
@@ -957,8 +957,8 @@ def vector_nav():
 
 
 def increments():
-    """What many navigation programs read: seconds of the week, and by how much angle and speed have
-    grown.
+    """What many navigation programs read: seconds of the week, and by how
+    much angle and speed have grown.
     """
     _, time, gyr, acc, _, _ = _parts()
     columns = [456_300 + time, 0.01 * gyr, 0.01 * acc]
@@ -966,8 +966,8 @@ def increments():
 
 
 def xsens_mtw_with_a_clock():
-    """Its clock counts ten thousandths of a second, which nothing says but the rate above the
-    table.
+    """Its clock counts ten thousandths of a second, which nothing
+    says but the rate above the table.
     """
     _, time, gyr, acc, mag, _ = _parts()
     head = [

@@ -1,5 +1,5 @@
-"""Threads and pasted numbers that no reading, relation or cost was chosen for: looked for when the
-table was done.
+"""Threads and pasted numbers that no reading, relation or cost was chosen for:
+looked for when the table was done.
 
 ``MORE_THREADS`` is like ``THREADS``. ``PASTED`` holds what people really pasted: numbers with the
 brackets, names and digits that stand in the thread.

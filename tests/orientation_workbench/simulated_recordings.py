@@ -1,5 +1,5 @@
-"""Recordings of an instrument that is turned from pose to pose, with the truth, and with one thing
-wrong if wanted.
+"""Recordings of an instrument that is turned from pose to pose, with the truth,
+and with one thing wrong if wanted.
 """
 
 import numpy as np
@@ -15,8 +15,8 @@ def unit(vectors):
 
 
 def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
-    """Arrays of what an honest instrument says: gyroscope in rad/s, acceleration in m/s², field in
-    microtesla.
+    """Arrays of what an honest instrument says: gyroscope in rad/s,
+    acceleration in m/s², field in microtesla.
     """
     random = np.random.default_rng(seed)
     step = 1 / rate
@@ -42,9 +42,8 @@ def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
     rates, accelerations = np.concatenate(rates), np.concatenate(accelerations)
     count = len(rates)
     turns = Rotation.from_rotvec((rates[1:] + rates[:-1]) / 2 * step)
-    ground = [
-        Rotation.random(random_state=seed)
-    ]  # SciPy's rotations turn components of the body into the ground's
+    # SciPy's rotations turn components of the body into the ground's.
+    ground = [Rotation.random(random_state=seed)]
     for turn in turns:
         ground.append(ground[-1] * turn)
     ground = Rotation.concatenate(ground)
@@ -57,8 +56,8 @@ def simulate(seed, rate=100, poses=7, dip=60.0, strength=48.0):
         "accelerometer": ground.inv().apply([0, 0, GRAVITY] + accelerations)
         + 0.02 * random.normal(size=(count, 3)),
         "magnetometer": ground.inv().apply(field) + 0.3 * random.normal(size=(count, 3)),
-        # As scikit-kinematics and SciPy have them, the ground from the body, here with the scalar
-        # first.
+        # As scikit-kinematics and SciPy have them, the ground from the
+        # body, here with the scalar first.
         "quaternion": np.roll(
             (ground * Rotation.from_rotvec(np.radians(0.3) * slow)).as_quat(), 1, axis=1
         ),
@@ -190,8 +189,8 @@ FAULTS = {
 
 
 def faulty(kind, seed):
-    """The text of a recording with one thing wrong, by the names of ``FAULTS``; and the light that
-    belongs to it.
+    """The text of a recording with one thing wrong, by the names of ``FAULTS``;
+    and the light that belongs to it.
     """
     light, spoil = FAULTS[kind]
     recording = spoil(simulate(seed), np.random.default_rng(seed + 1000))

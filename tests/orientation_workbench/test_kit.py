@@ -1,5 +1,5 @@
-"""The kit for tests: five libraries are as their manuals say, and every copy with one thing flipped
-is caught.
+"""The kit for tests: five libraries are as their manuals say, and every
+copy with one thing flipped is caught.
 """
 
 import ahrs
@@ -79,8 +79,8 @@ def other_hand(result):
 
 
 def inverted(function, takes):
-    """A copy that gives the transpose; of a quaternion the conjugate, wherever its scalar
-    stands.
+    """A copy that gives the transpose; of a quaternion the
+    conjugate, wherever its scalar stands.
     """
     scalar = np.argmax(np.abs(np.ravel(function(*NO_TURN[takes]))))
 

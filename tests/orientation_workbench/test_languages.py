@@ -1,5 +1,5 @@
-"""Formulas that are taken away: compiled and run, they give what the module gives, in any
-convention.
+"""Formulas that are taken away: compiled and run, they give what
+the module gives, in any convention.
 """
 
 import itertools
@@ -32,8 +32,8 @@ JOBS = list(jobs())
 
 
 def given(name, seed):
-    """Arguments in this book's convention: orientations, at gimbal lock and at half a turn too, and
-    other numbers.
+    """Arguments in this book's convention: orientations, at gimbal lock and at
+    half a turn too, and other numbers.
     """
     random = np.random.default_rng(seed)
     special = [

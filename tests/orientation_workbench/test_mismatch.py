@@ -1,5 +1,5 @@
-"""Two programs that disagree: every mix-up is found by the numbers, none is named of unrelated
-ones.
+"""Two programs that disagree: every mix-up is found by the
+numbers, none is named of unrelated ones.
 """
 
 import functools
@@ -102,8 +102,8 @@ def same_meaning(chains, first, kind):
 
 @FEW_AND_ALL
 def test_mixtures_of_up_to_three_faults(count, piece):
-    """The true chain is always among the answers, first in 95 of 100; elsewhere what is first costs
-    no more.
+    """The true chain is always among the answers, first in 95 of 100;
+    elsewhere what is first costs no more.
     """
     generator, orientations = random.Random(500 + piece), np.random.default_rng(500 + piece)
     first_place = 0
@@ -169,8 +169,8 @@ def test_the_pose_that_is_asked_for_decides(count, piece, start):
 
 
 def test_what_special_poses_leave_open():
-    """Of the 2,304 relations by signed axes, a turn about one axis leaves eight and rest leaves
-    forty-eight.
+    """Of the 2,304 relations by signed axes, a turn about one axis leaves
+    eight and rest leaves forty-eight.
     """
     turned = printed([simple_dcm("z", 0.5)])
     back = printed([simple_dcm("z", -0.5)])
@@ -179,8 +179,8 @@ def test_what_special_poses_leave_open():
 
 
 def test_scipy_agrees_with_what_each_name_says():
-    """The other witness: what SciPy makes of the same numbers is found to be what SciPy's manual
-    says.
+    """The other witness: what SciPy makes of the same numbers is
+    found to be what SciPy's manual says.
     """
     rotations = Rotation.random(2, rng=np.random.default_rng(3))
     matrices, quaternions = printed(rotations.as_matrix()), printed(rotations.as_quat())
@@ -249,9 +249,8 @@ def test_spellings_of_a_matrix(spelling):
 QUATERNIONS = {
     "ROS": "pose:\n  position:\n    x: 1.5\n    y: 0.2\n    z: 9.0\n"
     "  orientation:\n    x: {x}\n    y: {y}\n    z: {z}\n    w: {w}",
-    "JSON": '{{"position": {{"x": 3, "y": 1, "z": 2}}, "orientation": {{"w": {w}, "x": '
-    '{x}, "y": {y}, '
-    '"z": {z}}}}}',
+    "JSON": '{{"position": {{"x": 3, "y": 1, "z": 2}}, "orientation": {{"w": {w}, "x": {x}, "y": '
+    '{y}, "z": {z}}}}}',
     "a trajectory": "1305031102.1758 1.3405 0.6266 1.6575 {x} {y} {z} {w}",
     "Unity": "({x}, {y}, {z}, {w})",
     "minus signs": "({x}, {y}, {z}, {w})",
@@ -303,10 +302,13 @@ SPELLED = {
     "            ({}, {}, {})>".format(*entries()),
     "nalgebra": "  \u250c              \u2510\n  \u2502 {} {} {} \u2502\n  \u2502 {} {} {} \u2502"
     "\n  \u2502 {} {} {} \u2502\n  \u2514         \u2518".format(*entries()),
-    "OpenCV's YAML": "R: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ {},\n"
-    "       {}, {}, "
-    "{},\n       "
-    "{}, {}, {}, {}, {} ]".format(*entries("{:.10e}")),
+    "OpenCV's YAML": "R: !!opencv-matrix\n"
+    "   rows: 3\n"
+    "   cols: 3\n"
+    "   dt: d\n"
+    "   data: [ {},\n"
+    "       {}, {}, {},\n"
+    "       {}, {}, {}, {}, {} ]".format(*entries("{:.10e}")),
     "TeX": r"\begin{{bmatrix}} {} & {} & {} \\ {} & {} & {} \\ {} & {} & {} \end{{bmatrix}}".format(
         *entries()
     ),
@@ -327,20 +329,37 @@ SPELLED = {
     "0.0, 1.0]]}}]}}".format(*entries()).replace('"rotation": 0.0125, ', ""),
     "KITTI": "{} {} {} 4.7 {} {} {} -1.25 {} {} {} 0.5".format(*entries()),
     "ROS 2 in Python": "geometry_msgs.msg.Pose(position=geometry_msgs.msg.Point(x=1.0, y=2.0, "
-    "z=3.0), "
-    "orientation=geometry_msgs.msg.Quaternion(x={x}, y={y}, z={z}, w={w}))".format(**parts()),
-    "an Imu message": "header:\n  seq: 12\n  stamp:\n    secs: 1574817405\n    nsecs: 846164606\n"
+    "z=3.0), orientation=geometry_msgs.msg.Quaternion(x={x}, y={y}, z={z}, "
+    "w={w}))".format(**parts()),
+    "an Imu message": "header:\n"
+    "  seq: 12\n"
+    "  stamp:\n"
+    "    secs: 1574817405\n"
+    "    nsecs: 846164606\n"
     "  frame_id: imu_link\n"
-    "orientation:\n  x: {x}\n  y: {y}\n  z: {z}\n  w: {w}\n"
-    "orientation_covariance: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, "
-    "0.0, 0.0]\nangular_velocity:\n  x: 0.1\n  y: 0.2\n  z: 0.3\n"
+    "orientation:\n"
+    "  x: {x}\n"
+    "  y: {y}\n"
+    "  z: {z}\n"
+    "  w: {w}\n"
+    "orientation_covariance: [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]\n"
+    "angular_velocity:\n"
+    "  x: 0.1\n"
+    "  y: 0.2\n"
+    "  z: 0.3\n"
     "angular_velocity_covariance: [0.0, 0.0, 0.0]\n"
-    "linear_acceleration:\n  x: 0.1\n  y: 0.2\n  z: 9.8\n---".format(**parts()),
-    "tf2_echo": "At time 1641239122.213901124\n- Translation: [1.000, 2.000, 3.000]\n"
-    "- Rotation: in Quaternion (xyzw) "
-    "[{x}, {y}, {z}, {w}]\n- Rotation: in RPY (radian) [0.1, 0.2, 0.3]\n"
+    "linear_acceleration:\n"
+    "  x: 0.1\n"
+    "  y: 0.2\n"
+    "  z: 9.8\n"
+    "---".format(**parts()),
+    "tf2_echo": "At time 1641239122.213901124\n"
+    "- Translation: [1.000, 2.000, 3.000]\n"
+    "- Rotation: in Quaternion (xyzw) [{x}, {y}, {z}, {w}]\n"
+    "- Rotation: in RPY (radian) [0.1, 0.2, 0.3]\n"
     "- Rotation: in RPY (degree) [5.7, 11.4, 17.1]\n"
-    "- Matrix:\n  1.000  0.000  0.000  1.000".format(**parts()),
+    "- Matrix:\n"
+    "  1.000  0.000  0.000  1.000".format(**parts()),
     "three.js": '{{"isQuaternion":true,"_x":{x},"_y":{y},"_z":{z},"_w":{w}}}'.format(**parts()),
     "Blender's quaternion": "<Quaternion (w={w}, x={x}, y={y}, z={z})>".format(**parts()),
     "Unreal": "X={x} Y={y} Z={z} W={w}".format(**parts()),
@@ -353,20 +372,20 @@ SPELLED = {
     "COLMAP": "1 {w} {x} {y} {z} -0.737434 1.02973 3.74354 1 P1180141.JPG".format(**parts()),
     "C#": "Debug.Log: ({x}f, {y}f, {z}f, {w}f)".format(**parts()),
     "in words": "x {x} y {y} z {z} w {w}".format(**parts()),
-    "a forum": "My sensor gives w={w} x={x} y={y} z={z} when I hold it at about 45 "
-    "degrees. Why??".format(**parts()),
+    "a forum": "My sensor gives w={w} x={x} y={y} z={z} when I hold it at about 45 degrees. "
+    "Why??".format(**parts()),
     "in a fence": "```python\n>>> r.as_quat()\narray([{x}, {y}, {z}, {w}])\n```\nThanks!!".format(
         **parts()
     ),
     "arguments": "--x 0.1 --y 0 --z 0.2 --qx {x} --qy {y} --qz {z} --qw {w}".format(**parts()),
-    "a trajectory's head": "# timestamp tx ty tz qx qy qz qw\n1305031102.1758 1.3405 0.6 1.6 "
-    "{x} {y} {z} {w}".format(**parts()),
+    "a trajectory's head": "# timestamp tx ty tz qx qy qz qw\n"
+    "1305031102.1758 1.3405 0.6 1.6 {x} {y} {z} {w}".format(**parts()),
     "a serial port": "qW: {w} qX: {x} qY: {y} qZ: {z}\t\tSys:3 G:3 A:0 M:1".format(**parts()),
     "Godot": "[X: ({}, {}, {}), Y: ({}, {}, {}), Z: ({}, {}, {}), O: (0.0, 1.5, 2.0)]".format(
         *entries()
     ),
-    "three.js's elements": "elements: Array(16)\n(16) [{}, {}, {}, 0, {}, {}, {}, 0, {}, {}, {}, "
-    "0, 0, 0, 0, 1]".format(*entries()),
+    "three.js's elements": "elements: Array(16)\n"
+    "(16) [{}, {}, {}, 0, {}, {}, {}, 0, {}, {}, {}, 0, 0, 0, 0, 1]".format(*entries()),
     "MATLAB's factor": "ans =\n\n   1.0e+00 *\n\n  {} {} {}\n  {} {} {}\n  {} {} {}\n\n>> ".format(
         *entries()
     ),
@@ -465,8 +484,8 @@ def slug(heading):
 
 
 def test_every_fault_leads_to_a_section_and_to_a_checked_question():
-    """Each fault that can be named has links; each leads to a heading, that of a question to
-    something checked.
+    """Each fault that can be named has links; each leads to a heading, that of
+    a question to something checked.
     """
     groups = {group["group"] for groups in table.KINDS.values() for group in groups}
     assert (
@@ -675,8 +694,8 @@ def test_public_threads_are_named(threads):
 
 ANGLES = (0.4, 0.7, -0.3)
 EXPECTED = dcm_from_body_fixed(ANGLES, "zxy")
-#: What is handed in for that orientation, the part of a chain that is the fault, and its words as
-#: `diagnose` has them.
+#: What is handed in for that orientation, the part of a chain that is the fault, and
+#: its words as `diagnose` has them.
 HANDED_IN = {
     "transposed": (EXPECTED.T, "inverse", "transpose"),
     "space fixed": (dcm_from_space_fixed(ANGLES, "zxy"), "axes of the turns", "space fixed"),
@@ -700,8 +719,8 @@ HANDED_IN = {
 
 @pytest.mark.parametrize("fault", HANDED_IN)
 def test_diagnose_and_explain_name_one_mixup(fault):
-    """What `diagnose` calls the only cause is the only fault of the chain that `explain` puts
-    first.
+    """What `diagnose` calls the only cause is the only fault of the
+    chain that `explain` puts first.
     """
     given, part, words = HANDED_IN[fault]
     expected = EXPECTED if given.shape == (3, 3) else quaternion_from_dcm(EXPECTED)
@@ -713,8 +732,8 @@ def test_diagnose_and_explain_name_one_mixup(fault):
     (cause,) = diagnose(given, expected, *angles).causes
     assert words in cause
     usual = table.BOOK | {"sequence": "zxy"}
-    # what was handed in, and the angles that were put in: degrees, where these were taken for
-    # radians
+    # what was handed in, and the angles that were put in: degrees,
+    # where these were taken for radians
     if angles:
         typed, usual = (
             (np.degrees(ANGLES), usual | {"unit": "degrees"})

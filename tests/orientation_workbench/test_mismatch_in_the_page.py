@@ -193,8 +193,8 @@ BITS = [
 
 
 def broken(generator, text):
-    """A text as it comes out of careless hands: something left out, put in or exchanged in a few
-    places.
+    """A text as it comes out of careless hands: something left out, put
+    in or exchanged in a few places.
     """
     for _ in range(generator.randint(1, 6)):
         place, other = sorted(generator.randrange(len(text) + 1) for _ in range(2))
@@ -205,8 +205,8 @@ def broken(generator, text):
 
 @pytest.mark.parametrize("count", [80, pytest.param(3_000, marks=pytest.mark.long)])
 def test_both_say_the_same_of_broken_text(count):
-    """Whatever is pasted, there is an answer or a word on what was read, and both languages say the
-    same.
+    """Whatever is pasted, there is an answer or a word on what was read,
+    and both languages say the same.
     """
     generator = random.Random(21)
     texts = [

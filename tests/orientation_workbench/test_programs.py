@@ -1,5 +1,5 @@
-"""What programs promise: numbers made as their manuals and sources say are found to differ by
-nothing else.
+"""What programs promise: numbers made as their manuals and sources say
+are found to differ by nothing else.
 """
 
 import json

@@ -1,5 +1,5 @@
-"""The bench for recordings: what it must find, on simulated instruments with one thing wrong and on
-real ones.
+"""The bench for recordings: what it must find, on simulated instruments
+with one thing wrong and on real ones.
 """
 
 import gzip
@@ -38,8 +38,8 @@ def test_one_wrong_thing_makes_its_light_red(kind):
 @pytest.mark.long
 @pytest.mark.parametrize("first", [200, 204, 208, 212, 216])
 def test_of_two_hundred_wrong_recordings_nearly_all_are_found(first):
-    """Of 240 recordings with one wrong thing in each, its light is red in 95 of 100, a fifth of
-    them at a time.
+    """Of 240 recordings with one wrong thing in each, its light is red in 95
+    of 100, a fifth of them at a time.
     """
     seeds = range(first, first + 4)
     missed = [
@@ -164,8 +164,8 @@ def test_scrambled_conventions_are_found(ways):
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("form", FORMS)
 def test_many_forms_hold_one_recording(form):
-    """Loaded without a word to help, each sensor is the one that it is, along the right axes,
-    sample by sample.
+    """Loaded without a word to help, each sensor is the one that it is, along
+    the right axes, sample by sample.
     """
     given, true = form(), recording()
     found = read_content(given.content, "recording")
@@ -242,9 +242,8 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
                 ["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]
             )
         )
-    with pytest.raises(
-        RecordingError, match="sought among right ascension"
-    ):  # as long as the Earth's field
+    # As long as the Earth's field.
+    with pytest.raises(RecordingError, match="sought among right ascension"):
         examine(DATA / "bright_stars.csv")
     (tmp_path / "empty.csv").write_bytes(b"")
     with pytest.raises(SystemExit) as ended:
@@ -253,8 +252,8 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
 
 
 def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path):
-    """A zip in a folder, packed tables, settings beside them: what holds no numbers is passed over,
-    not the rest.
+    """A zip in a folder, packed tables, settings beside them: what holds no
+    numbers is passed over, not the rest.
     """
     given = simulate(5, poses=2)
     files = {}
@@ -398,8 +397,8 @@ def test_iron_is_refused_where_the_turns_do_not_suffice():
 
 
 def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused():
-    """As far as lengths can: up to a turn. Gravity, which stands beside it, tells that the dip is
-    one then.
+    """As far as lengths can: up to a turn. Gravity, which stands beside
+    it, tells that the dip is one then.
     """
     for seed, poses in ((1, 9), (2, 9), (3, 3)):
         given = spoilt_by_iron(seed, poses, np.random.default_rng(seed))
@@ -470,8 +469,8 @@ def test_noise_is_read_off_where_it_shows_and_not_where_a_hand_is():
 
 
 def test_innovations_of_an_honest_filter_stay_within_their_bounds():
-    """In 95 of 100 runs, give or take two: four hundred runs of twenty seconds, at two
-    directions.
+    """In 95 of 100 runs, give or take two: four hundred runs of
+    twenty seconds, at two directions.
     """
     from scipy.stats import chi2  # every process collects this file, and one runs it
 

@@ -1,5 +1,5 @@
-"""A recording that is dropped onto the workbench: what the cell shows, and that the page hands over
-the file.
+"""A recording that is dropped onto the workbench: what the cell shows, and
+that the page hands over the file.
 """
 
 import base64

@@ -1,8 +1,8 @@
-"""Other engines than Chromium, driven by what their makers ship: Firefox by WebDriver BiDi,
-WebKitGTK by WebDriver.
+"""Other engines than Chromium, driven by what their makers ship: Firefox by
+WebDriver BiDi, WebKitGTK by WebDriver.
 
-Each gives the same small interface: ``go`` to an address, ``run`` a function in the page, ``wait``
-for a condition.
+Each gives the same small interface: ``go`` to an address, ``run`` a function in
+the page, ``wait`` for a condition.
 """
 
 import json
@@ -176,8 +176,8 @@ class WebKit(Engine):
             "XDG_RUNTIME_DIR": self.folder.name, "WEBKIT_DISABLE_COMPOSITING_MODE": "1",
             "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1", "GDK_BACKEND": "x11",
             "NO_AT_BRIDGE": "1", "LIBGL_ALWAYS_SOFTWARE": "1",
-            # Safari gives shared memory to isolated pages; this build of its engine does when it is
-            # asked to.
+            # Safari gives shared memory to isolated pages; this build of its
+            # engine does when it is asked to.
             "JSC_useSharedArrayBuffer": "1",
         }  # fmt: skip
         environment.pop("WAYLAND_DISPLAY", None)

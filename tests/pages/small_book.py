@@ -1,5 +1,5 @@
-"""A small book in many editions, and a server whose network breaks when a test wants it: for what a
-browser keeps.
+"""A small book in many editions, and a server whose network breaks when a test
+wants it: for what a browser keeps.
 """
 
 import json
@@ -19,8 +19,8 @@ PAGE = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{nam
 <script src="{up}_static/book.js?v={js}" defer></script></head>
 <body><article><section id="{name}"><h1>{name}</h1><p id="edition">{edition}</p></section>
 <section id="same"><h2>What stays</h2><p>The same in all editions.</p></section></article></body></html>"""
-# What a page shows, by its three parts: text, style and script. A page of two editions shows two
-# numbers.
+# What a page shows, by its three parts: text, style and script. A page
+# of two editions shows two numbers.
 SHOWN = """() => [document.querySelector("#edition")?.textContent, window.edition,
   getComputedStyle(document.documentElement).getPropertyValue("--edition").trim()].map(String)"""
 TOOLS = """const said = [], tools = { progress() {}, say: (text) => said.push(text), ask(text, actions) {
@@ -56,8 +56,8 @@ def sample(folder, with_scripts):
 
 
 def write_edition(folder, number, with_scripts=None):
-    """Write edition ``number`` into ``folder``; ``appendix/three`` and two files of its folder
-    never change.
+    """Write edition ``number`` into ``folder``; ``appendix/three`` and two
+    files of its folder never change.
     """
     sample(folder, with_scripts)
     files = {
@@ -91,8 +91,8 @@ def write_edition(folder, number, with_scripts=None):
 
 
 class Network(SimpleHTTPRequestHandler):
-    """Serves ``folder`` until ``left`` requests have been answered; then it is as ``broken``
-    says.
+    """Serves ``folder`` until ``left`` requests have been
+    answered; then it is as ``broken`` says.
     """
 
     folder, left, broken = None, None, "cut"

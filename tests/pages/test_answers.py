@@ -1,5 +1,5 @@
-"""What a reader writes in the page: kept in two tabs, through crashes and new editions, handed in,
-brought back.
+"""What a reader writes in the page: kept in two tabs, through crashes and new
+editions, handed in, brought back.
 """
 
 import csv
@@ -102,8 +102,8 @@ class Tab:
         )
 
     def shown(self):
-        """Everything that the page lets its reader see again: editors, offers, what was written
-        before.
+        """Everything that the page lets its reader see again: editors,
+        offers, what was written before.
         """
         return "\n".join(
             [*self.page.evaluate(CODES), *self.page.locator(".live-choice pre").all_text_contents()]
@@ -271,9 +271,8 @@ def test_notebook_is_loaded_back(context, site, tmp_path):
     tab.bring(path)
     tab.wait(ANSWER, "answer = 'mine'")
     assert "answer = 'newer'" in tab.shown()
-    with_more = nbformat.read(
-        path, as_version=4
-    )  # as from JupyterLab: a cell of one's own among the others
+    # As from JupyterLab: a cell of one's own among the others.
+    with_more = nbformat.read(path, as_version=4)
     with_more.cells.insert(2, nbformat.v4.new_code_cell("scratch = 1"))
     with_more.cells[-1].source += "  # seen"
     nbformat.write(with_more, path)
@@ -367,8 +366,8 @@ READ_COPY = """async (path) => {
 
 
 def visit_notebook(page, site, name, changes=None, choose="Open the new version"):
-    """What opening the notebook in JupyterLite does with its copy, and saving it with ``changes``
-    by grade_id.
+    """What opening the notebook in JupyterLite does with its copy, and saving
+    it with ``changes`` by grade_id.
 
     The page's own script runs, as before JupyterLite starts; only JupyterLite itself is played.
     """
@@ -378,9 +377,8 @@ def visit_notebook(page, site, name, changes=None, choose="Open the new version"
         served = json.loads((HTML / "lite" / "files" / f"{name}.ipynb").read_text("utf8"))
         start(tab, choose)
         if tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", None]) is None:
-            tab.evaluate(
-                WRITE_COPY, [f"{name}.ipynb", served]
-            )  # JupyterLite saves what it was given
+            # JupyterLite saves what it was given.
+            tab.evaluate(WRITE_COPY, [f"{name}.ipynb", served])
     else:
         start(tab, choose)
     cells = tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", changes])
@@ -393,7 +391,7 @@ def start(tab, choose):
     script = f"/runtime/{folder.name}/notebook.js"
     tab.evaluate(
         f"() => {{ window.started = import('{script}').then((m) => m.prepare()).then(() => "
-        f"'done'); }}"
+        "'done'); }"
     )
     tab.evaluate(
         """(choose) => Promise.race([window.started, new Promise((resolve) => {
@@ -443,8 +441,8 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
 
 
 def test_progress_is_one_for_pages_and_notebooks(context, site):
-    """What was right on either side stays right on both, and no wrong answer and no help is
-    forgotten.
+    """What was right on either side stays right on both, and no wrong
+    answer and no help is forgotten.
     """
     tab = Tab(context, site)
     path = "exercises/.coursework/progress.json"
@@ -494,8 +492,8 @@ def test_both_changed_the_newer_text_stands(context, site):
 
 
 def newer_book(notebook):
-    """The notebook of a new edition: one exercise is worded anew, and one comes before all
-    others.
+    """The notebook of a new edition: one exercise is worded anew,
+    and one comes before all others.
     """
     changed = json.loads(json.dumps(notebook).replace(BLANK, "A_C_N = ...  # nine entries"))
     for name, (cell, _) in changed["metadata"]["book"]["cells"].items():
@@ -628,9 +626,8 @@ def sandboxed(context, site, name, allow):
     outer.on("pageerror", lambda error: errors.append(str(error)))
     outer.goto(f"{site}search.html")
     outer.evaluate(
-        "([address, allow]) => { const frame = document.createElement('iframe'); "
-        "frame.sandbox = allow;"
-        " frame.style = 'width: 1280px; height: 800px'; frame.src = address; "
+        "([address, allow]) => { const frame = document.createElement('iframe'); frame.sandbox = "
+        "allow; frame.style = 'width: 1280px; height: 800px'; frame.src = address; "
         "document.body.replaceChildren(frame); }",
         [f"{site}{name}.html", allow],
     )
@@ -670,9 +667,9 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
 def fill(tab):
     """Leave no room in the browser's store."""
     tab.page.evaluate(
-        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try {"
-        " localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length "
-        "/ 2); } } }"
+        "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try { "
+        "localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / "
+        "2); } } }"
     )
 
 
@@ -733,14 +730,14 @@ def test_books_code_needs_no_room(context, site):
 
 
 def test_stored_number_does_not_stand_under_other_code(context, site):
-    """Where NumPy is absent, the book's result is folded away from below the reader's changed
-    code.
+    """Where NumPy is absent, the book's result is folded away from
+    below the reader's changed code.
     """
     page = "chapters/measured-matrices"
     tab = Tab(context, site, page)
     with_results = tab.page.evaluate(
-        "[...document.querySelectorAll('div.cell')].map((cell) => "
-        "!cell.closest('[inert]') && !!cell.querySelector('.cell_output'))"
+        "[...document.querySelectorAll('div.cell')].map((cell) => !cell.closest('[inert]') && "
+        "!!cell.querySelector('.cell_output'))"
     )
     number = next(
         place
@@ -763,16 +760,15 @@ def test_stored_number_does_not_stand_under_other_code(context, site):
 
 
 class Life:
-    """A reader at work: two tabs, crashes, new editions, the notebook. Nothing that was written may
-    be lost.
+    """A reader at work: two tabs, crashes, new editions, the notebook.
+    Nothing that was written may be lost.
     """
 
     def __init__(self, context, site, seed):
         self.context, self.site, self.random = context, site, random.Random(seed)
         self.number, self.edition = 0, 0
-        self.written = (
-            set()
-        )  # what must still be there: not typed over by the reader where it could be seen
+        # What must still be there: not typed over by the reader where it could be seen.
+        self.written = set()
         context.route(f"**/{EXERCISE}.html", self.serve_page)
         context.route(f"**/lite/files/{EXERCISE}.ipynb", self.serve_notebook)
         self.tabs = [Tab(context, site).edit(), Tab(context, site).edit()]
@@ -838,10 +834,8 @@ class Life:
     def crash(self):
         k = self.random.randrange(2)
         page = self.tabs[k].page
-        with (
-            page.expect_event("crash"),
-            suppress(Exception),
-        ):  # the tab is gone before it can answer
+        # The tab is gone before it can answer.
+        with page.expect_event("crash"), suppress(Exception):
             page.goto("chrome://crash")
         page.close()
         self.tabs[k] = Tab(self.context, self.site)
@@ -891,8 +885,8 @@ class Life:
         )
 
     def missing(self):
-        """What the reader can find nowhere: not on the page, not in the notebook or a copy of
-        it.
+        """What the reader can find nowhere: not on the page, not
+        in the notebook or a copy of it.
         """
         fresh = Tab(self.context, self.site).edit()
         seen = fresh.shown()

@@ -1,5 +1,5 @@
-"""A course of somebody's own becomes a site in one command, and its pages check what is answered in
-them.
+"""A course of somebody's own becomes a site in one command, and its
+pages check what is answered in them.
 """
 
 import os

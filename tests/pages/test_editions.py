@@ -1,5 +1,5 @@
-"""Which edition the book is, and the edition for exams: without solutions, and without a word that
-leads to one.
+"""Which edition the book is, and the edition for exams: without solutions,
+and without a word that leads to one.
 """
 
 import io
@@ -71,8 +71,8 @@ def test_the_front_page_says_how_the_book_is_cited():
 
 
 def test_what_is_new_is_told_of_chapters_that_are_there():
-    """Each chapter that readers of the last edition do not know is named among those that are
-    new.
+    """Each chapter that readers of the last edition do not know is
+    named among those that are new.
     """
     page = BeautifulSoup((HTML / "appendix" / "changes.html").read_text("utf8"), "lxml").article
     new = {link["href"] for link in page.select("#chapters-that-are-new dt a[href]")}

@@ -11,10 +11,10 @@ from notebook_pages.page import in_short
 
 RUN_ALL = "() => document.querySelector('button.run-page').click()"
 IS_DONE = (
-    "() => !document.querySelector('div.cell.running, div.cell.waiting, html.live-busy')"
-    " && /ran\\.|there already|could "
-    "not|rror/.test(document.querySelector('#live-words')?.textContent ?? '')"
-    " && document.querySelector('#live-words').textContent"
+    "() => !document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') && "
+    "/ran\\.|there already|could not|rror/.test(document.querySelector('#live-words')?.textContent "
+    "?? "
+    "'') && document.querySelector('#live-words').textContent"
 )
 
 
@@ -26,8 +26,8 @@ def engine(request):
 
 
 def compare(engine, site, name):
-    """Run the page; each cell that needs nothing from elsewhere gives what is printed. Returns how
-    many there are.
+    """Run the page; each cell that needs nothing from elsewhere gives what is
+    printed. Returns how many there are.
     """
     engine.go(site + name)
     engine.run("() => { localStorage.clear(); sessionStorage.clear(); }")
@@ -83,9 +83,8 @@ def test_stop_keeps_the_names(engine, site):
 def test_page_opens_and_is_read(engine, site):
     """Each day: one page, its mathematics, its typefaces, and its buttons."""
     engine.go(site + QUIET)
-    engine.run(
-        "() => localStorage.clear()"
-    )  # or, once Python was fetched, nothing is told of its size
+    # Or, once Python was fetched, nothing is told of its size.
+    engine.run("() => localStorage.clear()")
     engine.go(site + QUIET)
     engine.wait("() => !document.documentElement.matches('.settling, .in-parts')")
     seen = engine.run("""() => ({

@@ -67,9 +67,8 @@ def notebook(*codes, words="# A chapter"):
     return new_notebook(cells=[new_markdown_cell(words), *map(new_code_cell, codes)])
 
 
-FIGURES = notebook(
-    "from orientation_figures.drawing import Drawing", "1 +"
-)  # what is not Python is left to the run
+# What is not Python is left to the run.
+FIGURES = notebook("from orientation_figures.drawing import Drawing", "1 +")
 CHECKS = notebook("from coursework import check", "check('chapters/a', 1)")
 
 

@@ -11,8 +11,8 @@ LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
 SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
 FIGURES = re.compile(r'<link rel="figure-script" href="([^"?]*)')
-#: At most so many scripts: of the page itself, of its figures (what they share, and each kind), of
-#: its code.
+#: At most so many scripts: of the page itself, of its figures (what they
+#: share, and each kind), of its code.
 SCRIPTS = 1 + 2 + 2 + 1
 # What lies below is left alone until the test lets go.
 HOLD = "window.held = []; window.requestIdleCallback = (action) => held.push(action);"
@@ -26,8 +26,8 @@ window.release = () => { window.requestAnimationFrame = draw; held.splice(0).for
 # Where each block of the text begins.
 PLACES = """() => [...document.querySelectorAll('.bd-article section > *')].map(
   (block) => Math.round(block.getBoundingClientRect().top + scrollY))"""
-# Which elements that are not laid out were measured, by whatever a script can ask: that would lay
-# them out.
+# Which elements that are not laid out were measured, by whatever a script
+# can ask: that would lay them out.
 MEASURED = """
 window.measured = [];
 const isLeftAlone = (element) => document.documentElement.matches(".settling, .in-parts") && element.closest(".later")

@@ -1,5 +1,5 @@
-"""The book that a browser keeps is one edition or another, never half of each, whatever the network
-does.
+"""The book that a browser keeps is one edition or another, never half
+of each, whatever the network does.
 """
 
 import json
@@ -87,8 +87,8 @@ def shown(engine, address):
 
 
 def renew(engine, address, folder):
-    """Open a page until the newest edition is that of ``folder``: while one look at the network
-    lasts, none begins.
+    """Open a page until the newest edition is that of ``folder``: while one look
+    at the network lasts, none begins.
     """
     wanted, end = listed(folder)["edition"], time.monotonic() + PATIENCE
     while engine.run(NEWEST) != wanted:
@@ -99,8 +99,8 @@ def renew(engine, address, folder):
 
 @pytest.mark.parametrize("step", [4, pytest.param(1, marks=pytest.mark.long)])
 def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, editions, step):
-    """The network is cut after each request in turn, or every fourth, and comes back: the next
-    edition is whole.
+    """The network is cut after each request in turn, or every fourth, and comes
+    back: the next edition is whole.
     """
     with network(editions(1)) as (net, address):
         assert "is kept" in keep(engine, address, editions(1))

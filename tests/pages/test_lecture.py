@@ -92,9 +92,8 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
     slider.focus()
     value = slider.input_value()
     page.keyboard.press("ArrowRight")
-    assert (
-        step(page) == 6 and slider.input_value() != value
-    )  # whoever came by keyboard moves the figure
+    # Whoever came by keyboard moves the figure.
+    assert step(page) == 6 and slider.input_value() != value
     page.keyboard.press("PageDown")  # and a speaker's remote goes on
     assert step(page) == 7
     page.keyboard.type("3")

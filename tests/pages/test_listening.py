@@ -1,5 +1,5 @@
-"""Two chapters and an exercise as a screen reader walks through them: what the browser tells it, in
-its order.
+"""Two chapters and an exercise as a screen reader walks through them: what
+the browser tells it, in its order.
 """
 
 import re
@@ -76,8 +76,8 @@ def test_a_walk_through_the_page(browser, site, name):
     levels = [level for role, _, level in inside if role == "heading"]
     assert levels.count(1) == 1 and levels[0] == 1
     assert all(below <= above + 1 for above, below in zip(levels, levels[1:])), levels
-    # Formulas come as mathematics, each once, and nothing of how they are drawn, or of their
-    # source.
+    # Formulas come as mathematics, each once, and nothing of how
+    # they are drawn, or of their source.
     mathematics = [
         place for place, (role, _, _) in enumerate(inside) if role in ("math", "MathMLMath")
     ]

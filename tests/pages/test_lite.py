@@ -1,5 +1,5 @@
-"""Notebooks in the browser: JupyterLite opens a chapter and an exercise, runs them, and asks nobody
-else.
+"""Notebooks in the browser: JupyterLite opens a chapter and an
+exercise, runs them, and asks nobody else.
 """
 
 import hashlib
@@ -51,8 +51,8 @@ def test_every_notebook_is_there_and_its_page_opens_it():
 
 @pytest.mark.parametrize("page", notebook_pages())
 def test_notebook_is_the_page_ready_to_run(page):
-    """Exercises as they were released; chapters with all their code, and a word where NumPy comes
-    in.
+    """Exercises as they were released; chapters with all their code,
+    and a word where NumPy comes in.
     """
     source = nbformat.read(REPOSITORY / f"{page}.ipynb", as_version=4)
     if page.startswith("exercises/"):
@@ -317,8 +317,8 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
 
 @pytest.mark.long
 def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
-    """The page asks; the notebook knows it and shows that one's numbers; what is said there, the
-    page knows.
+    """The page asks; the notebook knows it and shows that one's numbers;
+    what is said there, the page knows.
     """
     question = "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants

@@ -32,8 +32,8 @@ ELSEWHERE = "https://cdn.jsdelivr.net/**"
 # has cells with and without NumPy, and runs in a moment
 QUIET = "chapters/successive-orientations.html"
 
-# The results of a page, as the reader sees them: each cell's output, without what differs on
-# purpose.
+# The results of a page, as the reader sees them: each cell's
+# output, without what differs on purpose.
 RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   const output = cell.querySelector(':scope > .cell_output');
   if (!output) return '';
@@ -64,9 +64,8 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
 # Drawings that are played have their controls.
 PLAYABLE = "() => !document.querySelector('figure[data-moving]:not([data-ready])')"
 RAN = (
-    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') "
-    "=== null && "
-    "document.querySelector('#live-words')?.textContent !== ''"
+    "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null "
+    "&& document.querySelector('#live-words')?.textContent !== ''"
 )
 
 
@@ -115,8 +114,8 @@ class Page:
         assert "ran." in self.words(), self.words()
 
     def results_of_a_run(self):
-        """What stands below each cell before the page is run, and after it, and what notes stand
-        there then.
+        """What stands below each cell before the page is run, and after it,
+        and what notes stand there then.
         """
         before = self.page.evaluate(RESULTS)
         self.run()
@@ -189,9 +188,8 @@ def shared(page_that_has_run):
     """A page whose cells have run once; a test that leaves it running spoils no other."""
     yield page_that_has_run
     assert page_that_has_run.errors == []
-    page_that_has_run.page.evaluate(
-        "localStorage.clear()"
-    )  # or the next page would bring the edits back
+    # Or the next page would bring the edits back.
+    page_that_has_run.page.evaluate("localStorage.clear()")
     if page_that_has_run.page.locator("html.live-busy").count():
         page_that_has_run.page.reload()
 
@@ -223,10 +221,8 @@ def test_every_notebook_is_a_page_with_code():
     }
     shown = {f"{name}.html" for name, kinds in kinds_of_cells().items() if on_the_page(kinds)}
     assert set(PAGES) == shown
-    assert notebooks - shown == {
-        "index.html",
-        "rotations.html",
-    }  # whose figures need no code on the page
+    # Whose figures need no code on the page.
+    assert notebooks - shown == {"index.html", "rotations.html"}
 
 
 def all_shown(results):
@@ -235,8 +231,8 @@ def all_shown(results):
 
 
 def equal_the_stored_ones(page, name, before, after, notes):
-    """Every cell that needs SymPy only gives what is printed; the others say why they did not
-    run.
+    """Every cell that needs SymPy only gives what is printed; the
+    others say why they did not run.
     """
     before, after = all_shown(before), list(map(in_short, after))
     for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
@@ -245,9 +241,8 @@ def equal_the_stored_ones(page, name, before, after, notes):
             assert note == [], f"cell {number}"
         elif kind["skip"]:
             assert note == []
-        elif kind["needs"] == [
-            "anywidget"
-        ]:  # a figure, or what asks one: all that it needs comes with the site
+        elif kind["needs"] == ["anywidget"]:
+            # A figure, or what asks one: all that it needs comes with the site.
             assert note == [], f"cell {number}"
         else:
             assert "Not run here" in note[0], f"cell {number}"
@@ -307,8 +302,8 @@ def test_pages_hardly_grow(name):
 
 
 def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
-    """KaTeX's own rules, which come with it, give way to those of the page: they would make all
-    formulas larger.
+    """KaTeX's own rules, which come with it, give way to those of the page:
+    they would make all formulas larger.
     """
     (sheet,) = HTML.glob("runtime/scripts-*/live.css")
     before, _, rules = sheet.read_text("utf8").partition("@layer katex {")
@@ -436,8 +431,8 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
 
 
 def test_one_setting_puts_them_beside_the_pages(monkeypatch):
-    """As the workflow that publishes sets it: the makefile's command and its folder are the
-    same.
+    """As the workflow that publishes sets it: the makefile's
+    command and its folder are the same.
     """
     monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
     assert runtime.numpy_setting("official") == "_build/numpy"
@@ -505,8 +500,8 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
 
 @pytest.mark.long
 def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, site):
-    """Byte by byte, and in place of the one before; the report needs more than this site holds, and
-    says so.
+    """Byte by byte, and in place of the one before; the report needs more
+    than this site holds, and says so.
     """
     page = Page(context, site, "workbench.html")
     tagged = (
@@ -547,8 +542,8 @@ def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, 
 
 @pytest.mark.long
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
-    """As on a page with a cell that is tagged ``remove-cell``: the build puts its code with the
-    next one.
+    """As on a page with a cell that is tagged ``remove-cell``: the build
+    puts its code with the next one.
     """
 
     def with_hidden_code(route):
@@ -601,8 +596,8 @@ def test_typo(shared):
 
 @pytest.mark.long
 def test_failing_cell_keeps_its_printed_result(context, site):
-    """Beside an error stands what the book has printed; it comes back alone with the book's
-    code.
+    """Beside an error stands what the book has printed; it comes
+    back alone with the book's code.
     """
     page = Page(context, site, QUIET)
     before = page.page.evaluate(RESULTS)[2]
@@ -783,8 +778,8 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
 
 
 def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, site):
-    """Its outputs are those of nobody: everybody's numbers, and questions that nobody has
-    attempted.
+    """Its outputs are those of nobody: everybody's numbers, and
+    questions that nobody has attempted.
     """
     name, question = "exercises/simple-orientations.html", "simple-orientations/boom"
     page = Page(context, site, name)
@@ -811,8 +806,8 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
 
 @pytest.mark.long
 def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(context, site):
-    """In any order of answers, names, a corrected name and reloads, the page says with whose
-    numbers one was right.
+    """In any order of answers, names, a corrected name and reloads, the page says
+    with whose numbers one was right.
     """
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
@@ -836,9 +831,8 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
 
     def reopened():
         page.page.reload()
-        page.page.wait_for_selector(
-            ".live-who"
-        )  # it asks for its scripts, since there are edits to bring back
+        # It asks for its scripts, since there are edits to bring back.
+        page.page.wait_for_selector(".live-who")
         return page.below(check)
 
     run()  # the editors come with Python
@@ -852,9 +846,8 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
             and f"are those of {who} now" in said
         )
     run()
-    assert reply.get_attribute("data-outcome") == "correct", page.below(
-        check
-    )  # the answer follows the numbers
+    # The answer follows the numbers.
+    assert reply.get_attribute("data-outcome") == "correct", page.below(check)
     assert "everybody" not in page.below(check)
     assert "✓ Right with" not in reopened() and "✓ Correct" in page.below(check)
     run()
@@ -926,8 +919,8 @@ def test_a_sibling_question_is_one_button_away(context, site):
     assert code.startswith(OFFERED.partition("\n")[0])
     assert "sibling = variant('simple-orientations/compass/sibling')" in code
     assert "check('simple-orientations/compass/sibling', other_compass)" in code
-    # That of nobody is the next. The page writes a minus where Python has a hyphen, and sets
-    # numbers one by one.
+    # That of nobody is the next. The page writes a minus where Python has a
+    # hyphen, and sets numbers one by one.
     own = notebook_questions("simple-orientations", 1)[
         "simple-orientations/compass"
     ].question.variant.shown
@@ -954,8 +947,8 @@ ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Pyt
 
 
 def stop(page, number, code):
-    """Run endless code, press Stop once it has begun, and return what stands below the cell
-    then.
+    """Run endless code, press Stop once it has begun, and return
+    what stands below the cell then.
     """
     page.try_code(number, code, wait=False)
     page.page.wait_for_function(
@@ -1155,8 +1148,8 @@ SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() 
 
 @pytest.mark.long
 def test_page_asked_for_twice_runs_once_and_in_order(context, site):
-    """While Python loads, and in the midst of the run: cells above would else run again after those
-    below.
+    """While Python loads, and in the midst of the run: cells above would
+    else run again after those below.
     """
     page = Page(context, site, QUIET)
     page.page.evaluate("""() => {
@@ -1410,8 +1403,8 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     )
     page.turn(60)
     page.says(page.figure, "ZeroDivisionError")
-    # Run below the figure itself makes it anew, as its code says, and a cell further down asks the
-    # new one.
+    # Run below the figure itself makes it anew, as its code says, and a
+    # cell further down asks the new one.
     page.cell(page.figure).locator("summary").first.click()
     page.cell(page.figure).locator("button.run-cell").click()
     expect(page.field()).to_have_value(str(as_the_code_says))
@@ -1423,8 +1416,8 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
 
 
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
-    """Where the server gives no shared memory, the first run loads the page again, by a service
-    worker.
+    """Where the server gives no shared memory, the first run loads the
+    page again, by a service worker.
     """
     context = browser.new_context()
     page = FigurePage(context, not_isolated)
@@ -1466,9 +1459,8 @@ def test_a_figure_is_set_from_a_matrix_of_the_readers_own(context, site):
         )
         cell.get_by_role("button", name=entry, exact=True).wait_for()
         shown = abs(float(cell.get_by_label("theta in degrees").input_value()))
-        assert shown == abs(float(angle)), (
-            matrix
-        )  # about the opposite axis it is the opposite angle
+        # About the opposite axis it is the opposite angle.
+        assert shown == abs(float(angle)), matrix
     # A reflection is refused, and the figure says why.
     assert "left-handed" in page.try_code(
         number, f"{turned}figure.dcm = [[1, 0, 0], [0, 1, 0], [0, 0, -1]]\nfigure"

@@ -1,5 +1,5 @@
-"""Previews: what a link leads to stands beside it for who points at it, or comes to it by the
-keyboard.
+"""Previews: what a link leads to stands beside it for who points at
+it, or comes to it by the keyboard.
 """
 
 import re
@@ -10,8 +10,8 @@ from test_site import NARROW, PAGES, WIDE, Visit, text, violations
 
 from notebook_pages import previews
 
-#: How links of each kind begin, on the page itself and on another one, and what of their target is
-#: shown.
+#: How links of each kind begin, on the page itself and on another one,
+#: and what of their target is shown.
 LINKS = {
     "equation here": ("#equation-", ".katex math"),
     "equation elsewhere": (r"[\w./-]+\.html#equation-", ".katex math"),

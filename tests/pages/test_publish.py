@@ -1,5 +1,5 @@
-"""What the built pages say of themselves to others, and what a published book adds when it knows
-its address.
+"""What the built pages say of themselves to others, and what a published
+book adds when it knows its address.
 """
 
 import io
@@ -148,8 +148,8 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
 
 
 def test_picture_of_a_page_is_its_first_figure():
-    """In the colours of the light page, as large as it fits, and small enough for those who show
-    it.
+    """In the colours of the light page, as large as it fits, and
+    small enough for those who show it.
     """
     for name in ("index", "chapters/euler-angles", "chapters/orientation-from-sensors"):
         figure, box, words = pictures.first_figure((HTML / f"{name}.html").read_text("utf8"))

@@ -64,9 +64,8 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
         )
         == "none"
     )
-    assert (
-        10 < covered.bounding_box()["height"] < 40
-    )  # one line with a word on it, never an empty field
+    # One line with a word on it, never an empty field.
+    assert 10 < covered.bounding_box()["height"] < 40
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text() == "Choose one first."
     wrong = box.locator(f'input:not([value="{right}"])').first
@@ -224,8 +223,8 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
 
 
 def test_right_answer_of_the_checker_counts(context, site):
-    """The page's Python puts its reply into the article; here the reply is put there by hand. It
-    was the third try.
+    """The page's Python puts its reply into the article; here the reply is put
+    there by hand. It was the third try.
     """
     page = opened(context, site)
     reply = Reply("chapters/right-handed", "correct")

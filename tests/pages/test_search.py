@@ -1,5 +1,5 @@
-"""The search: what readers type leads to the place that answers, from the third letter on and by
-the keyboard.
+"""The search: what readers type leads to the place that answers, from the
+third letter on and by the keyboard.
 
 The queries in ``queries`` were written down, with the places that answer, before the search was
 first run on them, and were never looked at while it was tuned: the head of each file says when it
@@ -160,8 +160,8 @@ def test_figures_are_found_by_their_captions_and_numbers(places_found):
 
 
 def test_names_slips_and_words_of_programs_are_understood(places_found):
-    """What nobody wrote as the book does, and what a table of JavaScript would take for something
-    of its own.
+    """What nobody wrote as the book does, and what a table of JavaScript
+    would take for something of its own.
     """
     leads_to = {
         "constructor": None,

@@ -1,5 +1,5 @@
-"""The built site as others serve it: no headers of ours, a path below the root, other types, a
-foreign frame.
+"""The built site as others serve it: no headers of ours, a path below the
+root, other types, a foreign frame.
 """
 
 import json
@@ -43,8 +43,8 @@ class Silent(SimpleHTTPRequestHandler):
 
 
 class LikeGitHubPages(Silent):
-    """The headers that GitHub Pages sends: every file may be kept for ten minutes, and anybody may
-    read it.
+    """The headers that GitHub Pages sends: every file may be kept for ten
+    minutes, and anybody may read it.
     """
 
     added = {
@@ -84,8 +84,8 @@ def page(browser):
 
 
 def run_and_stop(page, address):
-    """Run a cell, stop an endless one, and find the names still there: Python is isolated. Nothing
-    is forbidden.
+    """Run a cell, stop an endless one, and find the names still there: Python
+    is isolated. Nothing is forbidden.
     """
     page.goto(address + QUIET)
     assert page.get_attribute("button.run-page", "data-size") == SIZE
@@ -108,8 +108,8 @@ def run_and_stop(page, address):
 
 @pytest.mark.long
 def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
-    """A server that sends nothing of its own: a service worker isolates the page, and keeps the
-    book by choice.
+    """A server that sends nothing of its own: a service worker isolates the
+    page, and keeps the book by choice.
     """
     (tmp_path / "courses").mkdir()
     (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
@@ -223,13 +223,12 @@ def test_every_page_names_a_strict_policy_and_versions():
 
 @pytest.mark.long
 def test_in_a_foreign_frame(page, tmp_path):
-    """As in the page of a course on another host: code runs there, though the frame is not
-    isolated.
+    """As in the page of a course on another host: code runs there,
+    though the frame is not isolated.
     """
     with serving() as address:
-        frame_of = (
-            address.replace("127.0.0.1", "localhost") + QUIET
-        )  # another site than that around it
+        # Another site than that around it.
+        frame_of = address.replace("127.0.0.1", "localhost") + QUIET
         (tmp_path / "course.html").write_text(
             f'<link rel=icon href=data:,><iframe src="{frame_of}" width=1000 height=800></iframe>'
         )
@@ -294,8 +293,8 @@ def test_nginx_as_debian_has_it(page, tmp_path):
 
 @pytest.mark.long
 def test_policy_as_a_header_lets_python_run(page, tmp_path):
-    """A header, other than a page's own words, binds its threads too: Python starts under the same
-    rules.
+    """A header, other than a page's own words, binds its threads too:
+    Python starts under the same rules.
     """
     text = (HTML / QUIET).read_text("utf8")
     rules = text.partition(f'{POLICY_HEADER}" content="')[2].partition('"')[0]

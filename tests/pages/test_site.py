@@ -22,18 +22,16 @@ import orientation_recordings as recordings
 from notebook_pages import mathematics, page
 
 PAGES = html_pages()
-#: Of pages that are made alike: one with text, formulas and a figure, and one with questions and
-#: their drawings.
+#: Of pages that are made alike: one with text, formulas and a figure, and one
+#: with questions and their drawings.
 EVERY_DAY = ("chapters/reference-frames.html", "exercises/other-descriptions.html")
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
 HEAVIEST_PAGE, ESSAY = 310_000, 463_000  # bytes of the page itself, as it stands on the disk
 LARGEST_SHIFT = 0.001
-MOST_AWAITED, MOST_AWAITED_PACKED = (
-    100_000,
-    23_500,
-)  # bytes of a page's head and of its style sheets
+# Bytes of a page's head and of its style sheets.
+MOST_AWAITED, MOST_AWAITED_PACKED = (100_000, 23_500)
 
 WATCH_SHIFTS = """
 window.shift = 0;
@@ -55,8 +53,8 @@ MATHEMATICS = r"""() => {
   if (raw) faults.push("raw TeX: " + raw[0]);
   return faults;
 }"""
-# What lies beyond the edge of a box that scrolls or cuts: as good as not there for who does not
-# look for it.
+# What lies beyond the edge of a box that scrolls or cuts: as good as not
+# there for who does not look for it.
 HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
   && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
   && !box.closest("svg, input, select, textarea, .katex > :first-child, .unseen")).map((box) =>
@@ -125,8 +123,8 @@ class Visit:
         self.page.on("request", self.note_request)
         self.page.on("requestfinished", self.note_response)
         self.page.goto(site + name)
-        # The page is loaded. That nothing more comes is not always told, where many files were
-        # asked for at once.
+        # The page is loaded. That nothing more comes is not always told, where
+        # many files were asked for at once.
         with suppress(TimeoutError):
             self.page.wait_for_load_state("networkidle", timeout=20_000)
         self.page.wait_for_selector("html:not(.settling, .in-parts)")
@@ -137,8 +135,8 @@ class Visit:
             self.page.evaluate("document.fonts.ready.then(() => true)")
 
     def shift(self):
-        """How far lines moved; where the typefaces came late once more, their change is no
-        fault.
+        """How far lines moved; where the typefaces came late once
+        more, their change is no fault.
         """
         late = self.page.evaluate("document.documentElement.dataset.typefaces === 'late'")
         return 0 if late else self.page.evaluate("window.shift")
@@ -226,8 +224,8 @@ def test_page_in_dark_and_narrow(browser, site, name):
 
 
 def test_little_is_awaited_before_the_first_line_is_seen():
-    """On a slow telephone this is the time until something is seen: styles in the head, and no
-    script.
+    """On a slow telephone this is the time until something is seen:
+    styles in the head, and no script.
     """
     styles, weights = {}, {}
     for name in PAGES:
@@ -278,8 +276,8 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     page.route("**/_static/page-*.js*", lambda route: held.append(route))
     page.goto(site + name, wait_until="commit")
     assert set(asked(page)) == named
-    # What stands until they come is a typeface of the machine, if it has such a one: it is not
-    # counted.
+    # What stands until they come is a typeface of the machine, if it
+    # has such a one: it is not counted.
     loaded = (
         "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' "
         "for now'))"
@@ -374,8 +372,8 @@ def written_cells():
 
 
 def stand_as_katex_sets_them(run, within=1):
-    """Our shorter HTML of some formulas, letter by letter, against KaTeX's own; ``run`` runs a
-    function in a page.
+    """Our shorter HTML of some formulas, letter by letter, against KaTeX's own;
+    ``run`` runs a function in a page.
     """
     formulas = sorted(
         {unescape(tex) for name in PAGES for tex in re.findall(r' data-tex="([^"]*)"', text(name))}
@@ -574,8 +572,8 @@ def test_nothing_in_the_site_is_idle():
     everything = "\n".join(
         path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds
     )
-    # By a part of their name that a script puts together: what a page's links lead to, and a
-    # formula's languages.
+    # By a part of their name that a script puts together: what a page's links
+    # lead to, and a formula's languages.
     made = ("previews/", "formulas-")
     idle = [
         p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything

@@ -1,5 +1,5 @@
-"""What a browser keeps of the book is one store with one version: older forms are taken over, newer
-ones left alone.
+"""What a browser keeps of the book is one store with one version: older forms are
+taken over, newer ones left alone.
 """
 
 import json
@@ -63,8 +63,8 @@ def test_what_the_second_edition_kept_is_all_there(context, site):
 
 
 def test_older_form_is_taken_over_again_only_where_it_has_changed(context, site):
-    """What the reader takes back stays away, and what a tab of the second edition still writes
-    comes.
+    """What the reader takes back stays away, and what a tab of the
+    second edition still writes comes.
     """
     page = context.new_page()
     kept_before(page, site, SECOND)
@@ -202,8 +202,8 @@ def test_three_tabs_that_type_in_one_cell_at_one_moment_lose_nothing(context, si
 
 
 def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
-    """Only what another tab has written meanwhile is joined: a mistake that was looked at again is
-    over.
+    """Only what another tab has written meanwhile is joined: a mistake
+    that was looked at again is over.
     """
     page = opened(context, site)
     keep = (
@@ -215,9 +215,8 @@ def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
     after = {"q": {"outcome": "correct"}}
     page.evaluate(keep, [after, before])
     assert json.loads(page.evaluate("bookStore.tries().text")) == after
-    page.evaluate(
-        keep, [{"q": {"outcome": "wrong", "answers": ["a"]}}, before]
-    )  # of a tab that began earlier
+    # Of a tab that began earlier.
+    page.evaluate(keep, [{"q": {"outcome": "wrong", "answers": ["a"]}}, before])
     assert json.loads(page.evaluate("bookStore.tries().text"))["q"]["outcome"] == "correct"
 
 
@@ -297,8 +296,8 @@ def test_backup_of_a_newer_edition_is_refused_in_words(context, site, tmp_path):
 
 
 def test_no_other_script_asks_the_browser_to_keep_anything():
-    """But for what ends with the tab, and for the page's head, which makes do where storage is
-    forbidden.
+    """But for what ends with the tab, and for the page's head, which
+    makes do where storage is forbidden.
     """
     asks = re.compile(r"\blocalStorage\b|\bindexedDB\b|\bcaches\.|document\.cookie")
     sources = [

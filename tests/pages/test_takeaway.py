@@ -64,8 +64,8 @@ def words(text):
 
 
 def needed_by(names):
-    """The distributions that ``names`` lead to, themselves among them, as this environment holds
-    them.
+    """The distributions that ``names`` lead to, themselves among
+    them, as this environment holds them.
     """
     found, waiting = {}, list(names)
     while waiting:
@@ -91,8 +91,8 @@ def requirements(wheel):
 
 @pytest.fixture(scope="module")
 def readers_python(tmp_path_factory):
-    """Python with the wheels that lie beside the downloads, what they ask for, and Jupyter's
-    kernel; no more.
+    """Python with the wheels that lie beside the downloads, what they ask
+    for, and Jupyter's kernel; no more.
 
     What pip would fetch is linked from here, which takes no time. That pip itself comes to the same
     is what ``test_everything_runs_where_pip_installed_the_wheels`` shows.
@@ -204,8 +204,8 @@ def test_students_have_the_command_that_updates_and_no_other(
     assert (tmp_path / "euler-angles.ipynb").is_file()
 
 
-# All scripts run, and each notebook has the code of its script: two show that a notebook runs as
-# one.
+# All scripts run, and each notebook has the code of its script: two
+# show that a notebook runs as one.
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["reference-frames", "convention-card"])
 def test_notebook_runs(name, tmp_path, readers_python, readers_variables):

@@ -1,5 +1,5 @@
-"""The whole book to take away: what the PDF holds, and the zip as a reader opens it, from disk
-without a network.
+"""The whole book to take away: what the PDF holds, and the zip as a reader
+opens it, from disk without a network.
 """
 
 import io
@@ -39,8 +39,8 @@ MILLIMETRE = 72 / 25.4
 
 @pytest.fixture(autouse=True)
 def made(request):
-    """All files, made by `make take-away` from the site as it stands; `make test` does not look at
-    them.
+    """All files, made by `make take-away` from the site as it stands;
+    `make test` does not look at them.
     """
     if request.node.get_closest_marker("long") and not all(
         path.exists() for path in (PDF, EPUB, ZIP)
@@ -95,8 +95,8 @@ def places(book):
 
 @pytest.fixture(scope="module")
 def chapter_texts(places, texts):
-    """The texts of the pages that each page of the site has in the PDF, without what stands above
-    and below.
+    """The texts of the pages that each page of the site has in the PDF,
+    without what stands above and below.
     """
     starts = [(name, places[pdf.place(name)]) for name in pages() if name != "index"]
     ends = [start for _, start in starts[1:]] + [len(texts)]
@@ -111,8 +111,8 @@ def chapter_texts(places, texts):
 
 
 def is_there(words, texts):
-    """Whether a page has ``words``, or a page has their beginning and the next one begins with the
-    rest.
+    """Whether a page has ``words``, or a page has their beginning and
+    the next one begins with the rest.
     """
 
     def goes_on(here, there):
@@ -155,8 +155,8 @@ def test_bookmarks_are_the_parts_chapters_and_sections(book):
         children = found.pop(caption)
         assert [child.title for child in children] == [headings[name][0] for name in names]
         for child, name in zip(children, names):
-            # Replies to questions, which a fold hides on the page, stand at the end of what is
-            # printed.
+            # Replies to questions, which a fold hides on the page, stand
+            # at the end of what is printed.
             hidden = 'class="replies' in (HTML / f"{name}.html").read_text("utf8")
             assert [section.title for section in child.children] == headings[name][1:] + [
                 "Answers"
@@ -202,8 +202,8 @@ def test_contents_list_has_the_right_page_numbers(places, texts):
 @pytest.mark.long
 @pytest.mark.parametrize("name", pages()[1:])
 def test_chapter_is_whole(name, chapter_texts):
-    """Its sentences can be searched for; its equations, figures and exercises have their
-    numbers.
+    """Its sentences can be searched for; its equations, figures
+    and exercises have their numbers.
     """
     text = " ".join(chapter_texts[name])
     for number in article(name).select(".eqno"):
@@ -257,8 +257,8 @@ def test_formulas_are_there_and_are_read_in_words(book):
 
 @pytest.mark.long
 def test_it_is_told_to_screen_readers_as_the_standard_says(book):
-    """The list of how a file can fail PDF/UA-1 finds nothing; that it finds faults, test_tagged.py
-    tries.
+    """The list of how a file can fail PDF/UA-1 finds nothing; that it
+    finds faults, test_tagged.py tries.
     """
     assert faults(book) == []
 
@@ -271,8 +271,8 @@ def test_pictures_and_notes_are_not_of_what_was_never_tried(texts):
 
 @pytest.mark.long
 def test_no_page_is_nearly_empty_without_reason(places, texts):
-    """At most one in forty is less than half full, other than the last of a chapter: what follows
-    is in one piece.
+    """At most one in forty is less than half full, other than the last of a
+    chapter: what follows is in one piece.
     """
     document = pdfium.PdfDocument(PDF)
     last = {places[pdf.place(name)] for name in pages()[1:]} | {len(document)}
@@ -291,8 +291,8 @@ def test_no_page_is_nearly_empty_without_reason(places, texts):
 
 @pytest.mark.long
 def test_no_glyph_comes_from_elsewhere(book):
-    """Where our typefaces have no glyph, the browser would take one from the machine, or draw a
-    box.
+    """Where our typefaces have no glyph, the browser would take one
+    from the machine, or draw a box.
     """
     fonts = {}
     for page in book.pages:
@@ -345,8 +345,8 @@ def test_too_wide_a_line_stops_the_printing(browser):
 
 
 def test_a_still_tells_its_numbers():
-    """What stands beside a figure on the screen, for the figures whose numbers one would read
-    off.
+    """What stands beside a figure on the screen, for the figures
+    whose numbers one would read off.
     """
     third = math.pi / 3
     assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
@@ -405,9 +405,10 @@ def test_offer_is_written_and_withdrawn():
 @pytest.fixture(scope="module")
 def chapters_of_epub():
     with zipfile.ZipFile(EPUB) as archive:
+        # All is text.
         return {
             name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()
-        }  # all is text
+        }
 
 
 @pytest.mark.long
@@ -478,8 +479,8 @@ def test_same_files_give_the_same_zip(monkeypatch):
 
 
 def test_pages_in_the_zip_ask_for_nothing_ahead():
-    """Of a typeface that is to be fetched ahead, Chromium says on every page from a disk that it
-    cannot use it.
+    """Of a typeface that is to be fetched ahead, Chromium says on every page
+    from a disk that it cannot use it.
     """
     page = (
         '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n'
@@ -511,9 +512,8 @@ def from_disk(browser, unpacked):
     page, faults = context.new_page(), []
 
     def note_failure(request):
-        if (
-            request.failure != "net::ERR_ABORTED"
-        ):  # what a page still asked for when the reader left it
+        # What a page still asked for when the reader left it.
+        if request.failure != "net::ERR_ABORTED":
             faults.append(f"{request.failure}: {request.url}")
 
     def note_words(message):
@@ -611,8 +611,8 @@ def test_run_says_what_to_do_from_disk(from_disk, unpacked):
 
 @pytest.mark.long
 def test_small_server_of_the_zip(unpacked, tmp_path):
-    """Started from anywhere, it serves its own folder, with the types that modules and WebAssembly
-    need.
+    """Started from anywhere, it serves its own folder, with the types
+    that modules and WebAssembly need.
     """
     process = subprocess.Popen(
         [sys.executable, "-I", unpacked / "serve.py", "0"],

@@ -1,5 +1,5 @@
-"""One orientation in numbers where plain Python stands in for NumPy: the same answers, looking the
-same.
+"""One orientation in numbers where plain Python stands in for NumPy:
+the same answers, looking the same.
 """
 
 import json

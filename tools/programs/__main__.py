@@ -1,5 +1,5 @@
-"""Ask the programs of the convention card, each in its newest version, and print what changed since
-it was stored.
+"""Ask the programs of the convention card, each in its newest version, and
+print what changed since it was stored.
 
 Each is asked what it makes of two turns, and runs every line of code that the converter writes for
 it. Everything is installed in ``_build/programs``, where nothing of the book is, and each program
@@ -36,8 +36,8 @@ ROUNDING = 1e-5
 
 
 def installed(program):
-    """Command that asks one program, once what it takes is installed; None if that cannot be had
-    here.
+    """Command that asks one program, once what it takes is installed;
+    None if that cannot be had here.
     """
     if program in BY_NODE:
         shutil.copy(HERE / "answers.mjs", PLACE)
@@ -59,8 +59,8 @@ def installed(program):
 
 
 def jobs_of(program):
-    """Every line that the converter can write for a program: orientations like any other, a half
-    turn, and no turn.
+    """Every line that the converter can write for a program: orientations like any
+    other, a half turn, and no turn.
     """
     dcms = [*random_orientations(3, np.random.default_rng(7)), np.diag([1.0, -1, -1]), np.eye(3)]
     return [{"side": side, "dcm": dcm.tolist()} for side in sides(program) for dcm in dcms]
@@ -79,8 +79,8 @@ def wrong_lines(program, jobs, lines, made):
 
 
 def ask(program):
-    """What a program answers now, as plain data, and the lines that it reads otherwise; or why
-    nothing is known.
+    """What a program answers now, as plain data, and the lines that it reads
+    otherwise; or why nothing is known.
     """
     if (command := installed(program)) is None:
         return "cannot be installed here", []

@@ -1,5 +1,5 @@
-"""What one program answers, asked in an environment that has it: ``python answers.py PROGRAM <
-questions.json``.
+"""What one program answers, asked in an environment that has it: ``python
+answers.py PROGRAM < questions.json``.
 
 Each of the ``orientations`` comes as an axis and an angle, and is made by the program itself from
 these, or, for a camera, by what it sees. The answers go to standard output as JSON: the version,
@@ -35,8 +35,8 @@ WXYZ, XYZW, XYZ = quaternion("wxyz"), quaternion("xyzw"), angles("xyz")
 
 
 def axes_of_a_camera(axis, angle):
-    """Rows: where x, y and z of a camera point to after a turn, by Rodrigues' formula for each of
-    them.
+    """Rows: where x, y and z of a camera point to after a turn, by
+    Rodrigues' formula for each of them.
     """
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -96,16 +96,16 @@ def opencv(axis, angle):
     yield "cv2.Rodrigues(m)[0]", VECTOR, cv2.Rodrigues(cv2.Rodrigues(angle * axis)[0])[0]
 
 
-#: Corners that a camera looks at, each at its own depth, along its x (right), y (down) and z
-#: (forward).
+#: Corners that a camera looks at, each at its own depth, along its x
+#: (right), y (down) and z (forward).
 CORNERS = np.array([(x, y, 5 + x * y + 0.3 * x) for x in (-1, 0.2, 1) for y in (-1, 0.4, 1)])
 
 
 def solve_pnp(axis, angle):
     cv2 = import_module("cv2")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
-    # A point that lies right of the camera's line of sight is seen to the right: no program has
-    # been asked so far.
+    # A point that lies right of the camera's line of sight is seen to the right:
+    # no program has been asked so far.
     seen = CORNERS[:, :2] / CORNERS[:, 2:]
     _, vector, _ = cv2.solvePnP(CORNERS @ rows + place, seen, np.eye(3), None)
     yield "cv2.solvePnP(points, seen, K, None)[1]", VECTOR, vector
@@ -222,8 +222,8 @@ def robot_with(origin):
 
 
 def urdf(axis, angle):
-    """The three angles of an element are made from the matrix, and the file's reader makes its own
-    matrix of them.
+    """The three angles of an element are made from the matrix, and the file's
+    reader makes its own matrix of them.
     """
     x, y, z = axes_of_a_camera(axis, angle).T
     given = (np.arctan2(z[1], z[2]), np.arcsin(-z[0]), np.arctan2(y[0], x[0]))

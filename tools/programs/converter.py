@@ -1,5 +1,5 @@
-"""The converter of the page, asked from here: every form and sequence of a program, and its lines
-of code.
+"""The converter of the page, asked from here: every form and sequence
+of a program, and its lines of code.
 """
 
 import itertools
@@ -56,8 +56,8 @@ def converted(jobs):
 
 
 def sides(program):
-    """Every form and sequence that a program of the table takes; for another program every reading
-    as well.
+    """Every form and sequence that a program of the table takes; for
+    another program every reading as well.
     """
     if program == OTHER:
         names = ("program", "form", "sequence", "matrix", "scalar", "unit")

@@ -1,5 +1,5 @@
-"""The command ``coursework``: what authors and instructors run, and how students get newer
-exercises.
+"""The command ``coursework``: what authors and instructors run,
+and how students get newer exercises.
 """
 
 import argparse

@@ -1,5 +1,5 @@
-"""What an author forgets or misspells is refused before anything is released, in words that say
-what to do.
+"""What an author forgets or misspells is refused before anything is
+released, in words that say what to do.
 """
 
 from pathlib import Path

@@ -216,8 +216,8 @@ def test_what_the_packages_import_they_ask_for():
 
 @pytest.mark.long
 def test_a_mended_package_has_another_version(tmp_path):
-    """What students hold is replaced by what is named otherwise: only what is released has the
-    plain version.
+    """What students hold is replaced by what is named otherwise: only what
+    is released has the plain version.
     """
     shutil.copytree(
         Path(coursework.__file__).parent,
@@ -283,8 +283,8 @@ def test_a_mended_package_has_another_version(tmp_path):
 def test_where_nothing_can_be_written_the_selftest_says_so_first(
     statics, tmp_path, monkeypatch, capsys
 ):
-    """As in a checkout that belongs to somebody else; with another place for its page it runs, and
-    keeps nothing.
+    """As in a checkout that belongs to somebody else; with another place for its
+    page it runs, and keeps nothing.
     """
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
@@ -308,8 +308,8 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
 def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
     statics, tmp_path, monkeypatch, capsys
 ):
-    """The deflection of a beam, with numbers of one's own: an ordinary question, and soon
-    guessed.
+    """The deflection of a beam, with numbers of one's own: an
+    ordinary question, and soon guessed.
     """
     course = shutil.copytree(statics, tmp_path / "course")
     answer = (
@@ -321,8 +321,8 @@ def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
         "### END HIDDEN TESTS"
     )
     text = (
-        "The load is 450 N, the length 2 m, and EI is 2000 N m2. Give the deflection F l^3 / 3EI "
-        "as `deflection`."
+        "The load is 450 N, the length 2 m, and EI is 2000 N m2. "
+        "Give the deflection F l^3 / 3EI as `deflection`."
     )
     cells = [
         ("code", "import sympy as sm\nfrom coursework import check"),
@@ -430,8 +430,8 @@ def test_from_nothing_to_a_graded_notebook(outside):
 
 @pytest.mark.long
 def test_a_second_course_with_variants(outside):
-    """Plane statics: thirteen questions, seven of them in variants, with nothing of the book at
-    hand.
+    """Plane statics: thirteen questions, seven of them in variants,
+    with nothing of the book at hand.
     """
     place, run = outside
     course = place / "plane-statics"

@@ -1,5 +1,5 @@
-"""Numbers with their units, orders, lists that are right in part, texts that a person reads, plots
-of Matplotlib.
+"""Numbers with their units, orders, lists that are right in part, texts that a
+person reads, plots of Matplotlib.
 """
 
 import random
@@ -54,8 +54,8 @@ def test_the_size_of_units_that_are_made_of_others(text):
 
 
 def test_units_are_those_of_sympy():
-    """Each named unit against SymPy's own dimensions and factors; powers of a product are sums of
-    exponents.
+    """Each named unit against SymPy's own dimensions and factors; powers of
+    a product are sums of exponents.
     """
     from sympy.physics import units as theirs
 
@@ -220,9 +220,8 @@ def test_an_order_that_is_right_in_part_earns_its_share():
     question = make("order", PLANETS, options=sorted(PLANETS), partial=True, worth=10)
     assert share(question, PLANETS)[0] == 10
     points, said = share(question, ["Venus", "Mercury", *PLANETS[2:]])
-    assert (
-        points == 8 and said[-1] == "9 of 10 pairs stand in the right order."
-    )  # 0.9 beyond one half
+    # 0.9 beyond one half.
+    assert points == 8 and said[-1] == "9 of 10 pairs stand in the right order."
     assert share(question, PLANETS[::-1])[0] == 0
     alone = make("order", PLANETS, options=sorted(PLANETS), worth=10)
     assert share(alone, ["Venus", "Mercury", *PLANETS[2:]])[0] == 0
@@ -232,9 +231,8 @@ def test_who_guesses_a_list_earns_nothing_on_average():
     chance = random.Random(SEED)
     right = [chance.random() < 0.5 for _ in range(12)]
     truths = make("truth values", right, length=12, partial=True, worth=12)
-    assert (
-        share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6
-    )  # 9 of 12, beyond 6
+    # 9 of 12, beyond 6.
+    assert share(truths, [not right[0], not right[1], not right[2], *right[3:]])[0] == 6
     words = ["N", "N m", "Pa", "N/m"]
     answer = [chance.choice(words) for _ in range(8)]
     question = marking.contract_of(

@@ -13,8 +13,8 @@ from coursework.checking.reading import Reading
 
 @pytest.mark.parametrize("tolerance", [5e-4, 5e-10, 5e-13])
 def test_the_last_bits_of_a_number_are_in_no_seal(tolerance):
-    """Beside an edge, rounding cannot but tip: that is seldom, and a release that other machines
-    compare tells of it.
+    """Beside an edge, rounding cannot but tip: that is seldom, and a release that
+    other machines compare tells of it.
     """
     question, source = Question("expression", tolerance=tolerance), random.Random(1)
     moved = 0

@@ -1,5 +1,5 @@
-"""The manual for authors: its examples are questions that pass, and the replies that it prints are
-the real ones.
+"""The manual for authors: its examples are questions that pass, and the
+replies that it prints are the real ones.
 """
 
 import csv
@@ -128,8 +128,8 @@ STEPS = {
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.long
 def test_each_step_to_a_question_that_is_hard_to_guess_was_tried(step, monkeypatch):
-    """With the ideas of coursework alone: a plug-in that is installed has more, which come first
-    and are counted.
+    """With the ideas of coursework alone: a plug-in that is installed has more,
+    which come first and are counted.
     """
     for module in (attacks, typed):
         monkeypatch.setattr(module, "plugins", list)
@@ -160,8 +160,8 @@ def test_every_message_that_the_manual_explains_is_one_that_is_said():
 
 @pytest.mark.long
 def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_path):
-    """From an empty folder to the marks, as one who has nothing but the manual and the two
-    packages.
+    """From an empty folder to the marks, as one who has nothing but
+    the manual and the two packages.
     """
     blocks = re.findall(r"```console\n(.*?)```", MANUAL, re.S)
     assert (

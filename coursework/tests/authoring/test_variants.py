@@ -1,5 +1,5 @@
-"""Variants of a question: drawn by rule, sealed one by one, and each student's own found without a
-server.
+"""Variants of a question: drawn by rule, sealed one by one, and each
+student's own found without a server.
 """
 
 import base64
@@ -45,15 +45,16 @@ TEXT = (
 )
 SOLVED = "### BEGIN SOLUTION\nmoment = lever.force * lever.arm\n### END SOLUTION"
 DRAWN = (
-    "### BEGIN VARIANTS\nlever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, "
-    "3, 7])\n"
+    "### BEGIN VARIANTS\n"
+    "lever = draw('levers/see-saw', count=6, force=[20, 30, 45, 65], arm=[2, 3, 7])\n"
     "### END VARIANTS"
 )
 CHECKED = (
-    "check('levers/see-saw', moment)\n### BEGIN HIDDEN TESTS\n"
-    "question('levers/see-saw', kind='expression', "
-    "mistakes={'Force and arm are multiplied, not added.': lever.force + lever.arm}, "
-    "solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n### END HIDDEN TESTS"
+    "check('levers/see-saw', moment)\n"
+    "### BEGIN HIDDEN TESTS\n"
+    "question('levers/see-saw', kind='expression', mistakes={'Force and arm are multiplied, not "
+    "added.': lever.force + lever.arm}, solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n"
+    "### END HIDDEN TESTS"
 )
 CELLS = [
     ("markdown", "# Levers"),
@@ -129,9 +130,8 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [
         False
     ]
-    assert (
-        identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages
-    )  # without variants
+    # Without variants
+    assert identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
@@ -147,8 +147,8 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
 
 
 def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
-    """Pasted with the classmate's numbers, or worked out with everybody's: it is no help, no try,
-    and earns no hint.
+    """Pasted with the classmate's numbers, or worked out with everybody's: it is no
+    help, no try, and earns no hint.
     """
     lever = coursework.variant(NAME)
     for other in (number for number in range(6) if number != 2):
@@ -169,8 +169,8 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
 def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(
     beside, course, monkeypatch, tmp_path, capsys
 ):
-    """Solved with everybody's numbers, and only then said who one is: both are said, in every place
-    that tells.
+    """Solved with everybody's numbers, and only then said who one is: both are
+    said, in every place that tells.
     """
     monkeypatch.setattr(progress, "KEPT", tmp_path / ".coursework" / "progress.json")
     coursework.student("")
@@ -202,8 +202,8 @@ NUMBERS = {"": 0, "ada": 1, "eda": 2, "ida": 1}
 def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_of_others(
     first, monkeypatch, tmp_path
 ):
-    """All orders of answers, names (one of them mistyped, one of a classmate with the same numbers)
-    and editions.
+    """All orders of answers, names (one of them mistyped, one of a classmate
+    with the same numbers) and editions.
     """
     monkeypatch.setattr(progress, "KEPT", tmp_path / "progress.json")
 
@@ -321,8 +321,8 @@ def test_variants_are_different_fair_and_of_the_students_own(course):
 
 
 def test_empty_lockers_are_like_the_others_and_come_again(course):
-    """A second release gives the same; what the first one sealed is all there, and opens as
-    before.
+    """A second release gives the same; what the first one sealed is
+    all there, and opens as before.
     """
     known = sorted(course.sealed.rglob("*.json"))
     before = {path: path.read_bytes() for path in known}
@@ -437,8 +437,8 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
 
 
 def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
-    """The record is of a variant: with an identity the points are still to be earned, and no hint
-    is brought along.
+    """The record is of a variant: with an identity the points are still to be
+    earned, and no hint is brought along.
     """
     coursework.student(" ")
     everybody = coursework.variant(NAME)
@@ -676,8 +676,8 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
 
 @pytest.mark.long
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
-    """Their pages follow upon those of the first variant, which another machine's numbers had made
-    others.
+    """Their pages follow upon those of the first variant, which another
+    machine's numbers had made others.
     """
     made = made_in(tmp_path)
     solved = SOLVED.replace("moment =", "import os\nmoment = float(os.environ['MOVED_BY']) +")
@@ -724,8 +724,8 @@ def test_an_author_is_told(tmp_path, old, new, says):
 
 
 def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
-    """Of 2 N at 2 m the sum is the product: one variant in which a mistake gives the right
-    answer.
+    """Of 2 N at 2 m the sum is the product: one variant in which a
+    mistake gives the right answer.
     """
     made = made_in(tmp_path)
     drawn = (
@@ -750,11 +750,17 @@ PICTURED = [
     ("code", "from coursework import check, student, variant\nstudent('')"),
     (
         "code",
-        "### BEGIN VARIANTS\nclass Drawn:\n    def __init__(self, force):\n"
+        "### BEGIN VARIANTS\n"
+        "class Drawn:\n"
+        "    def __init__(self, force):\n"
         "        self.alt = f'A beam & {force} arrows'\n"
-        "    def picture(self):\n        return f'<svg width=\"9\">{self.alt}</svg>'\n\n\n"
-        "lever = draw('levers/see-saw', count=3, force=[2, 5, 6], "
-        "picture=lambda drawn: Drawn(drawn['force']))\n### END VARIANTS",
+        "    def picture(self):\n"
+        "        return f'<svg width=\"9\">{self.alt}</svg>'\n"
+        "\n"
+        "\n"
+        "lever = draw('levers/see-saw', count=3, force=[2, 5, 6], picture=lambda drawn: "
+        "Drawn(drawn['force']))\n"
+        "### END VARIANTS",
     ),
     ("markdown", "{{picture}}\n\nHow many arrows?"),
     ("code", "### BEGIN SOLUTION\nmoment = lever.force\n### END SOLUTION"),

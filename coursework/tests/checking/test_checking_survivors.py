@@ -21,9 +21,8 @@ def test_what_agrees_to_three_digits_is_told_so_and_nothing_else(count):
 
     assert {reply(share) for share in (1e-3, -1e-3, 5e-4, -3e-4)} == {"rounded too far"}
     assert "rounded too far" not in {reply(share) for share in (0.1 * count, -0.1 * count)}
-    assert (
-        len(one.near) <= 4
-    )  # with cells as narrow as what it may be off by, there would be hundreds
+    # With cells as narrow as what it may be off by, there would be hundreds.
+    assert len(one.near) <= 4
 
 
 # ---- work and powers ---------------------------------------------------------------------------
@@ -37,8 +36,8 @@ def test_nothing_to_the_power_of_nothing_is_one():
 
 @pytest.mark.parametrize(("operation", "count"), [("sin", 1_500), ("Add", 12_000), ("Mul", 12_000)])
 def test_complex_numbers_are_dearer(operation, count):
-    """Many times the time of real ones: what is enough for real numbers is too much for complex
-    ones.
+    """Many times the time of real ones: what is enough for real
+    numbers is too much for complex ones.
     """
 
     def last(first):

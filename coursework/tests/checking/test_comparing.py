@@ -61,8 +61,8 @@ LOCKERS = {
     text_of(EXACT, [x, 0.4714, 5], near=True): Locker(),
 }
 DECIMALS = (
-    "It holds decimal fractions, but the question asks for an exact answer: write "
-    "`sm.Rational(1, 2)` and `sm.sqrt(3)`."
+    "It holds decimal fractions, but the question asks for an exact answer: write `sm.Rational(1, "
+    "2)` and `sm.sqrt(3)`."
 )
 NEARLY = (
     "This agrees with the exact answer to about three digits, but the question asks for an exact "

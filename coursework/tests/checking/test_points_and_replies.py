@@ -1,5 +1,5 @@
-"""Where the symbols of a question are sampled, how a reply is shown, and how a page fetches what is
-sealed.
+"""Where the symbols of a question are sampled, how a reply is shown, and
+how a page fetches what is sealed.
 """
 
 import itertools
@@ -144,8 +144,8 @@ def test_a_reply_as_text():
 BEGINS = '<div class="coursework-reply" role="status" data-outcome="wrong"'
 STYLE = ' style="border-left:.3em solid #b54708;padding:.2em .8em">'
 HEAD = (
-    '<p style="margin:.3em 0"><strong><span aria-hidden="true">✗</span> Not yet</strong> '
-    '<span style="opacity:.8">levers/&lt;one&gt;'
+    '<p style="margin:.3em 0"><strong><span aria-hidden="true">✗</span> Not yet</strong> <span '
+    'style="opacity:.8">levers/&lt;one&gt;'
 )
 SAID = (
     '<p style="margin:.3em 0">Say <em>so</em>: <span class="math">$x_1 &lt; 2$</span>.</p>'

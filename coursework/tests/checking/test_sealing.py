@@ -1,5 +1,5 @@
-"""What is sealed, to the letter: what students hold has to open for ever. And who gets which
-variant.
+"""What is sealed, to the letter: what students hold has to open
+for ever. And who gets which variant.
 """
 
 import base64

@@ -161,8 +161,8 @@ def test_what_is_no_newer_archive_changes_nothing(make, words, work, tmp_path):
 
 
 def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
-    """Nothing else says which is older: the package is the same in both, and so are the times of
-    the files.
+    """Nothing else says which is older: the package is the same in both,
+    and so are the times of the files.
     """
     files = [{"a.ipynb": notebook(word), NEW_WHEEL: b""} for word in ("one", "two", "three")]
     one, two, three = (

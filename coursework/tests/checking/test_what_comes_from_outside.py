@@ -1,5 +1,5 @@
-"""What is read from outside: what is wrong is said with its key and value, and what is right is
-written again.
+"""What is read from outside: what is wrong is said with its key and value,
+and what is right is written again.
 """
 
 import json

@@ -1,5 +1,5 @@
-"""What is written down beside a notebook, and what is read again of it: entry by entry, reader by
-reader.
+"""What is written down beside a notebook, and what is read again of
+it: entry by entry, reader by reader.
 """
 
 import json
@@ -180,8 +180,8 @@ def test_who_works_here_is_said_once(folder, capsys):
     assert identity.identity() == "ann ä" == identity.KEPT.read_text("utf8")
     said = capsys.readouterr().out
     assert said.splitlines() == [
-        "With the numbers of bob you have solved a. That stays written down; for the numbers of "
-        "ann ä, run the cells again.",
+        "With the numbers of bob you have solved a. "
+        "That stays written down; for the numbers of ann ä, run the cells again.",
         "With the numbers that everybody sees you have solved b. That stays written down; for the "
         "numbers of ann ä, run the cells again.",
     ]

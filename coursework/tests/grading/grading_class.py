@@ -1,5 +1,5 @@
-"""A small course for the tests of grading: notebooks with solutions, and students who work on
-them.
+"""A small course for the tests of grading: notebooks with
+solutions, and students who work on them.
 """
 
 import copy
@@ -11,38 +11,43 @@ SOURCES = {
         ("markdown", "# Exercises: turns"),
         (
             "code",
-            "import sympy as sm\n\nfrom coursework import check\n\n"
-            "theta, alpha, beta = sm.symbols('theta, alpha, "
-            "beta')",
+            "import sympy as sm\n"
+            "\n"
+            "from coursework import check\n"
+            "\n"
+            "theta, alpha, beta = sm.symbols('theta, alpha, beta')",
         ),
         (
             "code",
-            "### BEGIN SOLUTION\nA_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), "
-            "sm.sin(theta)], [0, "
-            "-sm.sin(theta), sm.cos(theta)]])\n### END SOLUTION",
+            "### BEGIN SOLUTION\n"
+            "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, -sm.sin(theta), "
+            "sm.cos(theta)]])\n"
+            "### END SOLUTION",
         ),
         (
             "code",
-            "check('turns/about-x', A_C_N)\n### BEGIN HIDDEN TESTS\n"
-            "question('turns/about-x', kind='rotation "
-            "matrix', frames=('A', 'N'), "
-            "symbols='theta', turns=[('x', theta)], worth=2, credit={'transposed': 0.5})\n"
+            "check('turns/about-x', A_C_N)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            "question('turns/about-x', kind='rotation matrix', frames=('A', 'N'), symbols='theta', "
+            "turns=[('x', theta)], worth=2, credit={'transposed': 0.5})\n"
             "### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\nsine = sm.sin(alpha + beta)\n### END SOLUTION"),
         (
             "code",
-            "check('turns/sum', sine)\n### BEGIN HIDDEN TESTS\n"
-            "question('turns/sum', kind='expression', "
-            "symbols='alpha beta', worth=1)\n### END HIDDEN TESTS",
+            "check('turns/sum', sine)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            "question('turns/sum', kind='expression', symbols='alpha beta', worth=1)\n"
+            "### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\ndef doubled(x):\n    return 2*x\n### END SOLUTION"),
         (
             "code",
-            "check('turns/doubled', doubled)\n### BEGIN HIDDEN TESTS\n"
-            "question('turns/doubled', kind='function', "
-            "calls=[[1.5], [-2.0]], "
-            "result='expression', worth=3)\n### END HIDDEN TESTS",
+            "check('turns/doubled', doubled)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            "question('turns/doubled', kind='function', calls=[[1.5], [-2.0]], "
+            "result='expression', worth=3)\n"
+            "### END HIDDEN TESTS",
         ),
     ],
     "axes": [
@@ -50,23 +55,24 @@ SOURCES = {
         ("code", "### BEGIN SOLUTION\nangle = sm.pi/6\n### END SOLUTION"),
         (
             "code",
-            "check('axes/angle', angle)\n### BEGIN HIDDEN TESTS\n"
-            "question('axes/angle', kind='expression', "
-            "quantity='angle', worth=1)\n### END HIDDEN TESTS",
+            "check('axes/angle', angle)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            "question('axes/angle', kind='expression', quantity='angle', worth=1)\n"
+            "### END HIDDEN TESTS",
         ),
         ("code", "### BEGIN SOLUTION\nlength = sm.sqrt(3)*q\n### END SOLUTION"),
         (
             "code",
-            "check('axes/length', length)\n### BEGIN HIDDEN TESTS\n"
-            "question('axes/length', kind='expression', "
-            "symbols='q', worth=1)\n### END HIDDEN TESTS",
+            "check('axes/length', length)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            "question('axes/length', kind='expression', symbols='q', worth=1)\n"
+            "### END HIDDEN TESTS",
         ),
     ],
 }
 RIGHT = {
     "turns/about-x": "A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), sm.sin(theta)], [0, "
-    "-sm.sin(theta), "
-    "sm.cos(theta)]])",
+    "-sm.sin(theta), sm.cos(theta)]])",
     "turns/sum": "sine = sm.sin(alpha)*sm.cos(beta) + sm.cos(alpha)*sm.sin(beta)",
     "turns/doubled": "doubled = lambda x: x + x",
     "axes/angle": "angle = 0.523599",
@@ -112,8 +118,8 @@ def variable(name):
 
 
 def handed_in(assignment="turns", also=(), **answers):
-    """A student's notebook: right, but for the answers that are given by the last part of their
-    question's name.
+    """A student's notebook: right, but for the answers that are given by the
+    last part of their question's name.
 
     ``also`` are cells that come last.
     """

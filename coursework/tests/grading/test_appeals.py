@@ -1,5 +1,5 @@
-"""Decisions, appeals and lines of a rubric are events: what they come to is told, and nothing
-counts unseen.
+"""Decisions, appeals and lines of a rubric are events: what they come to
+is told, and nothing counts unseen.
 """
 
 import csv
@@ -55,9 +55,10 @@ def write_essays(folder, rubric=RUBRIC, right="5", text="Why?"):
         ("markdown", text),
         "### BEGIN SOLUTION\nwhy = 'A couple has the same moment about every point.'\n"
         "### END SOLUTION",
-        f"check('{ESSAY}', why)\n### BEGIN HIDDEN TESTS\n"
-        f"question('{ESSAY}', kind='free text', worth=3, "
-        f"rubric={rubric!r})\n### END HIDDEN TESTS",
+        f"check('{ESSAY}', why)\n"
+        "### BEGIN HIDDEN TESTS\n"
+        f"question('{ESSAY}', kind='free text', worth=3, rubric={rubric!r})\n"
+        "### END HIDDEN TESTS",
         ("markdown", "How much is 2 + 3?"),
         f"### BEGIN SOLUTION\ntotal = sm.Integer({right})\n### END SOLUTION",
         f"check('{SUM}', total)\n### BEGIN HIDDEN TESTS\n"
@@ -284,8 +285,8 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     said = io.StringIO()
     regrade(out.folder, solutions=reworded, show=said)
     assert "changed since" not in said.getvalue()
-    # Handed in anew, the answer is judged anew, and what was decided on the earlier one is not
-    # forgotten.
+    # Handed in anew, the answer is judged anew, and what was decided on
+    # the earlier one is not forgotten.
     put(tmp_path / "in", "ben", answered("Since.", 7), "essays.ipynb")
     grade(tmp_path / "in", out.folder, show=said, **options)
     assert out.read("ben", "essays").points == 0
@@ -368,8 +369,8 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
         )
     regrade(out.folder, solutions=solutions, show=io.StringIO())
     assert points_of(out) == {"ada": 4.5, "ben": 1, "cem": 1.5}
-    # In the source: what it says last is newer than what the page said; nobody has more than all,
-    # or less than nothing.
+    # In the source: what it says last is newer than what the page said; nobody has
+    # more than all, or less than nothing.
     mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
     found = regrade(out.folder, solutions=mended, dry_run=True)
     assert {one.student: (one.before, one.after) for one in found.changes} == {

@@ -1,5 +1,5 @@
-"""Every attack of the corpus fails, and costs nobody else anything; without its layer it
-succeeds.
+"""Every attack of the corpus fails, and costs nobody else
+anything; without its layer it succeeds.
 """
 
 import contextlib
@@ -133,8 +133,8 @@ def taken(result):
 
 @contextlib.contextmanager
 def attackable():
-    # Not pytest's own folder, which is closed to other users: that is not what must keep attacks
-    # out.
+    # Not pytest's own folder, which is closed to other users: that
+    # is not what must keep attacks out.
     folder = Path(tempfile.mkdtemp(prefix="attacked-"))
     folder.chmod(0o755)
     attacked = Surroundings(folder)
@@ -150,8 +150,8 @@ def surroundings():
 
 
 def suffer(answer):
-    """Run all attacks, each followed by an honest notebook, on two workers; send what they left
-    behind.
+    """Run all attacks, each followed by an honest notebook, on two
+    workers; send what they left behind.
     """
     # Orphans become children of this process, so that none can hide.
     assert ctypes.CDLL(None).prctl(36, 1, 0, 0, 0) == 0
@@ -236,8 +236,8 @@ UNPROTECTED = sorted({attack.without for attack in ATTACKS if attack.without})
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("layers", UNPROTECTED, ids=" and ".join)
 def test_attacks_succeed_without_their_layers(layers, surroundings):
-    """The same cells take the loot when the layers against them are off: what stops them is
-    known.
+    """The same cells take the loot when the layers against them
+    are off: what stops them is known.
     """
     with Sandbox(LIMITS, allow_weak_isolation=True, without=layers) as sandbox:
         for attack in ATTACKS:

@@ -1,5 +1,5 @@
-"""The same grading on a Dask cluster: no byte differs, and a captured worker reaches nobody but
-itself.
+"""The same grading on a Dask cluster: no byte differs, and a
+captured worker reaches nobody but itself.
 """
 
 import contextlib
@@ -39,8 +39,8 @@ LIMITS = Limits(
 
 @contextlib.contextmanager
 def cluster(folder, workers=1, preload=None, keys=()):
-    """The scheduler and workers of a cluster, in processes of their own: its address and its
-    processes.
+    """The scheduler and workers of a cluster, in processes of their
+    own: its address and its processes.
     """
     place = folder / "scheduler.json"
     address = ["--scheduler-file", str(place)]
@@ -179,9 +179,8 @@ cluster.run_job = run_job
     ],
 )
 def test_what_a_captured_worker_sends_is_read_as_strictly_as_what_a_notebook_sends(damage):
-    from coursework.grading.execution import (
-        cluster as of_a_cluster,
-    )  # not before it is known that Dask is there
+    # Not before it is known that Dask is there.
+    from coursework.grading.execution import cluster as of_a_cluster
 
     job = {"id": "1", "cells": [], "questions": {"turns/sum": {}}}
     result, ours = given_up(job, "a trial"), {"python": "3"}

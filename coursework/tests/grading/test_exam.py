@@ -1,5 +1,5 @@
-"""Questions of an exam: nothing that a student has tells whether an answer is right, and the grader
-marks it.
+"""Questions of an exam: nothing that a student has tells whether an answer
+is right, and the grader marks it.
 """
 
 import io

@@ -1,5 +1,5 @@
-"""Nobody's work counts as another's, and no answer earns more than it is worth: the corpus of
-forgeries.
+"""Nobody's work counts as another's, and no answer earns more than it
+is worth: the corpus of forgeries.
 """
 
 import io
@@ -80,8 +80,8 @@ def test_nothing_is_given_to_anybody_else(tmp_path, attack, in_archive):
 
 
 def cell_of_what_is_known(questions):
-    """What a student may find out: where the check looks, and what a friend's right answer comes to
-    there.
+    """What a student may find out: where the check looks, and what a
+    friend's right answer comes to there.
     """
     places = points(questions["turns/sum"][0].question)
     calls = [call[0] for call in questions["turns/doubled"][0].question.calls]
@@ -152,8 +152,8 @@ def test_many_of_them_pass_the_check_that_a_student_has(records):
 
 
 class Class:
-    """Marks of a class whose students are known by their folders alone, or by what a system or a
-    roster says.
+    """Marks of a class whose students are known by their folders alone, or
+    by what a system or a roster says.
     """
 
     def __init__(self, folder, **identities):
@@ -185,19 +185,13 @@ OF_MOODLE = (
 @pytest.mark.parametrize(
     "book, students, filled",
     [
-        (
-            OF_CANVAS,
-            {"Bob": {}, "bob": {}, "eve": {}},
-            ["eve"],
-        ),  # whoever comes first has no better claim
+        # Whoever comes first has no better claim.
+        (OF_CANVAS, {"Bob": {}, "bob": {}, "eve": {}}, ["eve"]),
         (OF_CANVAS, {"eve": {"own": ["eve"]}, "other": {"own": ["EVE"]}}, []),
         (OF_CANVAS, {"b\u043eb": {}}, []),
         (OF_CANVAS, {"2": {}}, []),  # a name is no number of Canvas
-        (
-            OF_CANVAS,
-            {"bob": {"canvas": "9", "own": ["bob"]}},
-            [],
-        ),  # the system's number is surer than a name
+        # The system's number is surer than a name.
+        (OF_CANVAS, {"bob": {"canvas": "9", "own": ["bob"]}}, []),
         (OF_MOODLE, {"robert": {}, "bob": {}}, ["bob"]),  # who is called so at home
         (OF_MOODLE, {"bob@mail.example": {"email": "bob@mail.example", "own": []}}, []),
         (OF_MOODLE, {"x": {"email": "ann@uni.example", "own": []}, "ann": {}}, []),

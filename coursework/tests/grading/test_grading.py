@@ -1,5 +1,5 @@
-"""A class is graded: every notebook on its own, nothing lost or done twice, the same wherever it is
-run.
+"""A class is graded: every notebook on its own, nothing lost or done
+twice, the same wherever it is run.
 """
 
 import csv
@@ -69,8 +69,7 @@ def students():
         "mistaken",
         handed_in(
             about_x="A_C_N = sm.Matrix([[1, 0, 0], [0, sm.cos(theta), -sm.sin(theta)], [0, "
-            "sm.sin(theta), "
-            "sm.cos(theta)]])",
+            "sm.sin(theta), sm.cos(theta)]])",
             sum="sine = -sm.sin(alpha + beta)",
         ),
     )
@@ -136,8 +135,8 @@ def copied(course, tmp_path):
 
 @pytest.fixture
 def prepared(course, tmp_path):
-    """A folder for results that has the questions already: working them out again is not what is
-    tested.
+    """A folder for results that has the questions already: working them
+    out again is not what is tested.
     """
     shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
     return tmp_path / "out"
@@ -172,11 +171,8 @@ def contents(folder):
     "student, expected, points",
     [
         ("right", ["correct"] * 3, 6),
-        (
-            "mistaken",
-            ["wrong", "wrong", "correct"],
-            4,
-        ),  # half of two for the transpose, by its author's word
+        # Half of two for the transpose, by its author's word.
+        ("mistaken", ["wrong", "wrong", "correct"], 4),
         ("blank", ["not attempted"] * 3, 0),
         ("broken", ["correct", "not attempted", "correct"], 5),
         ("leaves", ["correct", "not attempted", "correct"], 5),
@@ -480,8 +476,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     out = prepared
     code = (
         "from coursework.grading.grade import grade; from coursework.grading.execution.sandbox "
-        "import Limits; "
-        f"grade({str(course / 'submissions')!r}, {str(out)!r}, "
+        f"import Limits; grade({str(course / 'submissions')!r}, {str(out)!r}, "
         f"solutions={str(course / 'solutions')!r}, workers=1, "
         f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))"
     )
@@ -606,8 +601,8 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
 def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(
     course, copied, tmp_path
 ):
-    """Names of folders first, a roster afterwards: two handed in the same, and each keeps the own
-    decision.
+    """Names of folders first, a roster afterwards: two handed in the same,
+    and each keeps the own decision.
     """
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
     for name in ("b", "c"):
@@ -735,8 +730,8 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
 
 
 def test_feedback_gives_no_outputs_of_calls_away(course):
-    """What a function returned to the check would do for a friend's answer, and the secret calls
-    for all later ones.
+    """What a function returned to the check would do for a friend's answer, and the
+    secret calls for all later ones.
     """
     found = record(course, "right").answers["turns/doubled"]
     assert found.plain["value"][0] == found.secret["plain"]["value"][0] == "function"
@@ -1065,17 +1060,17 @@ CANVAS = (
         (CANVAS, "mistaken", 'x,"8",9'),
         (
             'Identifier;"Full name";"ID number";Grade;"Maximum Grade";"Grade can be changed"\n'
-            '"Participant 9";"A; B";right;;6,00;Yes\n"Participant 8";C;mistaken;-;6,00;No\n'
-            '"Participant '
-            '7";D;broken;"";6,00;Yes\n',
+            '"Participant 9";"A; B";right;;6,00;Yes\n'
+            '"Participant 8";C;mistaken;-;6,00;No\n'
+            '"Participant 7";D;broken;"";6,00;Yes\n',
             "right",
             "right;6;6,00",
         ),
         (
             "OrgDefinedId\tUsername\tLast Name\tFirst Name\tTurns Points Grade <Numeric "
-            "MaxPoints:3>\tEnd-of-Line "
-            "Indicator\r\n"
-            "#1\t#right\tR\tS\t\t#\r\n#2\t#broken\tB\tS\t1\t#\r\n",
+            "MaxPoints:3>\tEnd-of-Line Indicator\r\n"
+            "#1\t#right\tR\tS\t\t#\r\n"
+            "#2\t#broken\tB\tS\t1\t#\r\n",
             "broken",
             "#broken\tB\tS\t2.5\t#",
         ),
@@ -1155,8 +1150,8 @@ def test_what_was_written_from_here_is_brought_up_to_date(marks, tmp_path):
     )
     gradebooks.fill(path, marks)
     known = marks.store.folder / gradebooks.WRITTEN
-    # Later the same marks are others; what stands in the system is what was written from here, or
-    # is not.
+    # Later the same marks are others; what stands in the system is what
+    # was written from here, or is not.
     known.write_text(known.read_text().replace('"6"', '"5.5"'))
     path.write_text(
         path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3")
@@ -1311,8 +1306,8 @@ def test_a_gradebook_that_cannot_be_filled_is_said(marks, tmp_path, header, mess
 
 # ---- from a system's download to what it takes back
 
-#: The notebook's name as a student may have chosen it, which each system keeps at the end of its
-#: own name for it.
+#: The notebook's name as a student may have chosen it, which each system keeps
+#: at the end of its own name for it.
 CHOSEN = ("turns.ipynb", "my_2_turns_linked.ipynb", "work.zip")
 
 
@@ -1345,9 +1340,8 @@ def download(system, students):
     header = {
         "canvas": "Student,ID,SIS Login ID,Section,Homework (17),Final Score\n"
         "    Points Possible,,,,6,(read only)",
-        "moodle": 'Identifier,"Full name","Email address",Status,Grade,"Maximum '
-        'grade","Grade can be '
-        'changed"',
+        "moodle": 'Identifier,"Full name","Email address",Status,Grade,"Maximum grade","Grade can '
+        'be changed"',
         "brightspace": "OrgDefinedId,Last Name,First Name,Homework Points Grade <Numeric "
         "MaxPoints:6>,"
         "End-of-Line Indicator",
@@ -1356,8 +1350,8 @@ def download(system, students):
 
 
 def canvas_takes(name, uploads):
-    """Whom Canvas gives a file of an archive to, as its ``infer_comment_context_from_filename``
-    does.
+    """Whom Canvas gives a file of an archive to, as its
+    ``infer_comment_context_from_filename`` does.
     """
     parts = name.rpartition("/")[2].split("_")
     numbers = [part for part in parts if re.fullmatch("[0-9]+", part)][:2]
@@ -1545,9 +1539,8 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         for name, (outcome, note) in ({} if refused else about["questions"]).items():
             mark = found.marks[name]
             if any(did.startswith("hostile") for did in about["did"]):
-                assert (
-                    not mark.points or outcome != "not attempted"
-                )  # it may have spoilt its own, and gained nothing
+                # It may have spoilt its own, and gained nothing.
+                assert not mark.points or outcome != "not attempted"
             else:
                 assert mark.outcome == outcome and (not note or mark.note == note), (
                     student,

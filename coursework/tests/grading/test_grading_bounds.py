@@ -1,5 +1,5 @@
-"""Judging is bounded, whatever was answered; whenever the machine goes down, nothing is lost and
-nothing done twice.
+"""Judging is bounded, whatever was answered; whenever the machine goes down,
+nothing is lost and nothing done twice.
 """
 
 import hashlib
@@ -227,8 +227,8 @@ for line in sys.stdin:
 
 @pytest.fixture(scope="module")
 def run():
-    """Run a command in a copy of a process; what it said, of which a part is missing if it was
-    killed, and its time.
+    """Run a command in a copy of a process; what it said, of which a part is
+    missing if it was killed, and its time.
     """
     program = PROGRAM.format(tests=str(Path(__file__).parent))
     with subprocess.Popen(
@@ -282,8 +282,8 @@ def whole(tmp_path):
 @pytest.mark.long
 @pytest.mark.parametrize("seed", range(4))
 def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run, seed, kills=6):
-    """Five commands, each killed so many times at moments drawn by lot, and then let come to its
-    end.
+    """Five commands, each killed so many times at moments drawn by
+    lot, and then let come to its end.
     """
     dice = random.Random(f"killed {seed}")
     other = Path(shutil.copytree(whole, tmp_path_factory.mktemp("other") / "course"))

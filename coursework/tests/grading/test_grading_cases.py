@@ -1,5 +1,5 @@
-"""What a student was asked is kept beside the answer: a mended question takes nobody's marks by
-chance.
+"""What a student was asked is kept beside the answer: a mended
+question takes nobody's marks by chance.
 """
 
 import dataclasses
@@ -70,9 +70,11 @@ def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
             "0.01)\n### END HIDDEN TESTS",
             ("markdown", "Write a function that gives twice its argument."),
             "### BEGIN SOLUTION\ndef twice(x):\n    return 2*x\n### END SOLUTION",
-            "check('beams/twice', twice)\n### BEGIN HIDDEN TESTS\n"
-            f"question('beams/twice', kind='function', calls={calls}, "
-            "result='expression', worth=3)\n### END HIDDEN TESTS",
+            "check('beams/twice', twice)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            f"question('beams/twice', kind='function', calls={calls}, result='expression', "
+            "worth=3)\n"
+            "### END HIDDEN TESTS",
         ]
     )
 
@@ -97,8 +99,8 @@ def answered(load, says="", function="def twice(x):\n    return x + x"):
 
 @pytest.fixture(scope="module")
 def begun(tmp_path_factory):
-    """A class whose students all gave the right answer to their own numbers, and one who did
-    not.
+    """A class whose students all gave the right answer to their
+    own numbers, and one who did not.
     """
     place = tmp_path_factory.mktemp("cases")
     solutions = write_beams(place / "solutions", WEIGHTS)
@@ -122,8 +124,8 @@ def marks_of(store, name):
 
 
 def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp_path):
-    """By its number, nearly everybody had another one then: of 145 right answers 122 became
-    wrong.
+    """By its number, nearly everybody had another one then: of 145
+    right answers 122 became wrong.
     """
     before = marks_of(out, NAME)
     assert all(before[student].points == 2 for student in STUDENTS) and before["wrong"].points == 0
@@ -214,8 +216,8 @@ def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out
 
 
 def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
-    """One line of plain SymPy took the judge two minutes for a node, and 1.7 GB for each 10^9 in
-    the exponent.
+    """One line of plain SymPy took the judge two minutes for a node, and 1.7
+    GB for each 10^9 in the exponent.
     """
     tiny = sm.Pow(
         sm.Add(sm.Pow(sm.Float("1e-99999"), 9_999, evaluate=False), sm.I, evaluate=False),
@@ -226,9 +228,8 @@ def test_small_numbers_with_long_exponents_cost_neither_time_nor_memory():
     found = evaluate.values(to_plain(tiny)["nodes"], {})[-1]
     assert isinstance(found, (evaluate.NotSupported, evaluate.MP.mpf, evaluate.MP.mpc))
     for text in ("1e-99999999999999999999", "3.5e+99999999999999999999", "1e-2000"):
-        plain = read_plain(
-            {"value": ["expression", 0], "nodes": [["float", text]]}
-        )  # and not "no answer was found"
+        # And not "no answer was found".
+        plain = read_plain({"value": ["expression", 0], "nodes": [["float", text]]})
         assert isinstance(
             evaluate.values(plain["nodes"], {})[0],
             (evaluate.NotSupported, evaluate.TooLarge, evaluate.MP.mpf),
@@ -439,8 +440,8 @@ def test_what_holds_right_answers_is_read_by_nobody_else(out):
 
 
 def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(begun):
-    """One of eight has the same numbers; with two siblings it was three, and with four variants
-    three of four.
+    """One of eight has the same numbers; with two siblings it was three, and
+    with four variants three of four.
     """
     questions = questions_of(begun.place / "solutions" / "beams.ipynb", b"any")
     earned, asked = 0, {NAME: questions[NAME]}
@@ -586,8 +587,8 @@ def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
             for one in students:
                 after = [order[k] for k in numbers_of_variants(one, NAME, about, 7)]
                 assert after == [name for name in before[one] if name != names[gone]]
-    # Another edition, another question, another student: another order. Capitals and spaces make
-    # none.
+    # Another edition, another question, another student: another
+    # order. Capitals and spaces make none.
     assert numbers_of_variants("ann", NAME, whole, 8) == numbers_of_variants(" Ann", NAME, whole, 8)
     others = dataclasses.replace(whole, edition="")
     assert (
@@ -703,8 +704,8 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
 
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
-    """A mended solution is judged from what is stored; a mended call is run, for those who are
-    asked it.
+    """A mended solution is judged from what is stored; a mended call is
+    run, for those who are asked it.
     """
     said = io.StringIO()
     options = {"limits": LIMITS, "show": said}

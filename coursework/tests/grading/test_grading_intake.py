@@ -43,10 +43,8 @@ def archive(path, *entries):
         for name, data in (("neighbour/turns.ipynb", GOOD), *entries):
             if isinstance(name, str):
                 info = zipfile.ZipInfo()
-                info.filename, info.compress_type = (
-                    name,
-                    zipfile.ZIP_DEFLATED,
-                )  # as it is, also if it leads astray
+                # As it is, also if it leads astray.
+                info.filename, info.compress_type = (name, zipfile.ZIP_DEFLATED)
                 name = info
             box.writestr(name, data)
     return path
@@ -126,8 +124,8 @@ def test_two_numbers_in_a_students_own_file_are_not_taken_for_canvas(folder):
 
 
 def named(*names, **options):
-    """The students that an archive's names give notebooks to, and the files that nobody's are, with
-    why.
+    """The students that an archive's names give notebooks to, and the
+    files that nobody's are, with why.
     """
     path = options.pop("path")
     with zipfile.ZipFile(path, "w") as box:
@@ -153,8 +151,8 @@ FORGED = "Bob_202_assignsubmission_file_turns.ipynb"
 @pytest.mark.parametrize(
     "names",
     [
-        # Moodle's flat download, and its folders; a file that looks like a classmate's follows the
-        # system's own part.
+        # Moodle's flat download, and its folders; a file that looks like a classmate's
+        # follows the system's own part.
         (
             f"Jane Doe_101_assignsubmission_file_{FORGED}",
             "Bob_202_assignsubmission_file_turns.ipynb",
@@ -221,8 +219,8 @@ def test_two_that_claim_one_identity_are_a_question(box, names):
     assert all("claim to be this student's" in refused[name] for name in names) and len(found) == 1
 
 
-#: Names as the systems themselves write them, each from the source of the system or from what was
-#: downloaded of it.
+#: Names as the systems themselves write them, each from the source of the system
+#: or from what was downloaded of it.
 DOWNLOADED = {
     # Canvas: `get_filename` and `add_upload_submission` in lib/content_zipper.rb of
     # instructure/canvas-lms. The name to sort by in small letters without signs, LATE, the number
@@ -246,14 +244,14 @@ DOWNLOADED = {
         "Default group-Jane Doe 77", "", False),
     "Participant_1234_assignsubmission_file_/turns.ipynb": ("Participant 1234", "", False),
     "Teilnehmerin_1235_assignsubmission_file_/turns.ipynb": ("Teilnehmerin 1235", "", False),
-    # Brightspace: downloads that several graders' own tools describe, with the folder around them
-    # or without it.
+    # Brightspace: downloads that several graders' own tools describe, with the
+    # folder around them or without it.
     "152711-351765 - Some Student - May 18, 2025 1224 PM/turns.ipynb": (
         "Some Student 152711", "2025-05-18T12:24:00", False),
     "39786-640693 - Another Student - Oct 10, 2025 1022 AM/turns.ipynb": (
         "Another Student 39786", "2025-10-10T10:22:00", False),
-    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an assignment may hold
-    # blanks and signs.
+    # Blackboard: README of kwurst/bb-file-cleanup and of others; the name of an
+    # assignment may hold blanks and signs.
     "Project 3  Reverse Engineering_abc0124_attempt_2015-04-23-17-56-20_abc0124-P3.ipynb": (
         "abc0124", "2015-04-23T17:56:20", False),
     "Project 3  Reverse Engineering_abc0123_attempt_2015-02-12-21-30-34_Assignment_1.ipynb": (
@@ -318,8 +316,8 @@ def test_names_as_the_systems_write_them(tmp_path, around):
 
 
 def test_a_name_that_ends_in_a_number_takes_no_classmates(box, tmp_path):
-    """Canvas lets some people choose a name, and joins it to their number by the sign that a name
-    may hold.
+    """Canvas lets some people choose a name, and joins it to their number
+    by the sign that a name may hold.
     """
     (tmp_path / "book.csv").write_text(
         'Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n'
@@ -346,8 +344,8 @@ def test_a_folder_around_everything_is_no_student(box):
 
 
 def test_what_a_system_adds_is_no_refusal(box):
-    """Blackboard writes a text about each attempt; nbgrader keeps what is not handed in beside what
-    is.
+    """Blackboard writes a text about each attempt; nbgrader keeps what
+    is not handed in beside what is.
     """
     blackboard = [
         f"HW_{who}_attempt_2026-11-20-10-11-12{end}"
@@ -377,8 +375,8 @@ def test_what_a_system_adds_is_no_refusal(box):
 
 
 def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, tmp_path):
-    """Canvas numbers what is handed in again; what one student handed in for Gradescope lies in no
-    folder.
+    """Canvas numbers what is handed in again; what one student handed in
+    for Gradescope lies in no folder.
     """
     files = (
         "doejane_101_5_turns-2.ipynb",
@@ -785,8 +783,8 @@ def test_a_mark_of_byte_order_and_older_notebooks_are_read():
 
 
 def test_of_a_large_archive_little_is_held(box):
-    """What grows with the class is the names and where each file lies: of 100,000 it is to fit any
-    machine.
+    """What grows with the class is the names and where each file lies: of
+    100,000 it is to fit any machine.
     """
     number, data = 3_000, nbformat.writes(notebook(["check('turns/sum', 1)"]))
     with zipfile.ZipFile(box, "w") as opened:

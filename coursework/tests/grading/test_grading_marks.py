@@ -1,5 +1,5 @@
-"""Verdicts from plain data: the same as the student's check, nothing earned by default, nothing
-lost by chance.
+"""Verdicts from plain data: the same as the student's check, nothing earned
+by default, nothing lost by chance.
 """
 
 import contextlib
@@ -48,8 +48,8 @@ def given(answer, calls=None):
 
 
 def given_function(question, function):
-    """What the sandbox says of a function: what it returned to the check, and to the secret
-    calls.
+    """What the sandbox says of a function: what it returned to the
+    check, and to the secret calls.
     """
     said = given(function, question.contract.question.calls)
     place = question.contract.secret
@@ -110,8 +110,8 @@ def marks_of(questions, name, answer):
 
 
 def test_an_answer_that_is_right_only_where_the_check_looks_earns_nothing(questions):
-    """The points of the check follow from the question: who reads them can put a polynomial through
-    them.
+    """The points of the check follow from the question: who reads them
+    can put a polynomial through them.
     """
     public = questions["turns/sum"].contract.question
     places = points(public)
@@ -162,8 +162,8 @@ def test_a_table_of_what_a_function_returned_is_no_function(questions):
         given_function(question, lambda x: 2 * x), secret={"unreadable": "It raised."}
     )
     assert marks_of(questions, "turns/doubled", refusing)[1] == "right only where it is checked"
-    # What was not called, by whosever fault, goes to a person; and so does what was called with
-    # other secrets.
+    # What was not called, by whosever fault, goes to a person; and so does
+    # what was called with other secrets.
     for said in (
         {},
         {"unreadable": CUT_SHORT[0]},
@@ -230,8 +230,8 @@ def of_pairs(pairs):
     ],
 )
 def test_secret_calls_are_others_than_those_of_the_check(function, calls, others):
-    """Where only words of the author's may be asked for, a table of them is all that a function can
-    be.
+    """Where only words of the author's may be asked for, a table of
+    them is all that a function can be.
     """
     question = author.question("trial/one", "function", function, calls=calls, result="expression")
     for number in range(10):

@@ -1,5 +1,5 @@
-"""A whole course: what lateness costs, what is dropped, what a student sees, and what a year leaves
-behind.
+"""A whole course: what lateness costs, what is dropped, what a student
+sees, and what a year leaves behind.
 """
 
 import datetime
@@ -100,8 +100,8 @@ def test_lateness_costs_what_the_rules_say(rules, when, penalty):
 
 
 def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
-    # In the night of 25 October half past two comes twice in Amsterdam, at 0:30 and at 1:30 of
-    # universal time.
+    # In the night of 25 October half past two comes twice in Amsterdam, at
+    # 0:30 and at 1:30 of universal time.
     for when, penalty in (("2026-10-25T01:30:00+00:00", 0), ("2026-10-25T01:45:01+00:00", 0.1)):
         found, _ = result(rules(), record(2, 2, when, assignment="axes"))
         assert found["axes"].penalty == pytest.approx(penalty)
@@ -109,8 +109,8 @@ def test_an_hour_that_a_clock_shows_twice_is_the_later_one(rules):
 
 @pytest.mark.parametrize("when", ["2026-10-25T02:45:00", "2026-10-25T02:45:00+02:00"])
 def test_who_hands_in_in_an_hour_that_a_clock_shows_twice_is_believed(rules, when):
-    """A time without a zone is the earlier one then, as what is due is the later one: both in
-    favour of the student.
+    """A time without a zone is the earlier one then, as what is due is the later
+    one: both in favour of the student.
     """
     found, _ = result(rules(RULES.replace("02:30", "02:10")), record(2, 2, when, assignment="axes"))
     assert (found["axes"].penalty, found["axes"].late) == (0, False)
@@ -397,9 +397,8 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
         for question in questions.values()
         for count in (question["students"], *question["mix-ups"].values())
     )
-    assert {name.partition("/")[0] for name in questions} == {
-        "turns"
-    }  # the axes are of one student alone
+    # The axes are of one student alone.
+    assert {name.partition("/")[0] for name in questions} == {"turns"}
     earlier = tmp_path / "2025.json"
     earlier.write_text(kept.replace("Autumn 2026", "Autumn <2025>"))
     write_course(Store(out), rules(), earlier=[earlier])

@@ -1,5 +1,5 @@
-"""Whole terms with all that happens in them: in the end every mark is that of somebody who knows
-the whole story.
+"""Whole terms with all that happens in them: in the end every mark is that of
+somebody who knows the whole story.
 """
 
 import datetime
@@ -51,20 +51,23 @@ def source(name, weights, times):
             f"weight={weights})\n### END VARIANTS",
             ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
             f"### BEGIN SOLUTION\nload = {times}*beam.weight\n### END SOLUTION",
-            f"check('{name}/load', load)\n### BEGIN HIDDEN TESTS\n"
-            f"question('{name}/load', kind='expression', "
-            f"worth={LOAD}, tolerance=0.01)\n### END HIDDEN TESTS",
+            f"check('{name}/load', load)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            f"question('{name}/load', kind='expression', worth={LOAD}, tolerance=0.01)\n"
+            "### END HIDDEN TESTS",
             "### BEGIN SOLUTION\ndef twice(x):\n    return 2*x\n### END SOLUTION",
-            f"check('{name}/twice', twice)\n### BEGIN HIDDEN TESTS\n"
-            f"question('{name}/twice', kind='function', "
-            f"calls=[[1.5], [-2.0]], result='expression', worth={TWICE})\n### END HIDDEN TESTS",
+            f"check('{name}/twice', twice)\n"
+            "### BEGIN HIDDEN TESTS\n"
+            f"question('{name}/twice', kind='function', calls=[[1.5], [-2.0]], "
+            f"result='expression', worth={TWICE})\n"
+            "### END HIDDEN TESTS",
         ]
     )
 
 
 def write_sources(folder, changed=()):
-    """The sources of all assignments; ``changed`` says of some which weights there are and how
-    often they count.
+    """The sources of all assignments; ``changed`` says of some which weights
+    there are and how often they count.
     """
     folder.mkdir(exist_ok=True)
     (folder / secret.FILE).write_text("5eed" * 16)
@@ -87,8 +90,8 @@ def drawn(name):
 
 
 def run_without_a_sandbox(jobs, finish, *others):
-    """What the sandbox would give for these notebooks, whose answers are numbers and names of
-    functions.
+    """What the sandbox would give for these notebooks, whose answers
+    are numbers and names of functions.
     """
 
     def answer(job, name, about):
@@ -177,9 +180,8 @@ class Term:
     def write(self):
         submitted = self.place / "class" / "submitted"
         shutil.rmtree(submitted, ignore_errors=True)
-        odd = {
-            student: f"{student} (2)" for student in self.students if self.happens(0.2)
-        }  # who goes by two names
+        # Who goes by two names.
+        odd = {student: f"{student} (2)" for student in self.students if self.happens(0.2)}
         for (student, name), work in self.work.items():
             folder = submitted / odd.get(student, student) / name
             folder.mkdir(parents=True)
@@ -273,8 +275,8 @@ class Term:
 
 
 def with_crashes(dice, monkeypatch, do):
-    """Do something during which the machine goes down now and then, as often as it takes to come to
-    its end.
+    """Do something during which the machine goes down now and then, as
+    often as it takes to come to its end.
     """
     whole = Store.save
     for attempt in range(4):
@@ -333,8 +335,8 @@ def appeal_by_hand(ann, ben, record, name, decided, story):
 
 
 def judge_by_hand(term, store, dice):
-    """Two people decide: on appeals, one upon the other's decision, and some take their own
-    back.
+    """Two people decide: on appeals, one upon the other's
+    decision, and some take their own back.
     """
     ann, ben = Ledger(store.folder), Ledger(store.folder)
     records = list(store.all())
@@ -411,9 +413,8 @@ def go_through(term, monkeypatch, cache):
     # Some hand in again, and all is graded once more.
     for (student, name), work in dice.sample(sorted(term.work.items(), key=lambda one: one[0]), 3):
         if work.function != "twice":
-            term.decided.pop(
-                (student, name, "twice"), None
-            )  # it belonged to the answer that was looked at
+            # It belonged to the answer that was looked at.
+            term.decided.pop((student, name, "twice"), None)
         work.function = "twice"
     rewrite(term)
     with_crashes(dice, monkeypatch, lambda: grade(place / "class", out, **options))
@@ -437,8 +438,8 @@ def rewrite(term):
 
 
 def final_marks(term, store):
-    """What the system holds in the end, having been filled twice: by then, and after the last
-    decisions.
+    """What the system holds in the end, having been filled twice: by
+    then, and after the last decisions.
     """
     rules, found = read_rules(term.place / "term.toml"), {}
     for name in ASSIGNMENTS:

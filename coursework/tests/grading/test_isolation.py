@@ -1,5 +1,5 @@
-"""The layers of isolation: tried, named, refused when they are not enough, and whole for every
-user.
+"""The layers of isolation: tried, named, refused when they are
+not enough, and whole for every user.
 """
 
 import contextlib
@@ -59,8 +59,8 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
 
 @pytest.mark.long
 def test_each_layer_alone_stops_what_it_is_for():
-    """Every layer is tried by itself; here with all the others off, so that nothing else can have
-    helped.
+    """Every layer is tried by itself; here with all the others off, so
+    that nothing else can have helped.
     """
     with Sandbox() as sandbox:
         available = sandbox.isolation_in_force().layers
@@ -105,22 +105,20 @@ def test_copies_of_a_warm_parent_are_as_much_apart_as_those_that_are_started():
     ):
         assert one.process is None and one.warm_parent != other.warm_parent  # they are copies
         assert one.report == other.report == first.report and not one.report["not stopped"]
-        assert (
-            len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3
-        )  # each is a user of its own
+        # Each is a user of its own.
+        assert len({str(who(sandbox)) for sandbox in (alone, one, other)}) == 3
         os.kill(one.warm_parent, signal.SIGKILL)
         before = one.warm_parent
-        assert (
-            who(one) and one.process is None and one.warm_parent != before
-        )  # another copy took its place
+        # Another copy took its place.
+        assert who(one) and one.process is None and one.warm_parent != before
         first.close()
         assert who(other) and other.process is not None  # without the first, one of its own
     assert not any(psutil.pid_exists(sandbox) for sandbox in (before,))
 
 
 def test_a_crash_is_handled_by_nobody():
-    """Neither a file nor a program gets the memory of a crashed notebook, whatever the system has
-    set up for that.
+    """Neither a file nor a program gets the memory of a crashed notebook,
+    whatever the system has set up for that.
     """
     cell = """
 import ctypes, resource
@@ -232,8 +230,8 @@ OWN = 4711
 
 
 def decision(machine, number, *arguments, architecture=None):
-    """What the filter says to one system call: an interpreter of the few instructions that it
-    has.
+    """What the filter says to one system call: an interpreter of
+    the few instructions that it has.
     """
     code = system_calls.program(OWN, machine)
     data = struct.pack(

@@ -1,5 +1,5 @@
-"""The page to judge in: safe against other pages and against what it shows, and worked by keys
-alone.
+"""The page to judge in: safe against other pages and against what
+it shows, and worked by keys alone.
 """
 
 import base64
@@ -329,9 +329,8 @@ def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
         == ["2 unusual wrong answers were tried on the way that one other tried, too"]
     )
     assert shared[third] == []
-    assert not any(
-        said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values()
-    )  # one may be chance
+    # One may be chance.
+    assert not any(said_of(["aaaaaa", "bbbbbb"], ["aaaaaa"], ["eeeeee"]).values())
     usual = said_of(*[["aaaaaa", "bbbbbb"]] * len(records))
     assert not any(usual.values())
 
@@ -386,9 +385,11 @@ PLOT = [
     ("code", '### BEGIN SOLUTION\nseen = "It bends upwards, as a square does."\n### END SOLUTION'),
     (
         "code",
-        "check('plots/seen', seen)\n### BEGIN HIDDEN TESTS\n"
-        "question('plots/seen', kind='free text', worth=4, "
-        "rubric=['sees the bend', 'names the square'])\n### END HIDDEN TESTS",
+        "check('plots/seen', seen)\n"
+        "### BEGIN HIDDEN TESTS\n"
+        "question('plots/seen', kind='free text', worth=4, rubric=['sees the bend', 'names the "
+        "square'])\n"
+        "### END HIDDEN TESTS",
     ),
 ]
 
@@ -467,8 +468,8 @@ def test_plots_are_seen_beside_the_text_and_only_pictures_are_shown(plotted):
 def on_a_telephone(out, plotted, browser, scheme="light"):
     """Open the pages for instructors and for students, one after another."""
     with Served(out) as served, Served(plotted) as of_plots:
-        # The page's own policy lets no script in; it is tested elsewhere, and set aside for this
-        # one.
+        # The page's own policy lets no script in; it is tested
+        # elsewhere, and set aside for this one.
         context = browser.new_context(
             color_scheme=scheme, viewport={"width": 380, "height": 800}, bypass_csp=True
         )
@@ -512,8 +513,8 @@ def test_pages_are_accessible(out, plotted, browser, scheme):
 
 @pytest.mark.long
 def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
-    """A class of a hundred, each answer different: every one decided, without a mouse, and nothing
-    lost.
+    """A class of a hundred, each answer different: every one decided,
+    without a mouse, and nothing lost.
     """
     out = shutil.copytree(graded / "out", tmp_path / "out")
     store = Store(out)
@@ -554,8 +555,8 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
 
 
-#: Before the command runs: what Windows has not, and how it locks a file. What others made knows
-#: its system already.
+#: Before the command runs: what Windows has not, and how it locks a file. What
+#: others made knows its system already.
 ON_WINDOWS = """
 import os, subprocess, sys, types
 import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web

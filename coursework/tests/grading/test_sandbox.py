@@ -1,5 +1,5 @@
-"""Notebooks in, answers out as plain data: what is recorded, what is named, and what costs nobody
-else.
+"""Notebooks in, answers out as plain data: what is recorded, what is
+named, and what costs nobody else.
 """
 
 import base64
@@ -371,9 +371,8 @@ def test_an_order_that_does_not_help_is_not_noted(sandbox):
     ],
 )
 def test_honest_cells_run(sandbox, source, monkeypatch):
-    monkeypatch.setattr(
-        sandbox, "limits", Limits()
-    )  # they are to come to their end, also on a slow machine
+    # They are to come to their end, also on a slow machine.
+    monkeypatch.setattr(sandbox, "limits", Limits())
     if "scipy" in source:
         pytest.importorskip("scipy")
     result = sandbox.run(notebook("x = 1", source, "check('q', x)", questions={"q": None}))
@@ -494,8 +493,8 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
 @pytest.mark.long
 @pytest.mark.sampled(2, of="sandboxes under strain")
 def test_a_busy_machine_costs_nobody_an_answer():
-    """What a notebook waits for while others compute is not its own time: three share one processor
-    here.
+    """What a notebook waits for while others compute is not its own
+    time: three share one processor here.
     """
     start = "import time\nbegun = time.process_time()"
     source = "while time.process_time() - begun < 1.2:\n    pass\ncheck('q', 1)"
@@ -518,10 +517,8 @@ def test_a_busy_machine_costs_nobody_an_answer():
         ([(0.5, 0.0, 1)] * 3, 1.5),  # asleep: woken at each tick, and at once
         ([(0.5, 0.5, 0)] * 3, 1.5),  # alone at work
         ([(0.5, 0.1, 30)] * 3, 0.3),  # at work and reading files, a fifth of a busy machine
-        (
-            [(0.5, 0.001, 0)] * 3,
-            0.003,
-        ),  # at work, and nearly nothing of a machine that is very busy
+        # At work, and nearly nothing of a machine that is very busy.
+        ([(0.5, 0.001, 0)] * 3, 0.003),
         ([(40.0, 0.001, 0)], 0.001),
         ([(40.0, 0.0, 1)], 0.5),  # nobody knows for how long it slept
     ],
@@ -552,9 +549,8 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
         for process in (first, *first.children(recursive=True)):
             process.nice(19)
             process.cpu_affinity([processor])
-            with contextlib.suppress(
-                OSError
-            ):  # where processor time is shared out by sessions first
+            # Where processor time is shared out by sessions first.
+            with contextlib.suppress(OSError):
                 Path(f"/proc/{process.pid}/autogroup").write_text("19")
         other = subprocess.Popen([sys.executable, "-c", "while True: pass"])
         try:
@@ -624,8 +620,8 @@ for result in run_notebooks(json.loads(sys.argv[1]), workers=2, **options):
 
 @pytest.fixture(params=["with bubblewrap", "without bubblewrap"])
 def environment(request, tmp_path):
-    """The environment of a grader that finds bubblewrap, or does not, with its own folder for what
-    is temporary.
+    """The environment of a grader that finds bubblewrap, or does not, with its
+    own folder for what is temporary.
     """
     bubblewrap = shutil.which("bwrap")
     if request.param == "with bubblewrap" and bubblewrap is None:
@@ -639,8 +635,8 @@ def environment(request, tmp_path):
 
 
 def folders_in(place):
-    """What is ours: Python itself tries such a place with an empty file, which a kill may leave
-    there.
+    """What is ours: Python itself tries such a place with an empty
+    file, which a kill may leave there.
     """
     return [entry.name for entry in os.scandir(place) if entry.is_dir()]
 
@@ -679,8 +675,8 @@ def end_at_once(grader):
 
 @pytest.mark.sampled(2, of="graders that are killed")
 def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
-    """Killed as soon as there is a folder: the libraries are still being loaded then, and nothing
-    has been tried.
+    """Killed as soon as there is a folder: the libraries are still being loaded
+    then, and nothing has been tried.
     """
     grader = subprocess.Popen(
         [sys.executable, "-c", KILLED, json.dumps([notebook("1")]), "[]"], env=environment

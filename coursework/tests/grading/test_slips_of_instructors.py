@@ -1,5 +1,5 @@
-"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a download; it is
-said, in a sentence.
+"""What happens to whoever is in a hurry: the wrong folder, a full disk, half a
+download; it is said, in a sentence.
 """
 
 import errno
@@ -95,8 +95,8 @@ def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypa
 
 
 def test_a_name_begins_no_line_of_a_table(tmp_path):
-    """Some signs end a line for Python and for no spreadsheet: a student's own name could hold
-    one.
+    """Some signs end a line for Python and for no spreadsheet: a
+    student's own name could hold one.
     """
     roster = "student,name,email\neve,Eve\u2028ada,Eve,eve@uni.example\nben,Ben\x85,b@uni.example\n"
     (tmp_path / "roster.csv").write_text(roster, "utf8")

@@ -1,7 +1,6 @@
 """What turns the chapters into the web site: one small Sphinx extension.
 
-Each module has one purpose and a ``setup`` of its own; none of them knows
-what the book is about.
+Each module has one purpose and a ``setup`` of its own; none of them knows what the book is about.
 """
 
 import gc

@@ -37,8 +37,8 @@ def depart_entry(translator, node):
 
 
 def name_of_caption(node):
-    """The identifier of what names a figure with a caption: browsers no longer take its name from
-    the caption.
+    """The identifier of what names a figure with a caption: browsers no
+    longer take its name from the caption.
     """
     has_caption = any(isinstance(part, nodes.caption) for part in node)
     return f"{node['ids'][0]}-name" if has_caption and node["ids"] else None

@@ -1,7 +1,7 @@
 """Every picture says in words what it shows, or the build warns.
 
-Checked are the pictures of the text and those that cells put out, after
-Sphinx has chosen which form of an output the page shows.
+Checked are the pictures of the text and those that cells put out, after Sphinx has chosen
+which form of an output the page shows.
 """
 
 from bs4 import BeautifulSoup

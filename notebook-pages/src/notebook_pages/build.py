@@ -31,8 +31,8 @@ def forget_site():
 
 
 def contents_of_this_edition():
-    """What Jupyter Book is told of the contents; of an edition that was built before, nothing is
-    left over.
+    """What Jupyter Book is told of the contents; of an edition that was
+    built before, nothing is left over.
     """
     if EXAM_CONTENTS.exists() != exam_edition():
         forget_site()
@@ -47,8 +47,8 @@ def contents_of_this_edition():
 def make_pages():
     """Run the command ``jupyter-book`` and return its exit code.
 
-    It runs in this process, which has loaded the same packages, and goes on to use what it finds
-    out of the notebooks.
+    It runs in this process, which has loaded the same packages, and goes on to use
+    what it finds out of the notebooks.
     """
     from jupyter_book.cli.main import main as jupyter_book
 
@@ -82,8 +82,8 @@ def main():
         print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
         code = 1
     if code:
-        # Sphinx warns of a page only when it reads it: without this, a second
-        # try would find nothing to do and call the same faulty book built.
+        # Sphinx warns of a page only when it reads it: without this, a second try would find
+        # nothing to do and call the same faulty book built.
         forget_site()
         sys.exit("The book was not built: see the warnings above.")
     lite.write(HTML)

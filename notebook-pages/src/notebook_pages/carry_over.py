@@ -1,5 +1,5 @@
-"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that show the edition published
-last go on.
+"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that
+show the edition published last go on.
 
 A page that is open asks, when its code first runs, for files named by their content. ``PREVIOUS``,
 the address or the folder at which the last edition is published, lists them (``lasting.json``):
@@ -22,8 +22,8 @@ PATIENCE = 60  # seconds
 
 
 def reader(previous: str) -> Callable[[str], bytes | None]:
-    """What gives a file of the last edition by its path: its bytes, or ``None`` where there is
-    none.
+    """What gives a file of the last edition by its path: its bytes,
+    or ``None`` where there is none.
     """
     if "://" not in previous:
         return lambda path: (
@@ -45,11 +45,11 @@ def reader(previous: str) -> Callable[[str], bytes | None]:
 
 
 def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
-    """Put into ``site`` what the edition at ``previous`` names by its content; return the paths, or
-    ``None``.
+    """Put into ``site`` what the edition at ``previous`` names by its
+    content; return the paths, or ``None``.
 
-    ``None`` means that nothing is published there, or no list: it is the first edition that has
-    one.
+    ``None`` means that nothing is published there, or no list: it
+    is the first edition that has one.
     """
     read = reader(previous)
     listed = read(LASTING)

@@ -1,5 +1,5 @@
-"""The site of a course: its exercises as pages whose cells run and whose answers are checked in the
-page.
+"""The site of a course: its exercises as pages whose cells run and
+whose answers are checked in the page.
 
 What makes courses offers what it has as files (notebooks, wheels, the archive for students), by the
 entry point ``coursework.pages``, and knows nothing of pages; here nothing is known of questions. A
@@ -115,8 +115,8 @@ def write_book(parts, workshop):
 
 
 def _wheel_table(wheel, workshop):
-    """What the book says of a wheel; its packages lie unpacked in the workshop, where cells are
-    tried before.
+    """What the book says of a wheel; its packages lie unpacked in the
+    workshop, where cells are tried before.
     """
     shutil.copy(wheel, workshop / "wheels")
     with zipfile.ZipFile(wheel) as box:

@@ -1,7 +1,7 @@
 """The whole book as an EPUB 3: pages that flow, formulas in MathML, drawings with their words.
 
-It is made from the built pages, as the PDF is, by the same steps; a reading program sets the
-formulas itself.
+It is made from the built pages, as the PDF is, by the same steps; a
+reading program sets the formulas itself.
 """
 
 import io
@@ -97,8 +97,8 @@ def as_mathml(formula):
 
 
 def written_out(styles):
-    """Style sheets with each ``:is(...)`` in full: older reading programs do not know it, nor does
-    their checker.
+    """Style sheets with each ``:is(...)`` in full: older reading programs do not
+    know it, nor does their checker.
     """
     return re.sub(
         r"([^{},]*):is\(([^()]*)\)([^{},]*)",

@@ -44,8 +44,8 @@ def sentences(paragraph: nodes.paragraph) -> list[list[nodes.Node]]:
 
 
 def without_solutions(paragraph: nodes.paragraph) -> None:
-    """Take the sentences that lead to a solution out of ``paragraph``; the whole of it, if no other
-    is left.
+    """Take the sentences that lead to a solution out of ``paragraph``; the
+    whole of it, if no other is left.
     """
     kept = [
         sentence

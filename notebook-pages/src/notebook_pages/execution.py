@@ -1,5 +1,5 @@
-"""Run the notebooks once, side by side, and again when their code or something that they use
-changes.
+"""Run the notebooks once, side by side, and again when their code
+or something that they use changes.
 
 The key of jupyter-cache is the code in the cells. A change in ``src/orientation`` would leave it,
 and every stored output, as it was; so a run is thrown away when what the notebook uses is no longer
@@ -18,8 +18,8 @@ from .paths import WEBSITE, fingerprint
 from .used import fingerprint_of_used, notebook_of
 from .warm_kernels import WarmAsyncKernelManager
 
-#: Notebooks that are shown as they were released and run by the tests; see ``execute`` in
-#: _config.yml.
+#: Notebooks that are shown as they were released and run by the
+#: tests; see ``execute`` in _config.yml.
 STORED = "exercises/"
 #: Beside the cache: what each notebook used when it was run.
 NOTES = "made-with.json"
@@ -32,8 +32,8 @@ def name_cache(app, config):
 
 
 def throw_away_old_runs(paths, folder):
-    """Take out of the cache in ``folder`` all runs of those notebooks that use what has changed
-    since.
+    """Take out of the cache in ``folder`` all runs of those notebooks
+    that use what has changed since.
 
     Returns the paths of those notebooks.
     """
@@ -46,15 +46,14 @@ def throw_away_old_runs(paths, folder):
         if record.uri in changed:
             cache.remove_cache(record.pk)
     notes.parent.mkdir(parents=True, exist_ok=True)
-    notes.write_text(
-        json.dumps(made_with | now), "utf8"
-    )  # after the runs are gone: a break leaves none that is old
+    # After the runs are gone: a break leaves none that is old.
+    notes.write_text(json.dumps(made_with | now), "utf8")
     return changed
 
 
 def pages_to_read_again(app, env, added, changed, removed):
-    """The pages whose notebooks use what has changed; Sphinx finds by itself those that have
-    changed themselves.
+    """The pages whose notebooks use what has changed; Sphinx finds by itself
+    those that have changed themselves.
     """
     if env.mystnb_config.execution_mode != "cache":
         return []

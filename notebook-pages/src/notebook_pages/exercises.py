@@ -1,5 +1,5 @@
-"""Exercises: how hard each is and how long it takes, and the way to the checked questions of a
-chapter and back.
+"""Exercises: how hard each is and how long it takes, and the way to the
+checked questions of a chapter and back.
 """
 
 from docutils import nodes

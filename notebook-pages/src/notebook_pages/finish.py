@@ -45,8 +45,8 @@ POLICY = {
 
 
 def pages_of(site):
-    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor figures for other
-    people's pages.
+    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor
+    figures for other people's pages.
     """
     return [
         path

@@ -14,8 +14,8 @@ from sphinx import addnodes
 LATER = "later"
 #: How a block that is so marked begins; the word also stands in sentences.
 MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
-#: More text than the first view of a large screen holds, in characters; and how many a large block
-#: counts for.
+#: More text than the first view of a large screen holds, in characters; and
+#: how many a large block counts for.
 FIRST_VIEW, LARGEST = 3000, 800
 #: A line of a column, which even the shortest block takes.
 LINE = 80

@@ -22,8 +22,8 @@ from .paths import NODE_MODULES, fingerprint
 KATEX = NODE_MODULES / "katex" / "dist"
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-#: Signs of the text: those that the book has, and a few more; with one of the others a page fetches
-#: the whole face.
+#: Signs of the text: those that the book has, and a few more; with one of the
+#: others a page fetches the whole face.
 LATIN = (
     "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
     "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
@@ -61,8 +61,8 @@ FACES = (
     *((f"KaTeX_Size{n}", "400", "normal", _katex(f"Size{n}-Regular"), None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
-#: The reader's own typefaces until the book's are there: each as wide, on the average of English
-#: text.
+#: The reader's own typefaces until the book's are there: each as
+#: wide, on the average of English text.
 UNTIL_THEN = {
     "Georgia": 106.7, "Noto Serif": 98.9, "DejaVu Serif": 92.9, "Times New Roman": 117,
     "Roboto": 94, "Arial": 93.8, "DejaVu Sans": 82.5,
@@ -79,8 +79,8 @@ def codes(signs):
 
 
 def beyond(file, signs, seldom):
-    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of ``seldom``, or of all that is
-    in it.
+    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of
+    ``seldom``, or of all that is in it.
     """
     left = sorted(
         (set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs))
@@ -91,8 +91,8 @@ def beyond(file, signs, seldom):
 
 
 def cut(file, signs, weights):
-    """The bytes of the face ``file`` with ``signs`` alone; of one that varies, with those
-    ``weights``.
+    """The bytes of the face ``file`` with ``signs`` alone; of one
+    that varies, with those ``weights``.
     """
     from fontTools import subset
     from fontTools.varLib import instancer
@@ -137,8 +137,8 @@ def cut_faces():
 
 @cache
 def files():
-    """What is to stand in the folder of fonts: for each name there, the file that it is a copy
-    of.
+    """What is to stand in the folder of fonts: for each name
+    there, the file that it is a copy of.
     """
     found = {}
     for _, _, _, file, _, whole in FACES:
@@ -174,8 +174,8 @@ def face_rules(folder):
 
 
 def whole_face_rules(folder):
-    """The rules for a sheet from which the fonts stand in ``folder``: the whole faces, for what the
-    cut ones lack.
+    """The rules for a sheet from which the fonts stand in ``folder``: the whole
+    faces, for what the cut ones lack.
     """
     return "\n".join(
         face_rule(
@@ -192,8 +192,8 @@ def whole_face_rules(folder):
 
 
 def katex_rules(folder):
-    """KaTeX's rules, without those that the page itself has, for a sheet from which the fonts stand
-    in ``folder``.
+    """KaTeX's rules, without those that the page itself has, for a sheet from
+    which the fonts stand in ``folder``.
     """
     known = {face[3].name for face in FACES}
 
@@ -207,9 +207,8 @@ def katex_rules(folder):
     rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
     if any(name.startswith("KaTeX") for name in known):
         raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
-    return re.sub(
-        r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules
-    )  # KaTeX has not set these for years
+    # KaTeX has not set these for years.
+    return re.sub(r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules)
 
 
 def write(app):

@@ -1,5 +1,5 @@
-"""What lets readers keep the book in their browser, or install it as an app: by choice, and with
-its size told.
+"""What lets readers keep the book in their browser, or install it as an app:
+by choice, and with its size told.
 
 ``manifest.webmanifest`` and two icons make the site installable; ``offline.json`` lists what there
 is to keep (the pages, and Python), each file with a fingerprint and its bytes. The rest is
@@ -20,8 +20,8 @@ LIST = "offline.json"
 LASTING = "lasting.json"
 WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
-#: A path that names its content: in our folders, and as the makers of JupyterLite name the parts of
-#: its scripts.
+#: A path that names its content: in our folders, and as the makers of
+#: JupyterLite name the parts of its scripts.
 BY_CONTENT = re.compile(
     r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
 )
@@ -30,8 +30,8 @@ KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipyn
 
 
 def icon(size, drawing):
-    """The book's icon as a picture of ``size`` by ``size`` pixels: the lines of ``drawing``, the
-    SVG of the favicon.
+    """The book's icon as a picture of ``size`` by ``size`` pixels: the lines of
+    ``drawing``, the SVG of the favicon.
     """
     from PIL import Image, ImageDraw
 
@@ -135,6 +135,5 @@ def finish(app, exception):
 
 def setup(app):
     app.connect("html-page-context", add_to_head)
-    app.connect(
-        "build-finished", finish, priority=960
-    )  # after page.py, which takes away what no page uses
+    # After page.py, which takes away what no page uses.
+    app.connect("build-finished", finish, priority=960)

@@ -1,5 +1,5 @@
-"""Settings of the kernels that run the notebooks here: `make` copies this file
-to a folder that stands in for the user's own IPython settings."""
+"""Settings of the kernels that run the notebooks here: `make` copies this file to a folder that
+stands in for the user's own IPython settings."""
 
 c = get_config()  # noqa: F821
 c.IPKernelApp.log_level = "ERROR"

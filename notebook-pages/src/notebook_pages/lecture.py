@@ -1,5 +1,5 @@
-"""The lecture of a page: the steps that its author marked, each with what it shows and notes for
-the speaker.
+"""The lecture of a page: the steps that its author marked, each with what
+it shows and notes for the speaker.
 
 A mark is a comment in the text, which neither the page nor Jupyter shows::
 
@@ -68,8 +68,8 @@ def keep_punctuation(tokens):
 
 
 def name_of(node, number):
-    """An id by which the browser finds what this node has become; a cell stands for the figure that
-    it draws.
+    """An id by which the browser finds what this node has become; a cell
+    stands for the figure that it draws.
     """
     figure = next(node.findall(nodes.figure), None)
     shown = figure if figure is not None else node

@@ -21,8 +21,8 @@ SMALL = 0.7  # size of letters that are raised or lowered
 SMALLER = ["katex-sizing", "reset-size6", "size3"]
 #: What book.css says of every such box.
 USUAL = {"frac-line": ("border-bottom-width", "0.04em"), "arraycolsep": ("width", "0.5em")}
-#: Boxes that hold letters side by side, so that a group within them, which has no style of its own,
-#: changes nothing.
+#: Boxes that hold letters side by side, so that a group within them, which has no
+#: style of its own, changes nothing.
 ROWS = {"katex-html", "katex-sizing", "tight", "delimcenter"}
 #: Operators that are what these attributes say without them.
 FENCES = set("()[]{},")
@@ -51,8 +51,8 @@ class Box:
 
 @cache
 def styled():
-    """The names of classes that KaTeX's style sheet knows; it also writes many that only its own
-    program needs.
+    """The names of classes that KaTeX's style sheet knows; it also writes many
+    that only its own program needs.
     """
     return frozenset(re.findall(r"\.([a-zA-Z][\w-]*)", KATEX_STYLES.read_text("utf8")))
 
@@ -80,8 +80,8 @@ def in_em(number):
 
 
 def rows_of(table):
-    """The rows of a table of KaTeX, without their struts, and the height of these, which is one in
-    a whole table.
+    """The rows of a table of KaTeX, without their struts, and the height of
+    these, which is one in a whole table.
     """
     lines = table.inside[0].inside[0].inside
     struts = {line.inside[0].style["height"] for line in lines}
@@ -110,8 +110,8 @@ def hat(letter, mark, strut):
 
 
 def table(box, holder):
-    """A table of KaTeX, within ``holder``: a letter with a mark or an index, or lines that stand at
-    their heights.
+    """A table of KaTeX, within ``holder``: a letter with a mark or an index, or
+    lines that stand at their heights.
     """
     lines, strut = rows_of(box)
     if holder.has("msupsub") and len(lines) == 1 and lines[0].inside[0].has(*SMALLER):
@@ -217,8 +217,8 @@ def short(value):
 
 @cache
 def names_of_styles():
-    """The names that book.css gives to the styles that stand oftenest: capitals are raised or
-    lowered letters.
+    """The names that book.css gives to the styles that stand oftenest:
+    capitals are raised or lowered letters.
     """
     sheet = (WEBSITE / "static" / "book.css").read_text("utf8")
     found = {}
@@ -247,8 +247,8 @@ def write(part):
 
 
 def spoken(box):
-    """MathML for the ear, without what tells how it would look and without rows that group
-    nothing.
+    """MathML for the ear, without what tells how it would look and
+    without rows that group nothing.
     """
     if isinstance(box, str):
         return box

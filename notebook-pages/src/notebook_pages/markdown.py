@@ -1,8 +1,8 @@
 """A resolved page of the book as plain Markdown, for Jupyter or any editor.
 
-The page's tree is read after Sphinx has numbered and linked everything, so
-that a reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore".
-Only markup that every Markdown reader knows comes out.
+The page's tree is read after Sphinx has numbered and linked everything, so that a
+reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore". Only markup that
+every Markdown reader knows comes out.
 """
 
 from textwrap import indent

@@ -26,8 +26,8 @@ KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 PUNCTUATION = tuple(".,;:!?)")
 #: What the end of a line may not part from a formula: after it, and before it.
 CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
-# signs, as a reader sees them, of a formula that need not be broken: half a line of the narrowest
-# page
+# signs, as a reader sees them, of a formula that need not be broken:
+# half a line of the narrowest page
 SHORT = 18
 #: What TeX needs and nobody sees, or sees above or around another sign.
 UNSEEN = re.compile(
@@ -75,8 +75,8 @@ class KaTeX:
 
 @cache
 def katex(process):
-    """The process that sets formulas for the Python process of this number; forks have pipes of
-    their own.
+    """The process that sets formulas for the Python process of this
+    number; forks have pipes of their own.
     """
     return KaTeX()
 
@@ -106,8 +106,8 @@ def signs(tex):
 
 
 def keep_punctuation(app, doctree, docname):
-    """Let no line begin with the full stop, comma or ’s after a formula, nor end with the bracket
-    before it.
+    """Let no line begin with the full stop, comma or ’s after a formula,
+    nor end with the bracket before it.
 
     A short formula is not broken; of a longer one, which may be, they become the ends.
     """

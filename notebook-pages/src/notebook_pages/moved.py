@@ -1,8 +1,8 @@
-"""What had another address in an earlier edition: whoever kept that address gets to where it is
-now.
+"""What had another address in an earlier edition: whoever kept
+that address gets to where it is now.
 
-``moved`` in ``_config.yml`` names each page that is gone, and each place on a page, with what took
-its place:
+``moved`` in ``_config.yml`` names each page that is gone, and each place
+on a page, with what took its place:
 
 .. code-block:: yaml
 
@@ -88,8 +88,8 @@ def lead_on(app: Sphinx, exception: Exception | None) -> None:
         gone, place = parted(old)
         if bool(place) != (gone in app.env.found_docs):
             raise SphinxError(
-                f"moved, in _config.yml: {old} is no page that is gone, nor a place on one "
-                "that is there."
+                f"moved, in _config.yml: {old} is no page that is gone, nor a place on one that is "
+                "there."
             )
         if not place:
             target = site / f"{gone}.html"

@@ -1,5 +1,5 @@
-"""Whether two texts are the same but for the last digits of their numbers, and by how much these
-moved.
+"""Whether two texts are the same but for the last digits of their
+numbers, and by how much these moved.
 
 No two kinds of processor round alike: the order of a sum differs, and whether a product is rounded
 before it is added. What a cell prints may move by that, and by no more.
@@ -104,8 +104,8 @@ def _elsewhere(stored, now):
 
 
 def moves_of_outputs(stored, now):
-    """The moves between the outputs of a cell; ``None`` where there is more of one than of the
-    other.
+    """The moves between the outputs of a cell; ``None`` where there
+    is more of one than of the other.
     """
     texts = [[_texts(output) for output in outputs] for outputs in (stored, now)]
     if [list(one) for one in texts[0]] != [list(one) for one in texts[1]]:

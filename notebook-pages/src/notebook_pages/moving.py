@@ -50,8 +50,8 @@ def kinds_on(doctree):
 
 
 def scripts_and_styles(kinds):
-    """What a page with these kinds of figures loads, texts by their names; and what its figures
-    fetch later.
+    """What a page with these kinds of figures loads, texts by their names;
+    and what its figures fetch later.
     """
     bundle = named(REGISTERED["figures"])
     texts, later = {}, {}
@@ -72,8 +72,8 @@ def scripts_and_styles(kinds):
 
 
 def figures_as_written(app):
-    """Where the scripts and styles of moving figures lie as they were written, by this build or
-    before.
+    """Where the scripts and styles of moving figures lie as they were
+    written, by this build or before.
 
     Small ones are made of these each time: made small twice, a script is another one.
     """
@@ -101,8 +101,8 @@ def add_scripts(app, pagename, templatename, context, doctree):
 
 
 def write_embedded(app, exception):
-    """A page for each figure alone, which others put into theirs; anew only if what they are made
-    from has changed.
+    """A page for each figure alone, which others put into theirs; anew only if
+    what they are made from has changed.
     """
     if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
         return

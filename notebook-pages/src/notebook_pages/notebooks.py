@@ -1,7 +1,7 @@
 """``python -m notebook_pages.notebooks [paths]``: run every notebook and store it with its outputs.
 
-This is how notebooks are committed: run from a clean kernel from the first
-cell to the last, and free of what differs from one machine or day to another.
+This is how notebooks are committed: run from a clean kernel from the first cell to the last, and
+free of what differs from one machine or day to another.
 """
 
 import sys

@@ -10,8 +10,8 @@ import zipfile
 from .paths import LICENCES_SAID, WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
-#: What a page asks for ahead of its turn: from a disk nothing is, and browsers complain of the
-#: hint.
+#: What a page asks for ahead of its turn: from a disk nothing is,
+#: and browsers complain of the hint.
 AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 README = """{title}
 {line}

@@ -24,8 +24,8 @@ from .paths import REGISTERED, REPOSITORY
 TIME = (2026, 1, 1, 0, 0, 0)
 #: What else a wheel is made of, where a project has it.
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-#: Where a project states its version: in its ``pyproject.toml``, or else in the first of its
-#: packages.
+#: Where a project states its version: in its ``pyproject.toml``, or
+#: else in the first of its packages.
 STATED = re.compile(r'^(__version__|version) = "(?P<version>.*)"$', re.M)
 
 
@@ -111,8 +111,8 @@ class Project:
         return f"{stated}.post{latest:%Y%m%d%H%M%S}"
 
     def _git(self, *arguments: str) -> str:
-        """What git says of the sources, or nothing where there is no git, or no repository that it
-        would read.
+        """What git says of the sources, or nothing where there is no git, or
+        no repository that it would read.
         """
         if not shutil.which("git"):
             return ""
@@ -142,8 +142,8 @@ class Project:
         return f"{self.name.replace('-', '_')}-{self.version()}-py3-none-any.whl"
 
     def build_wheel(self, folder: str | Path) -> Path:
-        """Build the wheel, from a copy: setuptools leaves files behind, and here the version is
-        set.
+        """Build the wheel, from a copy: setuptools leaves files
+        behind, and here the version is set.
         """
         with tempfile.TemporaryDirectory() as place:
             for path in self.sources():
@@ -154,8 +154,8 @@ class Project:
             text, count = STATED.subn(rf'\1 = "{self.version()}"', stating.read_text("utf8"))
             if count != 1:
                 raise RuntimeError(
-                    f"{stating.relative_to(place)} must state the version once; it does "
-                    f"{count} times"
+                    f"{stating.relative_to(place)} must state the version once; it does {count} "
+                    "times"
                 )
             stating.write_text(text, "utf8")
             command = [

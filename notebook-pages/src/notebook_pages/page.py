@@ -17,9 +17,9 @@ from .paths import NODE, NODE_MODULES, WEBSITE, esbuild
 
 PURGE = WEBSITE / "purge.mjs"
 
-# The style sheets of the theme and of the other extensions, in their order.
-# They become one file in one cascade layer, so that every rule of book.css
-# goes before theirs without a contest of selectors.
+# The style sheets of the theme and of the other extensions, in their order. They
+# become one file in one cascade layer, so that every rule of book.css goes before
+# theirs without a contest of selectors.
 THEME_STYLES = (
     "basic.css",
     "styles/pydata-sphinx-theme.css",
@@ -32,8 +32,8 @@ THEME_STYLES = (
 STYLE = "style.css"
 # Scripts that some extension would put on every page although no page uses them.
 UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight")
-#: The scripts of the page itself, in their order, which a page fetches as one file; and those that
-#: not all pages have.
+#: The scripts of the page itself, in their order, which a page fetches as one file;
+#: and those that not all pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
     "doctools.js",
@@ -177,8 +177,8 @@ def name_styles(drawing):
 
 
 def share_outlines(body):
-    """Move the outlines of letters from the drawings of a page into one table at its end, each of
-    them once.
+    """Move the outlines of letters from the drawings of a page into one
+    table at its end, each of them once.
 
     A blank between two words has no outline: it goes, with every place where it stands.
     """
@@ -260,9 +260,8 @@ def trim_page(app, pagename, templatename, context, doctree):
     joined = "-".join(["page", *(name for name in SOMETIMES if f"{name}.js" in names)])
     app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
-        script.attributes.setdefault(
-            "defer", "defer"
-        )  # no script is awaited before the text is shown
+        # No script is awaited before the text is shown.
+        script.attributes.setdefault("defer", "defer")
     context["styles"] = [STYLE]
     if "body" in context:
         context["body"] = lighten(context["body"])
@@ -273,8 +272,8 @@ def theme_styles(static):
 
 
 def make_small(static, files, told):
-    """Write files again without blanks and long names, all in one go; ``told`` is the least fault
-    that is told of.
+    """Write files again without blanks and long names, all in one go; ``told`` is
+    the least fault that is told of.
     """
     options = [
         "--minify",
@@ -288,8 +287,8 @@ def make_small(static, files, told):
 
 
 def number_values(site, rules):
-    """The rules with numbers for the long names of the theme's values, unless something else asks
-    for them.
+    """The rules with numbers for the long names of the theme's values,
+    unless something else asks for them.
     """
     others = [*pages_of(site), *site.glob("_static/moving/*"), WEBSITE / "print.css"]
     known = {name for path in others for name in VALUE.findall(path.read_text("utf8"))}

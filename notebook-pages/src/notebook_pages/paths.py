@@ -40,8 +40,8 @@ class Data(TypedDict):
 
 
 class Registered(TypedDict, total=False):
-    """What a book says of itself, in the table ``[tool.notebook-pages]`` of its
-    ``pyproject.toml``.
+    """What a book says of itself, in the table
+    ``[tool.notebook-pages]`` of its ``pyproject.toml``.
     """
 
     name: str
@@ -108,8 +108,8 @@ def esbuild(*arguments: str | Path) -> str:
 
 
 def named(place: str) -> object:
-    """The object of a book or of another project that the table names by ``module`` or
-    ``module:name``.
+    """The object of a book or of another project that the table names
+    by ``module`` or ``module:name``.
     """
     module, _, name = place.partition(":")
     found: object = import_module(module)
@@ -128,8 +128,8 @@ PACKAGES = {
     for wheel in REGISTERED.get("wheels", ())
     for place in wheel["packages"]
 }
-#: One moment for all that a run writes, where nothing else is known: two files of the same print
-#: are the same.
+#: One moment for all that a run writes, where nothing else is known: two
+#: files of the same print are the same.
 STARTED = datetime.now(UTC)
 #: Reads YAML by the library in C where there is one: in Python that takes ten times as long.
 YAML = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -148,8 +148,8 @@ def let_everybody_read(folder: Path) -> None:
 
 
 def exam_edition(book: Path = Path()) -> bool:
-    """Whether the book is built without worked solutions: BOOK_EXAM=1, or ``exam_edition`` in
-    ``_config.yml``.
+    """Whether the book is built without worked solutions: BOOK_EXAM=1, or
+    ``exam_edition`` in ``_config.yml``.
     """
     if chosen := os.environ.get("BOOK_EXAM"):
         return chosen != "0"
@@ -219,8 +219,8 @@ def edition(book: Path = Path()) -> Edition:
 
 
 def moment_of_sources() -> datetime:
-    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last commit, or else when
-    this run began.
+    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last
+    commit, or else when this run began.
     """
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None and shutil.which("git"):
@@ -244,8 +244,8 @@ def fingerprint(*paths: Path) -> str:
 def where(node: "Node | None") -> str | None:
     """The place of ``node`` in its source, as a reader of the warning needs it.
 
-    MyST-NB gives the lines of a notebook as 10000 times the cell's number, plus
-    the line in the cell, plus one.
+    MyST-NB gives the lines of a notebook as 10000 times the cell's number,
+    plus the line in the cell, plus one.
     """
     while node is not None and not (node.source and node.line):
         node = node.parent

@@ -1,8 +1,8 @@
 """The whole book as one PDF: the built pages in one document, printed by Chromium.
 
-Nothing is set anew. Equations, figures and numbers are those of the pages; what
-only a screen can do is taken out, links between pages become links inside the
-document, and print.css lays it out on paper.
+Nothing is set anew. Equations, figures and numbers are those of the pages; what only
+a screen can do is taken out, links between pages become links inside the document,
+and print.css lays it out on paper.
 """
 
 import io
@@ -39,16 +39,15 @@ LONG = 14  # lines of code that need not stay on one page
 # came for what has moved, and what a check says of a blank.
 ONLY_ON_SCREEN = (
     "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
-    ".whole-book, p.moved, "
-    ".output:has([data-outcome='not attempted'])"
+    ".whole-book, p.moved, .output:has([data-outcome='not attempted'])"
 )
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
 # Attributes that name other elements.
 NAMES_OF_OTHERS = ("aria-labelledby", "aria-describedby", "for", "headers")
 NOTE = (
     "<strong>On paper.</strong> In this PDF, figures that move on the book\u2019s web pages are "
-    "stills, and the "
-    "code that draws the figures is left out. The web pages and the notebooks have both."
+    "stills, and the code that draws the figures is left out. "
+    "The web pages and the notebooks have both."
 )
 SMALLEST = 0.6  # of the size of the text; what is still too wide then stops the printing
 
@@ -94,8 +93,8 @@ def place(page, fragment=""):
 
 
 def target(page, address):
-    """Where a link on ``page`` leads in the document; ``None`` if it leads to no page of the
-    book.
+    """Where a link on ``page`` leads in the document; ``None`` if
+    it leads to no page of the book.
     """
     path, fragment = urldefrag(address)
     if not path:
@@ -136,8 +135,8 @@ def as_picture(formula):
 
 
 def as_drawn(state):
-    """What a figure that stands still shows in numbers, in TeX; empty where it shows none that one
-    would read off.
+    """What a figure that stands still shows in numbers, in TeX; empty where it
+    shows none that one would read off.
     """
 
     def degrees(angle):
@@ -177,9 +176,8 @@ def tell_numbers(text):
             words = (
                 f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
             )
-            figure.insert_after(
-                BeautifulSoup(words, "html.parser")
-            )  # within it, brackets would be drawings of it
+            # Within it, brackets would be drawings of it.
+            figure.insert_after(BeautifulSoup(words, "html.parser"))
 
 
 def article(site, page, set_formula=as_picture):
@@ -211,9 +209,8 @@ def article(site, page, set_formula=as_picture):
         if element.get("role", "").startswith("doc-"):
             del element["role"]  # in a PDF a link with such a role would be none
         if element.name == "figure":
-            element.attrs.pop(
-                "aria-labelledby", None
-            )  # in a PDF it would be heard by that name alone
+            # In a PDF it would be heard by that name alone.
+            element.attrs.pop("aria-labelledby", None)
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):
@@ -365,8 +362,8 @@ def in_order(bookmarks):
 
 
 def describe(pdf, title, author):
-    """Say in the file itself what it is, for programs that keep books, and that it is made for
-    screen readers.
+    """Say in the file itself what it is, for programs that keep books, and
+    that it is made for screen readers.
     """
     which = edition()
     with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
@@ -418,8 +415,8 @@ def print_document(browser, file, numbers):
     """Print the document ``file``, its list of contents filled in with page ``numbers`` if there
     are any; return the PDF and the headings, which become its bookmarks.
 
-    The document is opened anew for each print: of one that it has printed before, Chromium breaks
-    some pages elsewhere.
+    The document is opened anew for each print: of one that it has printed before,
+    Chromium breaks some pages elsewhere.
     """
     page = browser.new_page(viewport={"width": WIDTH, "height": 900})
     page.emulate_media(media="print", color_scheme="light")
@@ -439,8 +436,8 @@ def make(site, file, title, author):
     """The PDF of the built book in ``site``, printed from the document ``file``."""
     file.parent.mkdir(exist_ok=True)
     file.write_text(document(site, title), "utf8")
-    # The list of contents needs the page numbers: print, read them, print again, until they are
-    # true.
+    # The list of contents needs the page numbers: print, read them,
+    # print again, until they are true.
     with open_browser() as browser:
         numbers = None
         for _ in range(4):

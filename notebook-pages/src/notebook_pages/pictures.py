@@ -1,8 +1,8 @@
-"""The picture that stands for a page where it is passed on: its first figure, on white, as a PNG of
-1200 by 630.
+"""The picture that stands for a page where it is passed on: its first figure,
+on white, as a PNG of 1200 by 630.
 
-Whoever shows a link fetches the picture by its whole address: pages name it only where the book has
-one.
+Whoever shows a link fetches the picture by its whole address: pages
+name it only where the book has one.
 """
 
 import html
@@ -38,16 +38,16 @@ def mixed(colour, per_cent):
 
 
 def plain_colours(text):
-    """``text`` with the colours of the light page where it names them, and none of those where it
-    defines them.
+    """``text`` with the colours of the light page where it names them, and
+    none of those where it defines them.
     """
     text = re.sub(r"--[\w-]+:[^;]*;", "", text)
     return re.sub(r"var\(--([\w-]+)[^)]*\)", lambda name: FIGURES.LIGHT.get(name[1], SHEET), text)
 
 
 def plain_style():
-    """The style sheet of the figures without variables and mixtures, which programs that draw SVG
-    do not know.
+    """The style sheet of the figures without variables and mixtures, which
+    programs that draw SVG do not know.
     """
     rules = []
     for selector, rule in re.findall(
@@ -67,8 +67,8 @@ def plain_style():
 
 
 def first_figure(body):
-    """The first figure of a page: its SVG, the shape of its sheet, and what it says to those who do
-    not see it.
+    """The first figure of a page: its SVG, the shape of its sheet, and what it
+    says to those who do not see it.
     """
     found = FIGURE.search(body or "")
     if not found:
@@ -80,9 +80,8 @@ def first_figure(body):
         if f'id="{name}"' not in found[0]
     )
     figure = found[0].replace(">", f"><defs>{shared}</defs>", 1)
-    inner = re.search(
-        r'^<svg [^>]*data-box="([^"]*)"', found[0]
-    )  # where much of the sheet is empty
+    # Where much of the sheet is empty.
+    inner = re.search(r'^<svg [^>]*data-box="([^"]*)"', found[0])
     return (
         figure,
         [float(number) for number in (inner or found)[1].split()],

@@ -1,5 +1,5 @@
-"""``python -m notebook_pages.pins``: renew every exact version that the set-up installs, all of
-them or none.
+"""``python -m notebook_pages.pins``: renew every exact version that the
+set-up installs, all of them or none.
 
 - ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, found
   by pip;
@@ -83,8 +83,8 @@ def resolve(*arguments):
 
 
 def asked_for():
-    """What the projects of this repository ask for, each with all its extras, but for one
-    another.
+    """What the projects of this repository ask for, each with all
+    its extras, but for one another.
     """
     folders = [*(project.folder for project in PROJECTS), WEBSITE.parents[1]]
     stated = [
@@ -109,8 +109,8 @@ def constraints():
 
 
 def wheels(old, versions):
-    """The new text of a list of wheels for browsers, whose old text is ``old``, and what pip
-    reports of each.
+    """The new text of a list of wheels for browsers, whose old text is
+    ``old``, and what pip reports of each.
     """
     wanted = [
         f"{name}=={versions[name]}" if name in versions else f"{name}>={version}"
@@ -195,8 +195,8 @@ def main():
         sys.exit(
             "Nothing was written. In browsers "
             + "; ".join(untold)
-            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, "
-            "then try again."
+            + ": add a line with its name and version to notebook_pages/lite/wheels.txt, then try "
+            "again."
         )
     for path, text in new.items():
         changed = path.read_text("utf8") != text

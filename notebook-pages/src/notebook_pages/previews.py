@@ -70,8 +70,8 @@ def figure(page, found):
 
 
 def preview(page, name):
-    """The HTML of the place ``name`` of a page, without links and names of its own; None if it is
-    none of the kinds.
+    """The HTML of the place ``name`` of a page, without links and names of its own;
+    None if it is none of the kinds.
     """
     if name.startswith("term-"):
         begin = page.find(f'<dt id="{name}"')
@@ -115,6 +115,5 @@ def finish(app, exception):
 
 def setup(app):
     app.add_js_file("previews.js", loading_method="defer")
-    app.connect(
-        "build-finished", finish, priority=965
-    )  # when all pages are written, before their files are listed
+    # When all pages are written, before their files are listed.
+    app.connect("build-finished", finish, priority=965)

@@ -1,5 +1,5 @@
-"""The page *My progress*: what there is to do in each chapter, filled in by the reader's own
-browser.
+"""The page *My progress*: what there is to do in each chapter,
+filled in by the reader's own browser.
 
 The build counts; `progress.js` keeps what the reader does, and `my-progress.js` shows it. Without a
 script the page still says what there is to read, to predict, to answer and to solve.
@@ -19,8 +19,8 @@ from .paths import parts
 from .questions import question
 
 CHECK = re.compile(r"^check\(\s*[\"']([^\"']+)", re.MULTILINE)
-# What is counted, in the order of the columns: heading, and the explanation in the foot of the
-# table.
+# What is counted, in the order of the columns: heading, and the
+# explanation in the foot of the table.
 COLUMNS = {
     "read": "Sections read",
     "predictions": "Predictions",

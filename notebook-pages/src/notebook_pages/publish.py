@@ -1,5 +1,5 @@
-"""What others read of the pages: search engines, those who pass a page on, programs, and readers
-with a correction.
+"""What others read of the pages: search engines, those who pass a page on,
+programs, and readers with a correction.
 
 The title and the author stand in ``_config.yml``; so do, once the book has them, its address
 (``html.baseurl``) and its repository (``repository.url``, ``repository.branch``), for which
@@ -41,8 +41,8 @@ def take_addresses(app, config):
 
 
 def description(doctree):
-    """The first words of a page that stand as text: its first paragraph without a set formula, cut
-    to length.
+    """The first words of a page that stand as text: its first paragraph
+    without a set formula, cut to length.
     """
     for paragraph in doctree.findall(nodes.paragraph):
         inside = paragraph.parent
@@ -118,8 +118,8 @@ def described(app, page):
 
 
 def outline(app):
-    """The pages as a list in Markdown, with what each is about: for programs that read
-    (https://llmstxt.org).
+    """The pages as a list in Markdown, with what each is about: for programs
+    that read (https://llmstxt.org).
     """
     env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
     lines = [f"# {app.config.html_title}", "", f"> {described(app, root)}", ""]
@@ -147,8 +147,8 @@ def in_order(env):
     return [*found, *sorted(env.found_docs - set(found))]
 
 
-#: It stands in for any address, so nothing in it is relative: where no address is set, the script
-#: looks for the book.
+#: It stands in for any address, so nothing in it is relative: where no address is
+#: set, the script looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8" />
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -187,9 +187,8 @@ def write_files(app, exception):
     if exception or app.builder.format != "html":
         return
     site, address = Path(app.outdir), app.config.html_baseurl or ""
-    (
-        site / ".nojekyll"
-    ).touch()  # GitHub Pages would leave out the folders that begin with an underscore
+    # GitHub Pages would leave out the folders that begin with an underscore.
+    (site / ".nojekyll").touch()
     # The page stands in for any address: only the path from the server's root leads away from it.
     front = urlsplit(address).path or "/"
     (site / "404.html").write_text(

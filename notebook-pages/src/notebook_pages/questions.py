@@ -1,5 +1,5 @@
-"""Questions that the reader answers on the page: predictions before a result, and the recap of a
-chapter.
+"""Questions that the reader answers on the page: predictions before a
+result, and the recap of a chapter.
 
 The directive `predict` is one question; `recap` holds several, each a `question`. The last thing in
 a question is a definition list: each term is a choice, its definition the reply to whoever chooses

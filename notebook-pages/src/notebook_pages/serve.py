@@ -14,8 +14,8 @@ BOOK = HERE if (HERE / "index.html").is_file() else Path("_build/html")
 
 
 class Handler(SimpleHTTPRequestHandler):
-    # Browsers run a module only if it is served as JavaScript, and the
-    # system's own table of types may not know .mjs or .wasm.
+    # Browsers run a module only if it is served as JavaScript, and the system's own table of
+    # types may not know .mjs or .wasm.
     extensions_map = SimpleHTTPRequestHandler.extensions_map | {
         ".js": "text/javascript",
         ".mjs": "text/javascript",
@@ -25,19 +25,18 @@ class Handler(SimpleHTTPRequestHandler):
         ".svg": "image/svg+xml",
     }
 
-    # Only an isolated page may share memory with its Python, which can then be interrupted and
-    # keep its names. Other servers may not send these headers; the page does without.
+    # Only an isolated page may share memory with its Python, which can then be interrupted and keep
+    # its names. Other servers may not send these headers; the page does without.
     isolated = True
 
     def end_headers(self):
-        # JupyterLite's kernel hangs in an isolated page when a file is written, or an error is
-        # shown.
+        # JupyterLite's kernel hangs in an isolated page when a file is
+        # written, or an error is shown.
         if self.isolated and not self.path.startswith("/lite/"):
             self.send_header("Cross-Origin-Opener-Policy", "same-origin")
             self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
-            self.send_header(
-                "Cross-Origin-Resource-Policy", "cross-origin"
-            )  # for frames without an origin
+            # For frames without an origin.
+            self.send_header("Cross-Origin-Resource-Policy", "cross-origin")
         super().end_headers()
 
     def log_message(self, *arguments):

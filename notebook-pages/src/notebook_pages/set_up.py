@@ -1,5 +1,5 @@
-"""``python -m notebook_pages.set_up``: fetch what pages are made with and pip does not install, all
-from exact pins.
+"""``python -m notebook_pages.set_up``: fetch what pages are made with and pip
+does not install, all from exact pins.
 
 Packages of npm (``package.json``) come into ``node_modules``, and Python packages for browsers
 (``live/wheels.txt`` and ``lite/wheels.txt``) into ``.venv/runtime``: in the folder of the book, or
@@ -37,9 +37,8 @@ def npm(*arguments, **keywords):
 def fetch_packages():
     print(f"Setting up KaTeX, the typefaces and Python for browsers in {NODE_MODULES} ...")
     FETCHED.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(
-        dir=FETCHED
-    ) as folder:  # the folder may have a package.json of its own
+    # The folder may have a package.json of its own.
+    with tempfile.TemporaryDirectory(dir=FETCHED) as folder:
         for file in (PACKAGE, LOCK):
             shutil.copy(file, folder)
         npm("ci", "--silent", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)

@@ -8,8 +8,8 @@ UNUSED = ("reference", "internal", "toctree-l1")
 
 
 def fold(soup):
-    """Make each caption and the list below it one fold; a title does not repeat the caption of its
-    part.
+    """Make each caption and the list below it one fold; a title does
+    not repeat the caption of its part.
 
     Of *Exercises: Gimbal lock*, in the part *Exercises*, the sidebar shows *Gimbal lock*.
     """
@@ -54,6 +54,5 @@ def fold_contents(app, pagename, templatename, context, doctree):
 
 
 def setup(app):
-    app.connect(
-        "html-page-context", fold_contents, priority=960
-    )  # after the theme has put its function there
+    # After the theme has put its function there.
+    app.connect("html-page-context", fold_contents, priority=960)

@@ -1,5 +1,5 @@
-"""A formula in words, from its MathML: for a PDF, where it is a picture, and for programs that know
-no MathML.
+"""A formula in words, from its MathML: for a PDF, where it is a picture,
+and for programs that know no MathML.
 
 Said is what somebody would say who reads the formula to a colleague. Superscripts on both sides of
 a letter name frames and are no powers; a hat is said once, with its direction; a raised T after an
@@ -70,8 +70,8 @@ def bare(node):
 
 
 def is_simple(node):
-    """Whether one hears where ``node`` ends: one letter or number, with its marks or sign, or a few
-    such in a row.
+    """Whether one hears where ``node`` ends: one letter or number, with its marks
+    or sign, or a few such in a row.
     """
     if node.name in ("mrow", "mstyle", "math"):
         inside = parts(node)

@@ -1,5 +1,5 @@
-"""The directive ``subject-index``: where the book speaks of each term, and uses each symbol and
-function.
+"""The directive ``subject-index``: where the book speaks of each term,
+and uses each symbol and function.
 
 Nothing is marked for it. Terms are those of the glossary, found where the text refers to them, or
 else where it says them; symbols are the rows of the notation page; functions are those of the
@@ -96,8 +96,8 @@ def link(app, page, target, anchor, words):
 
 
 def places(app, page, uses):
-    """The links to the places of ``uses``, a list of pages with sections, in the order of the
-    book.
+    """The links to the places of ``uses``, a list of pages with
+    sections, in the order of the book.
     """
     made = []
     for target, section in uses:
@@ -129,8 +129,8 @@ def terms(app):
 
 
 def functions(app):
-    """What the reference explains: functions, classes and such, by their short names, with their
-    pages and anchors.
+    """What the reference explains: functions, classes and such, by their short
+    names, with their pages and anchors.
     """
     return {
         name.rpartition(".")[2]: (entry.docname, entry.node_id)

@@ -1,5 +1,5 @@
-"""The structure of a printed PDF, put in order: what a screen reader is told, by ISO 14289-1
-(PDF/UA).
+"""The structure of a printed PDF, put in order: what a screen
+reader is told, by ISO 14289-1 (PDF/UA).
 
 Chromium tags what it prints, nearly well. Here its tree of elements is read, mended and written
 anew: empty groups go, formulas become formulas, lists get their parts, links say where they lead,
@@ -111,8 +111,8 @@ def letters(font):
 
 
 class Stream:
-    """What a page, or a form on it, draws: lines with an operator at the end of each, as Chromium
-    writes them.
+    """What a page, or a form on it, draws: lines with an operator at the end
+    of each, as Chromium writes them.
     """
 
     def __init__(self, page, key, content, resources, known_letters):
@@ -131,11 +131,8 @@ class Stream:
 
     def texts(self):
         """The words of each marked sequence, by its number."""
-        found, stack, font = (
-            {},
-            [],
-            {},
-        )  # the stack: the number of each open sequence, or what it says it stands for
+        # The stack: the number of each open sequence, or what it says it stands for.
+        found, stack, font = ({}, [], {})
         for line in self.lines:
             operator = line.rsplit(" ", 1)[-1]
             number = next((one for one in reversed(stack) if isinstance(one, int)), None)
@@ -167,8 +164,8 @@ class Stream:
         return {number: said.replace("\u200b", "") for number, said in found.items()}
 
     def marked(self, kept, forms_with_marks):
-        """The stream with every sequence that is not ``kept``, and all that stands outside of any,
-        as artifacts.
+        """The stream with every sequence that is not ``kept``, and all that
+        stands outside of any, as artifacts.
         """
         out, open_sequences, open_artifact, path = [], [], False, None
 
@@ -195,8 +192,8 @@ class Stream:
             if operator == "EMC":
                 open_sequences.pop()
             elif not open_sequences:
-                # A path becomes an artifact when it is painted, not when it only cuts off what
-                # follows.
+                # A path becomes an artifact when it is painted, not when
+                # it only cuts off what follows.
                 if operator in PATH and path is None:
                     path = len(out)
                 elif operator in PAINT:
@@ -289,8 +286,8 @@ def name_figures(element):
 
 
 def drop_blank(element, texts):
-    """Leave out what shows nothing to read: lines and shades. A picture keeps all that it is drawn
-    of.
+    """Leave out what shows nothing to read: lines and shades. A
+    picture keeps all that it is drawn of.
     """
     if element.kind in WORDED:
         return
@@ -320,8 +317,8 @@ def once(element):
 
 
 def in_paragraphs(element):
-    """Text that stands in a group among blocks is a paragraph; what follows the sign of an item is
-    its body.
+    """Text that stands in a group among blocks is a paragraph; what follows
+    the sign of an item is its body.
     """
     for one in element.inside:
         if isinstance(one, Element):
@@ -459,8 +456,8 @@ def write(pdf, root, found):
 
 
 def mend(pdf, printed):
-    """Put the structure of ``pdf``, opened from the bytes ``printed``, in order; return the words
-    that are read.
+    """Put the structure of ``pdf``, opened from the bytes ``printed``, in
+    order; return the words that are read.
     """
     found = streams(pdf)
     texts = {

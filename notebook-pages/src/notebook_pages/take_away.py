@@ -1,9 +1,9 @@
 """Every page that is a notebook can be taken away as a notebook and as a script.
 
-Both hold the page's prose in plain Markdown, with the numbers and names that
-the book gives to equations, figures and exercises, and the code as it stands
-in the chapter. Outputs are left out: the reader's own run makes them, and
-they cannot be old. The package that the code imports lies beside them.
+Both hold the page's prose in plain Markdown, with the numbers and names that the book
+gives to equations, figures and exercises, and the code as it stands in the chapter.
+Outputs are left out: the reader's own run makes them, and they cannot be old. The package
+that the code imports lies beside them.
 """
 
 import shutil
@@ -45,8 +45,8 @@ def first_words(title):
 
 
 def packages_archive():
-    """The name of the zip of all packages that the notebooks import; its version is that of the
-    newest of them.
+    """The name of the zip of all packages that the notebooks import; its
+    version is that of the newest of them.
 
     Empty in a book that has no packages.
     """
@@ -62,10 +62,10 @@ def introduction(title):
     if not PROJECTS:
         return f"{first_words(title)} {LICENCES_SAID}".rstrip()
     return (
-        f"{first_words(title)} To run it, install the packages that it "
-        f"imports: download `{packages_archive()}` from the page's menu, unpack it, and in its "
-        "folder `packages` run "
-        f"`python -m pip install -r requirements.txt`. {LICENCES_SAID}"
+        f"{first_words(title)} To run it, install the packages that it imports: download "
+        f"`{packages_archive()}` from the page's menu, unpack it, and in its folder `packages` run "
+        "`python -m pip install -r requirements.txt`. "
+        f"{LICENCES_SAID}"
     ).rstrip()
 
 
@@ -189,8 +189,8 @@ def pack_data(app, exception):
 
 
 def build_wheels(app, exception):
-    """Build our packages into the site, as wheels and all in one zip; their names tell what they
-    were built from.
+    """Build our packages into the site, as wheels and all in one zip; their
+    names tell what they were built from.
     """
     if exception or app.builder.format != "html" or not PROJECTS:
         return

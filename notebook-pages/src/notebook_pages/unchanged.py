@@ -47,10 +47,8 @@ def of_sources() -> str:
     commit = subprocess.run(
         ["git", "-C", REPOSITORY, "rev-parse", "HEAD"], capture_output=True, text=True
     )
-    said += [
-        sys.version,
-        commit.stdout,
-    ]  # the version of the package for students follows from the commit
+    # The version of the package for students follows from the commit.
+    said += [sys.version, commit.stdout]
     return fingerprint(said)
 
 

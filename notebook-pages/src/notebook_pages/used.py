@@ -28,16 +28,16 @@ _PARSING = threading.Lock()
 
 
 def parse(code: str) -> ast.Module:
-    """The syntax tree of some code, from any thread: Python 3.11 fails when two threads make trees
-    at once.
+    """The syntax tree of some code, from any thread: Python 3.11 fails
+    when two threads make trees at once.
     """
     with _PARSING:
         return ast.parse(code)
 
 
 def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """The statements of a tree, and those within them: an expression, which most of a tree is,
-    holds none.
+    """The statements of a tree, and those within them: an expression,
+    which most of a tree is, holds none.
     """
     for inner in ast.iter_child_nodes(tree):
         if isinstance(inner, (ast.stmt, ast.excepthandler, ast.match_case)):
@@ -57,8 +57,8 @@ def file_of(module: str) -> Path | None:
 
 
 def names_imported(code: str, module: str = "") -> set[str]:
-    """All that ``code`` may import, by full names; ``module`` is where it stands, for relative
-    imports.
+    """All that ``code`` may import, by full names; ``module`` is where
+    it stands, for relative imports.
     """
     found: set[str] = set()
     file = file_of(module)
@@ -147,8 +147,8 @@ def _digest(path: Path) -> bytes:
 
 
 def fingerprint_of_used(notebook: "NotebookNode") -> str:
-    """A text that changes when anything changes that the cells of ``notebook`` use, themselves not
-    among it.
+    """A text that changes when anything changes that the cells of
+    ``notebook`` use, themselves not among it.
     """
     code = "\n".join(code_of(notebook))
     parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
@@ -164,8 +164,8 @@ def notebook_of(path: str | Path) -> "NotebookNode":
 
 
 def code_of(notebook: "NotebookNode") -> list[str]:
-    """The code of each cell that is Python; what cannot be read as Python is left for the run to
-    complain of.
+    """The code of each cell that is Python; what cannot be read as Python is
+    left for the run to complain of.
     """
     codes = []
     for cell in notebook.cells:

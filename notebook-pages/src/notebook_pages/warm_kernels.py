@@ -119,9 +119,8 @@ class WarmProvisioner(LocalProvisioner):
 
 class FromWarmProcess:
     def start_kernel(self, **settings):
-        if (
-            sys.platform == "linux"
-        ):  # elsewhere a process that has loaded NumPy may not fork: a kernel is started
+        # Elsewhere a process that has loaded NumPy may not fork: a kernel is started.
+        if sys.platform == "linux":
             self.kernel_id = str(uuid.uuid4())
             self.provisioner = WarmProvisioner(
                 kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self

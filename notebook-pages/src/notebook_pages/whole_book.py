@@ -1,8 +1,8 @@
-"""``python -m notebook_pages.whole_book``: the whole book to take away, as a PDF, as an EPUB and as
-a zip.
+"""``python -m notebook_pages.whole_book``: the whole book to take away,
+as a PDF, as an EPUB and as a zip.
 
-All are made from the built site and put into it, and the front page offers them. Each is made
-again only when something that goes into it has changed; `make book` withdraws what has become old.
+All are made from the built site and put into it, and the front page offers them. Each is made again
+only when something that goes into it has changed; `make book` withdraws what has become old.
 """
 
 import json
@@ -32,8 +32,8 @@ FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
 STAMPS = BUILD / "whole-book.json"  # what they were made from
 FRONT = "index.html"
-# The place on the front page: a comment in its source, and what stands between it and the second
-# mark.
+# The place on the front page: a comment in its source, and what
+# stands between it and the second mark.
 PLACE = re.compile(r"<!-- whole-book -->(?:.*?<!-- /whole-book -->)?", re.DOTALL)
 LINK = '<a href="take-away/{name}">{title}<small>{note}, {size:.1f} MB</small></a>'
 
@@ -56,8 +56,8 @@ def with_offer(front, links):
 
 
 def site_files():
-    """What is in the site, contents by path, without the PDF, the EPUB, the zip and the offer of
-    them.
+    """What is in the site, contents by path, without the PDF, the
+    EPUB, the zip and the offer of them.
     """
     files = {
         str(path.relative_to(HTML)): path.read_bytes()
@@ -69,8 +69,8 @@ def site_files():
 
 
 def digest(files, *programs):
-    """A fingerprint of ``files``, contents by path, and of the programs that make something of
-    them.
+    """A fingerprint of ``files``, contents by path, and of the
+    programs that make something of them.
     """
     contents = [f"{path} {sha256(content).hexdigest()}" for path, content in sorted(files.items())]
     return sha256("\n".join([*contents, fingerprint(*programs)]).encode()).hexdigest()

@@ -22,8 +22,8 @@ FRAGMENT = re.compile(r"#?([a-z0-9-]+)=([0-9]+)\.(.*)", re.DOTALL)
 
 
 class BadAddress(ValueError):
-    """An address carries too much, or is not whole, or of a newer format; the message says
-    which.
+    """An address carries too much, or is not whole, or of a newer
+    format; the message says which.
     """
 
 
@@ -65,11 +65,11 @@ def fragment_of(place: str, content: Mapping[str, Plain]) -> str:
 
 
 def carried_by(fragment: str) -> tuple[str, dict[str, Plain]] | None:
-    """The place and the data that a fragment carries, or ``None`` where it is a plain name of a
-    place.
+    """The place and the data that a fragment carries, or ``None``
+    where it is a plain name of a place.
 
-    The data may come from anybody: whoever takes it up accepts what a reader could have entered,
-    and nothing else.
+    The data may come from anybody: whoever takes it up accepts what a reader
+    could have entered, and nothing else.
 
     Raises
     ------

@@ -47,8 +47,8 @@ class BeltFigure(MovingFigure):
         return dcm_from_quaternion(self.quaternion_at(1))
 
     def quaternion_at(self, share):
-        """Return the unit quaternion of the belt at a share of its length, four floats; the belt
-        lies along y.
+        """Return the unit quaternion of the belt at a share of its length,
+        four floats; the belt lies along y.
         """
         return tuple(
             round(entry, 15) + 0.0 for entry in quaternion_at(self.angle, self.passed, share)

@@ -1,5 +1,5 @@
-"""Put the modules of a figure together: one text for Jupyter, classic scripts for pages without a
-kernel.
+"""Put the modules of a figure together: one text for Jupyter, classic
+scripts for pages without a kernel.
 
 Pages opened from disk cannot import modules, and anywidget wants one module for each figure. Both
 come from the same files.

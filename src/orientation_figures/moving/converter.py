@@ -9,8 +9,8 @@ from orientation_workbench.programs import FORMS, OTHER, PROGRAMS, expected_of
 from .figure import MovingFigure
 from .state import Numbers
 
-# What a side of the converter says; for a program of the table its own convention goes before the
-# last three.
+# What a side of the converter says; for a program of the table its own
+# convention goes before the last three.
 CHOICES = {
     "program": (*PROGRAMS, OTHER),
     "form": FORMS,
@@ -43,8 +43,8 @@ _FORM_OF = {"quaternion": "quaternion", "rotation vector": "axis times angle", "
 
 
 def _as_the_page_has_it(program):
-    """What the table says of a program, with the forms that mean the inverse, and its axes as rows
-    of numbers.
+    """What the table says of a program, with the forms that mean the inverse,
+    and its axes as rows of numbers.
     """
     facts, inverse = PROGRAMS[program], expected_of(program)["inverse"]
     axes = [
@@ -86,8 +86,8 @@ class Side(traitlets.TraitType):
 
 
 class ConverterFigure(MovingFigure):
-    r"""Numbers of one program, read as that program means them, and the same orientation in
-    another.
+    r"""Numbers of one program, read as that program means them, and
+    the same orientation in another.
 
     Attributes
     ----------

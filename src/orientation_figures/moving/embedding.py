@@ -1,5 +1,5 @@
-"""Pages with one figure each, to stand in other people's pages: in a frame, or as an element of
-HTML.
+"""Pages with one figure each, to stand in other people's pages: in
+a frame, or as an element of HTML.
 
 Both show a figure as an address says that it stands (see ``address.py``). The element's name ends
 in its version, and it leaves no other name in the page. It only sets the frame and gives it the
@@ -88,8 +88,7 @@ def line(site, kind, fragment=""):
     """
     return (
         f'<iframe src="{site.rstrip("/")}/{FOLDER}/{kind}.html{fragment}" title="A figure that can '
-        'be moved" '
-        'loading="lazy" width="100%" height="600" style="border: 0"></iframe>'
+        'be moved" loading="lazy" width="100%" height="600" style="border: 0"></iframe>'
     )
 
 

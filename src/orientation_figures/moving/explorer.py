@@ -1,5 +1,5 @@
-"""An explorer of the twelve sequences: choose one, type angles, and read what the three turns
-multiply out to.
+"""An explorer of the twelve sequences: choose one, type angles, and read
+what the three turns multiply out to.
 
 SymPy does the algebra, so this needs Python: a kernel's, or that of the page.
 """
@@ -46,8 +46,8 @@ SYMBOL = (
 
 
 class SequenceExplorer(anywidget.AnyWidget):
-    r"""The direction cosine matrix of any of the twelve sequences, with its factors, as the reader
-    changes them.
+    r"""The direction cosine matrix of any of the twelve sequences, with its
+    factors, as the reader changes them.
 
     Shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied out,
     and what is left of it at gimbal lock, where only the sum or the difference of two angles
@@ -121,8 +121,8 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def matrices(self):
-        """All that is shown: the factors as they are multiplied, their product, and that at gimbal
-        lock.
+        """All that is shown: the factors as they are multiplied, their
+        product, and that at gimbal lock.
         """
         psi, _, phi = self.values
         factors = self.factors[::-1] if self.fixed == "body" else self.factors
@@ -154,8 +154,8 @@ class SequenceExplorer(anywidget.AnyWidget):
         return "".join(f'<div class="line">{formula}</div>' for formula in formulas)
 
     def lock(self):
-        """Return a sentence that says where the sequence locks, and how far from there it
-        stands.
+        """Return a sentence that says where the sequence locks,
+        and how far from there it stands.
         """
         proper = self.sequence in PROPER_EULER
         where = "θ = 0 and θ = π" if proper else "θ = π/2 and θ = −π/2"
@@ -198,8 +198,8 @@ class SequenceExplorer(anywidget.AnyWidget):
 
 
 def angle_from_text(text, name="angle"):
-    """Return the SymPy expression that was typed; nothing but arithmetic and the usual functions is
-    read.
+    """Return the SymPy expression that was typed; nothing but arithmetic
+    and the usual functions is read.
 
     Raises
     ------
@@ -248,8 +248,8 @@ def _tex(value):
 
 
 def _mathml(value):
-    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` leaves
-    them out of TeX.
+    """Return MathML without the brackets round a single symbol, as
+    ``fold_func_brackets`` leaves them out of TeX.
     """
     text = mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
     text = text.replace("<mn>-", "<mn>−")

@@ -1,5 +1,5 @@
-"""What every moving figure is: a widget in Jupyter, a still on paper, and the state that both
-show.
+"""What every moving figure is: a widget in Jupyter, a still on
+paper, and the state that both show.
 """
 
 import json
@@ -60,8 +60,8 @@ class MovingFigure(anywidget.AnyWidget):
         super().__setattr__(name, value)
 
     def _without(self, name):
-        """Return the message for a name that cannot be set, with the one that was probably
-        meant.
+        """Return the message for a name that cannot be set, with
+        the one that was probably meant.
         """
         names = sorted({*self.trait_names(state=True), *self._settable()})
         near = "".join(f" (did you mean {close}?)" for close in get_close_matches(name, names, 1))
@@ -69,8 +69,8 @@ class MovingFigure(anywidget.AnyWidget):
 
     @classmethod
     def _settable(cls):
-        """The names of what is computed from the state and can be set all the same, such as a
-        matrix.
+        """The names of what is computed from the state and can be set
+        all the same, such as a matrix.
         """
         own = [vars(one) for one in cls.__mro__ if issubclass(one, MovingFigure)]
         return {
@@ -121,9 +121,8 @@ def stills_can_be_drawn():
     # be lost.
     try:
         return all(map(find_spec, ("numpy", "matplotlib")))
-    except (
-        ModuleNotFoundError
-    ):  # so answers the Python of a page, which could fetch them: a still is no reason to
+    except ModuleNotFoundError:
+        # So answers the Python of a page, which could fetch them: a still is no reason to.
         return False
 
 

@@ -102,9 +102,8 @@ def function(name, takes, gives, choice=None):
     given = [components(kind, letter) for kind, letter in zip(takes.values(), "abc")]
     results = formula_of(name, given, choice)
     if gives == "angles":
-        results = [
-            one + 0.0 for one in results
-        ]  # as in the module: -0 would look like a wrong sign
+        # As in the module: -0 would look like a wrong sign.
+        results = [one + 0.0 for one in results]
     return arrow(given, list(takes.values()), results, gives)
 
 

@@ -13,8 +13,8 @@ LETTERS = "NABCDE"
 
 
 class Edges(traitlets.TraitType):
-    """One to five orientations: a new frame, the one it is turned in, an axis and an angle in
-    radians.
+    """One to five orientations: a new frame, the one it is turned in,
+    an axis and an angle in radians.
     """
 
     def validate(self, obj, value):
@@ -24,15 +24,15 @@ class Edges(traitlets.TraitType):
         ):
             raise traitlets.TraitError(
                 f"edges is {value!r}: one to five were expected, each a frame, the frame it is "
-                "turned in, an axis and "
-                "an angle in radians, as (('A', 'N', 'z', 0.7), ('B', 'A', 'x', 0.5))"
+                "turned in, an axis and an angle in radians, as (('A', 'N', 'z', 0.7), ('B', 'A', "
+                "'x', 0.5))"
             )
         known = ["N"]
         for frame, reference, *_ in value:
             if reference not in known:
                 raise traitlets.TraitError(
-                    f"edges turns {frame} in {reference}, which is not there: the "
-                    f"frames are {known}"
+                    f"edges turns {frame} in {reference}, which is not there: the frames are "
+                    f"{known}"
                 )
             if frame in known or frame not in LETTERS:
                 raise traitlets.TraitError(

@@ -9,8 +9,8 @@ from .state import Direction
 
 
 class HandsFigure(MovingFigure):
-    r"""A right-handed triad :math:`N`, and beside it either its mirror image or a copy, which the
-    reader turns.
+    r"""A right-handed triad :math:`N`, and beside it either its mirror image
+    or a copy, which the reader turns.
 
     The angles between the arrows of the same name are shown. A copy can be brought onto :math:`N`.
     Of the mirror image two arrows can fit, and then the third points the wrong way.

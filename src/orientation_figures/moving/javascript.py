@@ -270,8 +270,8 @@ def call(node):
     if node.keywords and not (isinstance(node.func, ast.Name) and node.func.id == "zip"):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
             raise ValueError(
-                f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, "
-                "without names"
+                f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, without "
+                "names"
             )
         given.append(entries((one.arg, one.value) for one in node.keywords))
     if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):

@@ -1,5 +1,5 @@
-"""A racket that tumbles, its orientation integrated as a matrix, as a quaternion and as Euler
-angles.
+"""A racket that tumbles, its orientation integrated as a matrix,
+as a quaternion and as Euler angles.
 """
 
 import traitlets
@@ -23,8 +23,8 @@ class Between(Numbers):
         number = super().validate(obj, value)
         if not self.least <= number <= self.most:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} "
-                f"{self.unit} can be had"
+                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} {self.unit} can "
+                "be had"
             )
         return number
 
@@ -47,8 +47,8 @@ class Moments(Numbers):
 
 
 class MotionFigure(MovingFigure):
-    r"""A body that tumbles freely, integrated in three descriptions with or without the restoring
-    step.
+    r"""A body that tumbles freely, integrated in three descriptions
+    with or without the restoring step.
 
     The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
     is carried along as a direction cosine matrix, as a quaternion and as Euler angles in the
@@ -107,8 +107,8 @@ class MotionFigure(MovingFigure):
     time = Between(6.0, 0, SECONDS, "seconds").tag(sync=True, state=True)
 
     def run(self):
-        """Return what has been computed from 0 to ``time``, as a dict of arrays with one row for
-        each step.
+        """Return what has been computed from 0 to ``time``, as a dict of
+        arrays with one row for each step.
 
         ``'time'``; ``'angular_velocity'`` along A; ``'matrix'``, ``'quaternion'``, ``'angles'`` as
         integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run

@@ -1,5 +1,5 @@
-"""Nine numbers that should be a direction cosine matrix: what fails, and the nearest matrix that is
-one.
+"""Nine numbers that should be a direction cosine matrix: what fails,
+and the nearest matrix that is one.
 """
 
 from orientation.direction_cosines import check_dcm, nearest_dcm

@@ -1,5 +1,5 @@
-"""The reader's own phone: its sensors as a browser reports them, or a recording where there are
-none.
+"""The reader's own phone: its sensors as a browser reports them,
+or a recording where there are none.
 """
 
 import math

@@ -124,15 +124,15 @@ class QuaternionFigure(MovingFigure):
         )
 
     def blend(self, share):
-        """Return the matrix whose entries lie part of the way between those of the ends; its rows
-        are too short.
+        """Return the matrix whose entries lie part of the way between those of
+        the ends; its rows are too short.
         """
         first, second = self.ends
         return (1 - share) * first + share * second
 
     def speeds(self, share):
-        """Return the three angular speeds part of the way, radians per second for a way of four
-        seconds.
+        """Return the three angular speeds part of the way, radians per
+        second for a way of four seconds.
         """
         early, late = max(0, share - STEP), min(1, share + STEP)
         return tuple(

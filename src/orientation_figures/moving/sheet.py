@@ -1,5 +1,5 @@
-"""The sheet of paper on which a picture is painted: the same words as the ``Sheet`` of
-``js/shared.js``.
+"""The sheet of paper on which a picture is painted: the same words as
+the ``Sheet`` of ``js/shared.js``.
 """
 
 import numpy as np
@@ -10,8 +10,8 @@ from ..drawing import Drawing
 class Sheet(Drawing):
     """A drawing in layers: what has the higher one lies above, within a layer what comes later.
 
-    In the page ``faded`` marks step back behind a number that is touched; on paper nothing is
-    touched.
+    In the page ``faded`` marks step back behind a number that is
+    touched; on paper nothing is touched.
     """
 
     def __init__(self, alt, **attributes):

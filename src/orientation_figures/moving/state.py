@@ -83,8 +83,7 @@ class Turns(traitlets.TraitType):
         if turns is None:
             raise traitlets.TraitError(
                 f"{self.name} is {value!r}: {COUNTS[self.fewest]} to {COUNTS[self.most]} pairs "
-                "were expected, each an "
-                "axis and an angle in radians, as (('z', 0.7), ('x', 0.5))"
+                "were expected, each an axis and an angle in radians, as (('z', 0.7), ('x', 0.5))"
             )
         return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
 
@@ -102,9 +101,8 @@ class Turns(traitlets.TraitType):
             raise traitlets.TraitError(f"{self.name}: {error}") from None
         if abs(number) > math.pi + 1e-12:
             raise traitlets.TraitError(
-                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. Angles are "
-                "in radians, "
-                "not degrees"
+                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. "
+                "Angles are in radians, not degrees"
             )
         return number
 

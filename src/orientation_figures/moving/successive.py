@@ -87,8 +87,8 @@ class SuccessiveFigure(MovingFigure):
 
     @property
     def dcms(self):
-        """Direction cosine matrices of N and of every further frame with respect to N, shape ``(n +
-        1, 3, 3)``.
+        """Direction cosine matrices of N and of every further frame with
+        respect to N, shape ``(n + 1, 3, 3)``.
         """
         import numpy as np  # only now: the figure itself does without
 
@@ -110,8 +110,8 @@ class SuccessiveFigure(MovingFigure):
 
     @property
     def angle_between(self):
-        """Angle of the turn from the end of the chain to E, radians, or None where nothing is
-        compared.
+        """Angle of the turn from the end of the chain to E, radians, or
+        None where nothing is compared.
         """
         return (
             None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])

@@ -1,5 +1,5 @@
-"""The formulas that readers take away from the page: one script for each language, loaded when it
-is asked for.
+"""The formulas that readers take away from the page: one script for each
+language, loaded when it is asked for.
 """
 
 import base64
@@ -16,8 +16,8 @@ MATTERS = {"matrix": {"matrix"}, "scalar": {"quaternion"}, "unit": {"angle", "an
 
 
 def texts_in(language):
-    """All texts of a language: for each formula the names of what is chosen, and a text for each
-    choice.
+    """All texts of a language: for each formula the names of what is
+    chosen, and a text for each choice.
     """
     found = {}
     for name, (takes, gives) in FORMULAS.items():

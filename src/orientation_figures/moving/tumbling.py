@@ -1,5 +1,5 @@
-"""The integration of a body that tumbles without torque, in three descriptions of its
-orientation.
+"""The integration of a body that tumbles without torque, in
+three descriptions of its orientation.
 """
 
 from functools import lru_cache
@@ -78,8 +78,8 @@ def _turned_on(omega, moments, step):
 
 
 def _reference(start, moments, step, count):
-    """Return the angular velocities and unit quaternions of so many Runge-Kutta steps from the
-    identity.
+    """Return the angular velocities and unit quaternions of so many
+    Runge-Kutta steps from the identity.
 
     The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4
     matrix, and those of all steps are found together, which is ten times as fast as one after the
@@ -114,8 +114,8 @@ def _rates(state, omega):
 
 
 def _step(state, step, method, moments, omegas):
-    """Return matrix, quaternion and angles one step later; ``omegas`` are those of the finer steps
-    from here.
+    """Return matrix, quaternion and angles one step later; ``omegas`` are
+    those of the finer steps from here.
     """
 
     def beyond(length, slopes):
@@ -157,8 +157,8 @@ def _turn(step, moments, omegas):
 
 
 def matrices(run, description, which):
-    """Return the direction cosine matrices of a description; that of a quaternion is |q|^2 times
-    orthogonal.
+    """Return the direction cosine matrices of a description; that of a
+    quaternion is |q|^2 times orthogonal.
     """
     values = run[description][which]
     if description == "matrix":
@@ -170,8 +170,8 @@ def matrices(run, description, which):
 
 
 def fault_of(dcms):
-    """Return the largest entry by which each matrix times its transpose differs from the
-    identity.
+    """Return the largest entry by which each matrix times its
+    transpose differs from the identity.
     """
     return abs(dcms @ dcms.swapaxes(-1, -2) - np.eye(3)).max(axis=(-2, -1))
 

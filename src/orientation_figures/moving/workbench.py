@@ -12,8 +12,8 @@ from .state import Numbers
 
 UNKNOWN = "not known"
 NOTHING_KNOWN = {"program": UNKNOWN, "kind": UNKNOWN, "sequence": UNKNOWN}
-#: Cases as they are met, most with the numbers of a public thread: what both programs gave, and
-#: what is known of each.
+#: Cases as they are met, most with the numbers of a public thread: what both
+#: programs gave, and what is known of each.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
@@ -64,15 +64,15 @@ EXAMPLES = {
 
 
 def _as_the_page_has_it(data):
-    """Plain data with lists in the place of tuples, so that it is the same after its way to a page
-    and back.
+    """Plain data with lists in the place of tuples, so that it is the same
+    after its way to a page and back.
     """
     return json.loads(json.dumps(data))
 
 
 class Known(traitlets.TraitType):
-    """What is known of one side's numbers: a dictionary with a program, a kind, and for Euler
-    angles a sequence.
+    """What is known of one side's numbers: a dictionary with a program, a kind,
+    and for Euler angles a sequence.
     """
 
     def validate(self, obj, value):

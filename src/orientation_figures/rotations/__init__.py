@@ -26,8 +26,8 @@ _DARK = {
     "ground": "#24292f",
     "shade": "#15181c",
 }
-#: How much black or white each tone has, in per cent, darkest first; the third is the colour
-#: itself.
+#: How much black or white each tone has, in per cent, darkest
+#: first; the third is the colour itself.
 _TONES = ((45, "#000"), (28, "#000"), (13, "#000"), (0, "#fff"), (14, "#fff"), (30, "#fff"))
 
 
@@ -102,8 +102,8 @@ class Stop:
 
 
 class Gimbal(Stop):
-    """The gimbal itself, which on the page of the essay stays and moves, and elsewhere stands as
-    one stop has it.
+    """The gimbal itself, which on the page of the essay stays and moves, and
+    elsewhere stands as one stop has it.
     """
 
     def _repr_html_(self):

@@ -19,8 +19,8 @@ FAINT = 0.5
 #: An edge that is cut off less is a sharp one on paper.
 FINEST_BEVEL = 0.045
 TURN = 2 * np.pi
-#: Less is rounding, which no two kinds of processor do alike: what is as far off or edge-on is
-#: painted alike by all.
+#: Less is rounding, which no two kinds of processor do alike: what is as far off
+#: or edge-on is painted alike by all.
 SMALL = 1e-9
 #: Parts of a pixel in which the places of corners are counted.
 FINE = 2
@@ -104,8 +104,8 @@ SHAPES = {"arc": _arc, "rod": _rod, "ball": _ball, "box": _box, "ribbon": _ribbo
 class Paper:
     """The square sheet that a scene is painted on, ``size`` pixels wide.
 
-    ``world`` says how the eye stands: ``distance``, ``target``, ``half``, ``ground`` and ``light``
-    of ``scenes.json``.
+    ``world`` says how the eye stands: ``distance``, ``target``, ``half``, ``ground``
+    and ``light`` of ``scenes.json``.
     """
 
     def __init__(self, view, world):
@@ -115,8 +115,8 @@ class Paper:
         self.eye = self.target + world["distance"] * self.view[2]
 
     def place(self, points):
-        """Where points are seen, in pixels right and down from the middle, and how far towards the
-        eye they lie.
+        """Where points are seen, in pixels right and down from the middle, and
+        how far towards the eye they lie.
         """
         x, y, z = np.moveaxis((np.asarray(points) - self.target) @ self.view.T, -1, 0)
         near = (
@@ -131,9 +131,8 @@ class Paper:
         if shape == "tube" or thick < THIN or (shape in ("rod", "arc") and alpha < FAINT):
             yield from self.thread(item)
             return
-        local = (
-            _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)
-        )  # the largest is seen to be round
+        # The largest is seen to be round.
+        local = _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)
         both = shape == "ribbon"
         for face in local:
             points = np.array(origin) + (face * size) @ np.array(rows)
@@ -151,8 +150,8 @@ class Paper:
             light = 0.36 + 0.13 * (1 + normal[2]) + 0.56 * max(0.0, normal @ self.light)
             tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES + SMALL), 0, TONES - 1))
             pixels, depth = self.place(points)
-            # What is flat and large is sorted by its farthest point: the ground lies behind all
-            # that stands on it.
+            # What is flat and large is sorted by its farthest point: the ground lies
+            # behind all that stands on it.
             yield (
                 (-50 if colour == "ground" else depth.mean()),
                 f"{colour} tone-{tone}",
@@ -161,8 +160,8 @@ class Paper:
             )
 
     def thread(self, item):
-        """A thin thing is one band that faces the eye, in a few pieces, since others may lie
-        between them.
+        """A thin thing is one band that faces the eye, in a few pieces,
+        since others may lie between them.
         """
         shape, of, rows, origin, size, colour, alpha, _ = item
         if shape == "tube":
@@ -209,8 +208,8 @@ class Paper:
 def picture(still, world, colours=None):
     """The SVG element of one stop, with the words that say what is seen.
 
-    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a
-    page.
+    ``colours`` gives the colour of a class, for programs that do
+    not know the style sheet of a page.
     """
     paper = Paper(still["view"], world)
     found = [face for item in still["items"] for face in paper.faces(item)]

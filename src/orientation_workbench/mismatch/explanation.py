@@ -1,5 +1,5 @@
-"""The answer: what two programs mean differently by the numbers that they give for the same
-poses.
+"""The answer: what two programs mean differently by the numbers
+that they give for the same poses.
 """
 
 import functools
@@ -103,14 +103,12 @@ def explain(
         if manual and "kind" not in declared and len(poses.kinds) == 2:
             poses = poses._replace(kinds=(manual["three numbers"],))
         programs.append(manual)
-        # What stands in the text goes before what the manual says, and what the reader says before
-        # both.
+        # What stands in the text goes before what the manual says, and
+        # what the reader says before both.
         sides.append((poses, (manual["declared"] if manual else {}) | poses.declared | declared))
     counts = [len(poses.numbers) for poses, _ in sides]
-    if sorted(counts) == [
-        1,
-        3,
-    ]:  # three rows that are no matrix were taken for three triples of angles
+    # Three rows that are no matrix were taken for three triples of angles.
+    if sorted(counts) == [1, 3]:
         side = counts.index(3)
         given = (first, second)[side]
         sides[side] = (
@@ -168,8 +166,8 @@ def _classes(chains, sides):
 
 
 def _predictions(chains, samples, decimals):
-    """What each chain predicts that the second side gives where the first gives these numbers, as
-    sets of keys.
+    """What each chain predicts that the second side gives where the first
+    gives these numbers, as sets of keys.
 
     Two chains that share a key are mathematically the same, if the numbers are not special: both
     may print the same (an orientation has two triples of Euler angles, and either may be printed).
@@ -256,8 +254,8 @@ def _further_pose(chains, readings, sides):
 
 
 def _turned(reading, numbers, turns):
-    """What the first program gives after some turns about the body's own axes, by one reading of
-    its numbers.
+    """What the first program gives after some turns about the body's own
+    axes, by one reading of its numbers.
     """
     dcm = dcms_from_numbers(reading, numbers)[0]
     hand = 1.0 if np.linalg.det(dcm) > 0 else -1.0

@@ -63,8 +63,8 @@ def dcms_from_numbers(reading, numbers):
 
 
 def numbers_from_dcms(reading, dcms):
-    """All numbers by which a reading writes orientations: two triples of Euler angles, otherwise
-    one item.
+    """All numbers by which a reading writes orientations: two triples of
+    Euler angles, otherwise one item.
 
     Parameters
     ----------

@@ -52,8 +52,8 @@ def _pick(name, places):
 
 
 def _read_in_python(reading, name):
-    """Code for the matrix of this book, A_C_N, of what a program gives. SciPy's is its
-    transpose.
+    """Code for the matrix of this book, A_C_N, of what a program
+    gives. SciPy's is its transpose.
     """
     kind, choices = reading["kind"], reading["choices"]
     if kind == "matrix":
@@ -158,8 +158,8 @@ def tried(chain, first, second, tolerance):
 
 
 def formula(chain):
-    """How the second program's matrix follows from the first's, with the signed permutations
-    written out.
+    """How the second program's matrix follows from the first's, with the
+    signed permutations written out.
     """
     relation, parts = chain.relation, []
     for whose in ("body", "world"):
@@ -183,8 +183,8 @@ def _rows(matrix):
 
 
 def cpp_line(chain):
-    """The same in C++ with Eigen, for matrices ``first`` and ``second`` of type
-    ``Eigen::Matrix3d``.
+    """The same in C++ with Eigen, for matrices ``first`` and
+    ``second`` of type ``Eigen::Matrix3d``.
     """
     relation = chain.relation
     code = "second"

@@ -60,8 +60,8 @@ def _constant_turns(start, end):
     yield None, (across @ end)[0]
     if len(start) < ON_BOTH_SIDES:
         return
-    # Turns since the first pose have the same angle on both sides; their axes differ by the
-    # constant turn.
+    # Turns since the first pose have the same angle on both sides; their
+    # axes differ by the constant turn.
     moved = [
         rotation_vector_from_dcm(nearest_dcm(dcms[1:] @ dcms[0].T).dcm) for dcms in (start, end)
     ]

@@ -29,8 +29,8 @@ class Chain(NamedTuple):
 
     @property
     def cost(self):
-        """One for each fault, and how rare they are. Tenths: what addition leaves besides decides
-        nothing.
+        """One for each fault, and how rare they are. Tenths: what addition
+        leaves besides decides nothing.
         """
         return round(self.faults + self.rarity, 6)
 
@@ -42,8 +42,8 @@ class Chain(NamedTuple):
 
 @functools.cache
 def _relations(mirrored, expected):
-    """The relations, by how far each is from the expected one, and their two signed permutations as
-    stacks.
+    """The relations, by how far each is from the expected one, and their
+    two signed permutations as stacks.
     """
     aside = table.left_handed(expected[1]) != table.left_handed(expected[2])
     entries = [table.beyond(entry, expected) for entry in table.relations(mirrored != aside)]
@@ -55,8 +55,8 @@ def _relations(mirrored, expected):
 
 
 class Side(NamedTuple):
-    """One side as the search needs it: its readings, their matrices at each pose, and their
-    doubt.
+    """One side as the search needs it: its readings, their
+    matrices at each pose, and their doubt.
     """
 
     readings: list
@@ -129,8 +129,8 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
         [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
         for what in ("faults", "shared")
     )
-    # Signed permutations and the transpose leave the sum of fourth powers alone: most pairs fall
-    # here.
+    # Signed permutations and the transpose leave the sum of fourth
+    # powers alone: most pairs fall here.
     fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
     for i, reading in enumerate(first.readings):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise

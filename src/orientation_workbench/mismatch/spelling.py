@@ -1,13 +1,13 @@
-"""How programs print numbers: what is to be looked past, as patterns that Python and JavaScript
-both understand.
+"""How programs print numbers: what is to be looked past, as patterns that
+Python and JavaScript both understand.
 
 Every pattern is tried without regard to case, with ``^`` and ``$`` at each line, letters and digits
 being those of ASCII. In a replacement ``$1`` is the first group.
 """
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-#: A number as it stands in a text: no part of a name, with a unit or the suffix of a type behind
-#: it.
+#: A number as it stands in a text: no part of a name, with a unit
+#: or the suffix of a type behind it.
 NUMBER_IN_TEXT = rf"(?<![\w.]){NUMBER}(?=(?:[fld]|deg(?:rees)?|rad(?:ians)?)?(?![\w.]))"
 #: A name and the number that follows it.
 NAMED = r"""["']?([a-z_][\w.]*)["')\]]*\s*[:=]?\s*[\[(]?\s*(?=[-+.]?[.\d])"""
@@ -64,8 +64,8 @@ CLEANING = (
     # Of an element of URDF the place is not the turn.
     (r'\bxyz\s*=\s*"[^"]*"(?=[^>]*\b(?:rpy|quat|wxyz)\b)', " "),
     (r'(\b(?:rpy|quat|wxyz)\s*=\s*"[^"]*"[^>]*)\bxyz\s*=\s*"[^"]*"', "$1"),
-    # Texts in quotation marks, as names of files and of devices, and the place of an entry before
-    # its value.
+    # Texts in quotation marks, as names of files and of devices, and the
+    # place of an entry before its value.
     (r'(?<![\w"])"(?=[^"\n]*[a-z_/])(?![^"\n]*\d\.\d)[^"\n]*"(?!\s*[:=])', " "),
     (r"(?<![\w'])'[\w:/.,-]*[a-z][\w:/.,-]*'(?!\s*[:=])", " "),
     (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
@@ -73,8 +73,8 @@ CLEANING = (
     (r"\bwith indices.*$", " "),
     # The number of a row, where it stands before it.
     (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
-    # The length of a list before it, the factor of MATLAB's console, Godot's columns with their
-    # place.
+    # The length of a list before it, the factor of MATLAB's console,
+    # Godot's columns with their place.
     (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
     (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
     (r"\bo\s*:\s*\([^)]*\)", " "),

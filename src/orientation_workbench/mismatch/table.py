@@ -127,8 +127,8 @@ KINDS = {
     ],
 }
 
-#: This book's choice in each group. No sequence is anybody's by default: which one it is, is a
-#: finding.
+#: This book's choice in each group. No sequence is anybody's by
+#: default: which one it is, is a finding.
 BOOK = {
     "order": "wxyz",
     "axes of the turns": "body fixed",
@@ -158,8 +158,8 @@ INVERSE = {
 
 @functools.cache
 def axes_matrix(names):
-    """Signed permutation whose rows are the axes named: ``('y', 'x', '-z')`` is NED of ENU, and ENU
-    of NED.
+    """Signed permutation whose rows are the axes named: ``('y', 'x',
+    '-z')`` is NED of ENU, and ENU of NED.
     """
     rows = []
     for name in names:
@@ -227,19 +227,19 @@ def axes_choice(names, body):
     if tuple(name[-1] for name in names) == SAME_AXES:
         those = " and ".join(reversed_ones) if len(reversed_ones) < 3 else "all axes"
         return choice(names, f"{those} of the {whose} reversed", 0.3)
-    # Which hand the axes make does not matter to how likely a program is: nobody does either by
-    # accident.
+    # Which hand the axes make does not matter to how likely a program
+    # is: nobody does either by accident.
     return choice(
         names, f"the {whose}'s axes x, y, z are called {', '.join(names)} by the other program", 0.6
     )
 
 
 def relations(mirrored=False):
-    """All relations of two orientations by signed axes, the cheapest description of each, cheapest
-    first.
+    """All relations of two orientations by signed axes, the cheapest
+    description of each, cheapest first.
 
-    With ``mirrored`` those in which exactly one side has a left-handed triad, so that the
-    determinants differ.
+    With ``mirrored`` those in which exactly one side has a left-handed triad,
+    so that the determinants differ.
     """
     best = {}
     all_axes = [
@@ -289,8 +289,8 @@ def _reverses_one(names):
 
 
 def _canonical(body, world):
-    """Of a pair of axes and the same pair with all signs reversed, which do the same to a matrix,
-    always one.
+    """Of a pair of axes and the same pair with all signs reversed, which do
+    the same to a matrix, always one.
     """
     if body[0].startswith("-"):
         return tuple(map(_opposite, body)), tuple(map(_opposite, world))
@@ -313,8 +313,8 @@ OPPOSITES = {
 
 
 def _axes_of(second, first):
-    """How one names its axes in the words of the other: ``('x', '-y', '-z')`` for FRD out of
-    FLU.
+    """How one names its axes in the words of the other: ``('x',
+    '-y', '-z')`` for FRD out of FLU.
     """
     if not (first and second):
         return SAME_AXES
@@ -327,8 +327,8 @@ def _axes_of(second, first):
 def expected_relation(first, second, kinds):
     """What two programs differ by as their manuals have it.
 
-    A relation, as inverse and the axes of both sides, and whether the second program's rows are the
-    world's axes.
+    A relation, as inverse and the axes of both sides, and whether the second
+    program's rows are the world's axes.
 
     Parameters
     ----------
@@ -342,14 +342,14 @@ def expected_relation(first, second, kinds):
         return False, SAME_AXES, SAME_AXES, False
     axes = _axes_of(second["body"], first["body"]), _axes_of(second["world"], first["world"])
     turned = [kind in side["inverse"] for kind, side in zip(kinds, (first, second))]
-    # The second program's matrix is the transpose of what is meant: then world and body change
-    # places.
+    # The second program's matrix is the transpose of what is meant:
+    # then world and body change places.
     return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes), turned[1]
 
 
 def beyond(relation, expected):
-    """A relation that departs from the expected one as ``relation`` departs from none; its words
-    are kept.
+    """A relation that departs from the expected one as ``relation``
+    departs from none; its words are kept.
     """
     inverse, body, world, rows_are_the_worlds = expected
     if relation["inverse"]:
@@ -395,8 +395,8 @@ def words_of(relation, kinds):
 
 
 def readings(kind, declared, degrees_likely=False):
-    """All readings of one kind of at most three faults, each with its choices, faults, rarity and
-    words.
+    """All readings of one kind of at most three faults, each with its
+    choices, faults, rarity and words.
 
     Parameters
     ----------
@@ -461,8 +461,8 @@ def _choices(group):
     )
 
 
-#: Turns that a reader can make with a thing in the hand: each the words, and the turns about the
-#: body's own axes.
+#: Turns that a reader can make with a thing in the hand: each the words, and
+#: the turns about the body's own axes.
 FURTHER_POSES = (
     ("turn it by about 40 degrees about its x axis", (("x", 40),)),
     ("turn it by about 30 degrees about its y axis", (("y", 30),)),
@@ -472,8 +472,8 @@ FURTHER_POSES = (
         (("x", 40), ("y", 25)),
     ),
     (
-        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
-        "then by about 20 about its own x axis",
+        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, then "
+        "by about 20 about its own x axis",
         (("z", 50), ("y", 30), ("x", 20)),
     ),
 )

@@ -1,5 +1,5 @@
-"""What a reader pastes: text in any brackets, or arrays, read as poses. Nothing is repaired; what
-was read is said.
+"""What a reader pastes: text in any brackets, or arrays, read as poses. Nothing
+is repaired; what was read is said.
 """
 
 import math
@@ -57,14 +57,14 @@ _NAMES = (
     (dict(zip("xyz", range(3))), {}),
 )
 
-#: How far the length of a quaternion, or of a row, may be from 1 besides rounding: more is another
-#: mistake.
+#: How far the length of a quaternion, or of a row, may be from 1 besides
+#: rounding: more is another mistake.
 SLACK = 1e-4
 
 
 class Poses(NamedTuple):
-    """Numbers of one side: what kinds they may be, an array ``(poses, count)``, and how far each
-    may be off.
+    """Numbers of one side: what kinds they may be, an array ``(poses,
+    count)``, and how far each may be off.
     """
 
     kinds: tuple[str, ...]
@@ -181,8 +181,8 @@ def _fields(line):
 
 
 def _columns(text):
-    """Rows, half a unit and what is said, of a table under a line that names its columns; None
-    where none does.
+    """Rows, half a unit and what is said, of a table under a line that names
+    its columns; None where none does.
     """
     for pattern, replacement in _CLEANING[:2]:
         text = pattern.sub(replacement, text)
@@ -219,8 +219,8 @@ def _columns(text):
 
 
 def _named_columns(names):
-    """Which columns hold an orientation, in the order in which they are read, and what their names
-    say of them.
+    """Which columns hold an orientation, in the order in which they are read,
+    and what their names say of them.
     """
     bare = [_UNIT.sub("", name) for name in names]
     entries = [
@@ -257,8 +257,8 @@ def _rows_of_lines(text):
 
 
 def _decimal_points(text):
-    """The text with points where it has decimal commas: one in each of three numbers or more, and
-    no point.
+    """The text with points where it has decimal commas: one in each of
+    three numbers or more, and no point.
     """
     groups = re.findall(r"\d[\d,]*\d|\d", text)
     with_comma = [group for group in groups if "," in group]
@@ -282,8 +282,8 @@ def _sums(text):
 
 
 def _without_places(text):
-    """The text without what says where or when: of a key that stands alone, also the lines set in
-    below it.
+    """The text without what says where or when: of a key that stands
+    alone, also the lines set in below it.
     """
     kept, below = [], None
     for line in _VALUE_OF_NO_TURN.sub(" ", text).split("\n"):
@@ -300,8 +300,8 @@ def _without_places(text):
 
 
 def _labelled(text):
-    """Numbers that come with their names, ``w: 1, x: 0, ...`` or ``roll = ...``; None if they do
-    not.
+    """Numbers that come with their names, ``w: 1, x: 0, ...`` or
+    ``roll = ...``; None if they do not.
     """
     pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
     parts = [(key, found) for key, found in pairs if found and _PART_OF_A_QUATERNION.search(key)]
@@ -326,8 +326,8 @@ def _labelled(text):
 
 
 def _half(found):
-    """Half a unit of the last digit printed: of the numbers that are not small, the one with the
-    most digits.
+    """Half a unit of the last digit printed: of the numbers that are not
+    small, the one with the most digits.
     """
     sizes = [abs(float(number)) for number in found]
     largest = max(sizes)
@@ -383,10 +383,9 @@ def _poses(rows, name, kind, half):
     where = "one line" if len(rows) == 1 else f"{len(rows)} lines"
     raise ValueError(
         f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
-        "(angles, or a rotation "
-        "vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a "
-        "translation); "
-        f"beside a place, four that stand together and make length 1"
+        "(angles, or a rotation vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) "
+        "or 16 (a matrix with a translation); beside a place, four that stand together and make "
+        "length 1"
     )
 
 
@@ -397,8 +396,8 @@ def _nine(row):
 
 
 def _quaternion_among(rows, half):
-    """Where in each row four numbers of length 1 stand together: last, first, or in one place
-    only.
+    """Where in each row four numbers of length 1 stand together:
+    last, first, or in one place only.
     """
     array = np.array(rows, float)
     width = array.shape[1]
@@ -440,8 +439,8 @@ def _kinds(numbers, kind, doubt, name):
             size = np.linalg.norm(numbers[0])
             raise ValueError(
                 f"the four numbers of the {name} side are neither a quaternion (their length is "
-                f"{size:.6g}, not 1) nor "
-                f"an axis and its angle (neither the first three nor the last three make length 1)"
+                f"{size:.6g}, not 1) nor an axis and its angle (neither the first three nor the "
+                "last three make length 1)"
             )
     return kinds
 
@@ -460,7 +459,7 @@ def _demand_orthogonal(numbers, doubt, name):
         what = (
             f"row {row + 1} has length {math.sqrt(products[row, row]):.6g}, not 1"
             if row == other
-            else f"rows {row + 1} and {other + 1} have the product "
-            f"{products[row, other]:.6g}, not 0"
+            else f"rows {row + 1} and {other + 1} have the product {products[row, other]:.6g}, not "
+            "0"
         )
         raise ValueError(f"matrix {which} of the {name} side is no rotation: {what}")

@@ -1,5 +1,5 @@
-"""The bench: what a recording holds, one question after another, each answered with its
-evidence.
+"""The bench: what a recording holds, one question after
+another, each answered with its evidence.
 """
 
 from __future__ import annotations
@@ -159,8 +159,8 @@ class _Bench:
         self.say(
             "time",
             GREEN,
-            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, "
-            f"{1 / step:.4g} a second",
+            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, {1 / step:.4g} a "
+            "second",
             evidence,
         )
         back = int((steps <= 0).sum())
@@ -225,9 +225,8 @@ class _Bench:
         for kind in ("accelerometer", "magnetometer"):
             if kind in self.raw:
                 vectors[kind] = self.raw[kind]
-                if (
-                    kind == "magnetometer"
-                ):  # a constant part belongs to the instrument, not to the Earth
+                # A constant part belongs to the instrument, not to the Earth.
+                if kind == "magnetometer":
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
         units = DEGREES | ({"rad a sample": self.rate} if self.rate > 20 else {})
         counts = not said and bool((raw == raw.round()).all())
@@ -297,8 +296,8 @@ class _Bench:
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
         if most > 10_000:
             words = (
-                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown "
-                "turns so fast"
+                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown turns "
+                "so fast"
             )
             self.say(
                 "size of the gyroscope", RED, words, {}, "Is it another column, or another unit?"
@@ -339,8 +338,8 @@ class _Bench:
         self.facts["rate"] = float(rate)
 
     def _axes(self, fits: Mapping[str, Fit], rates: Array) -> None:
-        """Bring the gyroscope into the axes of the accelerometer, if they differ, and find its
-        scale and bias.
+        """Bring the gyroscope into the axes of the accelerometer, if they
+        differ, and find its scale and bias.
         """
         fit = fits.get("accelerometer")
         plain = np.eye(3)
@@ -406,8 +405,8 @@ class _Bench:
             self.say(
                 "stillness",
                 YELLOW,
-                f"it is never still. From {self.time[one.first]:.1f} to "
-                f"{self.time[one.last - 1]:.1f} s it is held: "
+                "it is never still. "
+                f"From {self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s it is held: "
                 f"{np.degrees(one.deviation):.1f} °/s, each value like the one before "
                 f"({one.likeness:.2f})",
                 {
@@ -738,8 +737,8 @@ class _Bench:
         )
 
     def _unevenness(self, field: Array) -> float:
-        """By how much the length of a field varies, second by second, but for its wildest
-        moments.
+        """By how much the length of a field varies, second by
+        second, but for its wildest moments.
         """
         own = np.linalg.norm(field, axis=1)
         per_second = max(10, round(1 / np.median(np.diff(self.time))))
@@ -910,8 +909,8 @@ class _Bench:
             words += f"; its heading to {heading[0]:.2f}°, and {heading[1]:.2f}°"
         else:
             words += (
-                "; of the heading it can say nothing, for gravity is the same whichever "
-                "way one faces"
+                "; of the heading it can say nothing, for gravity is the same whichever way one "
+                "faces"
             )
         squares = {
             name: round(float(np.mean([one.squares[name] for one in self.judgements])), 2)
@@ -935,8 +934,8 @@ class _Bench:
             advice += "tell it of larger deviations, and use fewer samples as evidence."
         elif light == YELLOW:
             advice = (
-                "Successive surprises are alike: what the sensors do wrong lasts for more "
-                "than one sample."
+                "Successive surprises are alike: what the sensors do wrong lasts for more than one "
+                "sample."
             )
         evidence = {
             "claimed (°)": round(claimed, 3),
@@ -965,8 +964,8 @@ class _Bench:
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
-    """A magnetometer's offset and shape from the lengths alone, if they are much the better for
-    it.
+    """A magnetometer's offset and shape from the lengths alone, if
+    they are much the better for it.
     """
     fit = fit_ellipsoid(raw[:: max(1, len(raw) // 4000)], most=0.05)
     if fit is None:
@@ -1005,8 +1004,8 @@ def _said_unit(names: Sequence[str]) -> str:
 
 
 def _centre(field: Array) -> Array:
-    """A first idea of a magnetometer's offset: the middle of the sphere nearest to its values, or
-    zero.
+    """A first idea of a magnetometer's offset: the middle of the
+    sphere nearest to its values, or zero.
     """
     centre, radius = _sphere(field)
     spread = np.linalg.norm(field - centre, axis=1)
@@ -1060,8 +1059,8 @@ def _angle_readings(group: Group) -> dict[str, Array]:
 def _parts_to_judge(
     time: Array, rates: Array, longest: float = 60.0, count: int = 3
 ) -> list[tuple[int, int]]:
-    """Where to judge a filter: all of a short recording, or its liveliest, calmest and middle
-    parts.
+    """Where to judge a filter: all of a short recording, or its
+    liveliest, calmest and middle parts.
     """
     if time[-1] - time[0] <= longest * 1.5:
         return [(0, len(time))]

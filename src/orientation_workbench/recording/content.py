@@ -1,5 +1,5 @@
-"""What the columns of a recording are: by how they behave, with their headings heard as witnesses
-only.
+"""What the columns of a recording are: by how they behave, with
+their headings heard as witnesses only.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tic
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
-#: Lengths of what points one way only, in the units that are in use: standard gravity, and the
-#: Earth's field.
+#: Lengths of what points one way only, in the units that are in use:
+#: standard gravity, and the Earth's field.
 GRAVITY = {"g": 1.0, "m/s²": 9.80665, "mg": 1000.0, "cm/s²": 980.665}
 FIELD = {
     "µT": (20, 70),
@@ -146,8 +146,7 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
         raise RecordingError(
             "no instrument is in this file: three columns that belong together and behave like a "
-            "gyroscope, an "
-            "accelerometer or a magnetometer were sought among "
+            "gyroscope, an accelerometer or a magnetometer were sought among "
             f"{', '.join(c for t in tables for c in t.columns)}"[:400]
         )
     used = {tuple(group.names) for group in chosen.values()}
@@ -184,13 +183,12 @@ def _unit(heading: str) -> str:
 
 
 def _time(table: Table) -> tuple[int | None, Array, str, bool]:
-    """The column of the time, the time in seconds, in what words, and whether it is only
-    counted.
+    """The column of the time, the time in seconds, in what words,
+    and whether it is only counted.
     """
     candidates: list[tuple[float, int]] = []
-    for k, column in enumerate(
-        table.columns
-    ):  # whole seconds, and beside them what is left of each
+    # Whole seconds, and beside them what is left of each.
+    for k, column in enumerate(table.columns):
         rest = [
             c
             for c, other in enumerate(table.columns)
@@ -246,8 +244,8 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     scale = named if named and 1e-5 < step * named < 5 else _by_rate(table, step) or by_size
     if scale is None:
         raise RecordingError(
-            f"{table.name}: column {column} looks like a time, but its steps of "
-            f"{step:g} fit no unit"
+            f"{table.name}: column {column} looks like a time, but its steps of {step:g} fit no "
+            "unit"
         )
     units = [unit for unit, size in UNITS_OF_TIME.items() if size == scale]
     words = f"{column}, in {units[0] if units else f'{scale:g} s'}"
@@ -257,8 +255,8 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
 
 
 def _by_rate(table: Table, step: float) -> float | None:
-    """The unit of a clock, some power of ten of a second, that gives the rate in the lines above
-    the numbers.
+    """The unit of a clock, some power of ten of a second, that gives the
+    rate in the lines above the numbers.
     """
     said = re.search(RATE, table.head, re.IGNORECASE)
     if not said or not float(said[1]):
@@ -302,10 +300,8 @@ def _called_by_unit(heading: str) -> str:
 def _named(stem: str, table: Table, column: int) -> str:
     """What the heading of an axis, its unit or the name of its table say that it is."""
     unit, name = _called_by_unit(table.columns[column]), _called(table.name.lower())
-    if _unit(table.columns[column]) in (
-        "g",
-        "mg",
-    ):  # gauss or gravity: the name of the table knows better
+    # Gauss or gravity: the name of the table knows better.
+    if _unit(table.columns[column]) in ("g", "mg"):
         unit, name = name, unit
     # An alpha with axes is an acceleration: the angle has none.
     return ("" if stem == "alpha" else _called(stem)) or unit or name
@@ -407,8 +403,8 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
 
 
 def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
-    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their headings; None where
-    there is doubt.
+    """Places of yaw, pitch and roll, or of alpha, beta and gamma, by their
+    headings; None where there is doubt.
     """
     text = [name.lower() for name in names]
     for words in (
@@ -443,8 +439,8 @@ def _is_unit(values: Array) -> bool:
 
 
 def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
-    """Name what no heading names and its length alone does not tell: gravity by itself, and what
-    turns it.
+    """Name what no heading names and its length alone does not tell:
+    gravity by itself, and what turns it.
     """
     unnamed = [k for k, group in enumerate(groups) if group.kind == "vector" and not group.called]
     alone = [k for k in unnamed if _has_length_one(groups[k].values)]
@@ -478,8 +474,8 @@ def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
 
 
 def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
-    """Where acceleration and gravity stand in columns of their own, their sum is what an
-    accelerometer feels.
+    """Where acceleration and gravity stand in columns of their own, their
+    sum is what an accelerometer feels.
     """
     felt = chosen.get("accelerometer")
     apart = [
@@ -509,8 +505,8 @@ def _has_length_one(values: Array) -> bool:
 
 
 def points_one_way(values: Array) -> bool:
-    """Whether vectors have nearly one length, as gravity and the Earth's field have, and a
-    gyroscope's have not.
+    """Whether vectors have nearly one length, as gravity and the Earth's field
+    have, and a gyroscope's have not.
     """
     low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
     return bool(middle > 0 and low / middle > 0.6 and high / middle < 2.2)
@@ -523,8 +519,8 @@ def _roughness(values: Array) -> float:
 
 
 def _roles(groups: Sequence[Group]) -> dict[str, Group]:
-    """The group that plays each part: by behaviour where that decides, by its heading where it does
-    not.
+    """The group that plays each part: by behaviour where that decides,
+    by its heading where it does not.
     """
     chosen: dict[str, Group] = {}
     quaternions = [group for group in groups if group.kind == "quaternion"]
@@ -552,9 +548,8 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
             vectors.remove(group)
     steady = [group for group in vectors if points_one_way(group.values)]
     changing = [group for group in vectors if not any(group is one for one in steady)]
-    if (
-        not changing and len(steady) > 1
-    ):  # of an instrument that does nothing but lie, only the headings can tell
+    # Of an instrument that does nothing but lie, only the headings can tell.
+    if not changing and len(steady) > 1:
         changing = [group for group in steady if group.called == "gyroscope"][:1]
         steady = [group for group in steady if not any(group is one for one in changing)]
 
@@ -611,8 +606,8 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
 
 
 def unit_of_gravity(values: Array, rate: float = 0.0) -> tuple[str, float, float]:
-    """The unit in which vectors have gravity's length, how many of it make one, and by how much it
-    is off.
+    """The unit in which vectors have gravity's length, how many of it
+    make one, and by how much it is off.
     """
     middle = float(np.median(np.linalg.norm(values, axis=1)))
     units = GRAVITY | ({"m/s a sample": GRAVITY["m/s²"] / rate} if rate > 20 else {})

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 class FieldFit(NamedTuple):
-    """What makes a magnetometer see one field, however it is turned: ``shape @ (measured -
-    offset)``.
+    """What makes a magnetometer see one field, however it is turned:
+    ``shape @ (measured - offset)``.
 
     Attributes
     ----------
@@ -221,9 +221,8 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
         return None
     shape = shape / size_of_shape
     offset = -onto @ solution / size_of_shape
-    if (
-        np.linalg.det(shape) < 0
-    ):  # a field and its opposite fit alike: taken is what needs no mirror
+    # A field and its opposite fit alike: taken is what needs no mirror.
+    if np.linalg.det(shape) < 0:
         shape, offset = -shape, -offset
     left_side, stretches, right_side = np.linalg.svd(shape)
     axes = left_side @ right_side
@@ -232,8 +231,8 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     carried = np.einsum("bijk,jk->bi", means, shape) - np.concatenate(plain) @ offset
     fields = np.array([carried[runs[::3] == run].mean(axis=0) for run in np.unique(runs)]) * scale
     strength = float(np.median(np.linalg.norm(fields, axis=1)))
-    # The way in which A is known least, and the noise of a block, give how far a direction can be
-    # off.
+    # The way in which A is known least, and the noise of a block,
+    # give how far a direction can be off.
     spread_a = noise / max(sizes[-2], 1e-12) * np.sqrt(3)
     spread_c = noise / max(np.linalg.svd(both[:, 9:], compute_uv=False)[-1], 1e-12)
     uncertainty = (

@@ -1,5 +1,5 @@
-"""A filter judged without knowing the truth: by what it expected to see, and by itself run
-backwards.
+"""A filter judged without knowing the truth: by what it expected
+to see, and by itself run backwards.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ UP = np.array([0.0, 0, 1])
 
 
 def chi_square_bounds(freedom: int, share: float = 0.95) -> Array:
-    """Bounds between which the mean of ``freedom`` squares of standard normal numbers lies (Wilson
-    and Hilferty).
+    """Bounds between which the mean of ``freedom`` squares of standard normal
+    numbers lies (Wilson and Hilferty).
 
     >>> chi_square_bounds(100).round(3).tolist()
     [0.742, 1.296]
@@ -136,8 +136,8 @@ def _start(forces: Array, field: Array | None) -> Array:
 def in_blocks(
     time: Array, rates: Array, vectors: Sequence[Array], seconds: float = 0.05
 ) -> tuple[Array, Array, Sequence[Array]]:
-    """Fewer and longer steps: each of the same turn, its vectors carried to its end by the
-    gyroscope and averaged.
+    """Fewer and longer steps: each of the same turn, its vectors carried to its
+    end by the gyroscope and averaged.
 
     Parameters
     ----------
@@ -159,8 +159,8 @@ def in_blocks(
     at_end = dcms[ends]
     turns = to_rotation_vectors(at_end[1:] @ at_end[:-1].swapaxes(-1, -2))
     means = turns / np.diff(time[ends])[:, None]
-    # A step is turned by the mean of the rates at its two ends: here by the mean over it, which is
-    # put at its end.
+    # A step is turned by the mean of the rates at its two ends: here by the mean
+    # over it, which is put at its end.
     means = np.concatenate([means[:1], means])
     found = []
     for values in vectors:
@@ -170,8 +170,8 @@ def in_blocks(
 
 
 def _earth(forces: Array, field: Array) -> Array:
-    """The field along a ground with x to magnetic north and z up, by its usual dip against
-    gravity.
+    """The field along a ground with x to magnetic north and z up,
+    by its usual dip against gravity.
     """
     sines = (
         (forces * field).sum(axis=1)
@@ -214,8 +214,8 @@ def filter_inputs(
     lying: Sequence[Stretch],
     parts: Sequence[tuple[int, int]] | None = None,
 ) -> list[FilterInput]:
-    """Make a recording ready for a filter: what its instruments are worth, and how far each force
-    is to be believed.
+    """Make a recording ready for a filter: what its instruments are worth, and how
+    far each force is to be believed.
 
     Parameters
     ----------
@@ -278,8 +278,8 @@ def filter_inputs(
 
 
 def _lasting(values: Array) -> float:
-    """By how much less the samples of something that lasts tell than as many that know nothing of
-    each other.
+    """By how much less the samples of something that lasts tell than as many
+    that know nothing of each other.
     """
     if values.std() == 0:
         return 1.0
@@ -327,8 +327,8 @@ def judge(
     )
     starts[:, 2:] = starts[:, :1]
     doubt = np.hypot(noise.force, [one.doubt for one in inputs])
-    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by
-    # more of heading.
+    # Where it moves, the first look is off by some degrees of tilt, and where
+    # the field dips by more of heading.
     outset = 0.03 + noise.field * magnetic + np.minimum(0.4, 8 * doubt[:, [0, -1, 0, 0][:runs]])
     variances = np.stack(
         [outset**2] * 3 + [np.full_like(outset, np.radians(0.5) ** 2)] * 3, axis=-1

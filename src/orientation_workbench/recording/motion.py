@@ -1,5 +1,5 @@
-"""What a gyroscope, and vectors that stay where they are while the instrument turns, say of each
-other.
+"""What a gyroscope, and vectors that stay where they are while the
+instrument turns, say of each other.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from orientation import dcm_from_rotation_vector
 if TYPE_CHECKING:
     from .table import Array
 
-#: The 48 matrices that take axes for each other and change signs; the proper ones, which turn,
-#: first.
+#: The 48 matrices that take axes for each other and change signs;
+#: the proper ones, which turn, first.
 ASSIGNMENTS = np.array(
     [
         np.diag(signs) @ np.eye(3)[list(order)]
@@ -61,9 +61,8 @@ def turned(rates: Array, steps: Array) -> Array:
     """
     vectors = (rates[..., 1:, :] + rates[..., :-1, :]) / 2 * steps[1:, None]
     count = rates.shape[-2]
-    size = int(
-        np.ceil(np.sqrt(count))
-    )  # runs of so many: their products side by side, then one after another
+    # Runs of so many: their products side by side, then one after another.
+    size = int(np.ceil(np.sqrt(count)))
     padding = [(0, 0)] * (rates.ndim - 2) + [(1, size * size - count), (0, 0)]
     dcms = dcm_from_rotation_vector(np.pad(vectors, padding)).reshape(
         *rates.shape[:-2], size, size, 3, 3
@@ -121,8 +120,8 @@ class Stretch(NamedTuple):
     likeness: float
 
 
-#: Radians per second: a hand trembles more than that, and an instrument that is held still by it
-#: moves less than that.
+#: Radians per second: a hand trembles more than that, and an instrument that is held
+#: still by it moves less than that.
 TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
 
 
@@ -231,8 +230,8 @@ class Fit(NamedTuple):
 def pieces(
     time: Array, rates: Array, longest: float = 40.0, seconds: float = 0.5
 ) -> tuple[list[slice[int, int, None]], int]:
-    """Samples, cut into runs of blocks, in which there is most turning: a slice for each run, and
-    the block's size.
+    """Samples, cut into runs of blocks, in which there is most turning: a slice
+    for each run, and the block's size.
     """
     step = np.median(np.diff(time))
     size = max(2, round(seconds / step))
@@ -305,8 +304,8 @@ def fit_axes(
 
 
 def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
-    """Turns from the middle of each pose to that of the next, by a gyroscope; shape ``(..., m - 1,
-    3, 3)``.
+    """Turns from the middle of each pose to that of the next, by a
+    gyroscope; shape ``(..., m - 1, 3, 3)``.
     """
     found = []
     for one, other in zip(poses, poses[1:], strict=False):
@@ -357,9 +356,8 @@ def fit_scale(
     tried = np.column_stack([grid, np.tile(middle, (len(grid), 1))])
     parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
     free = 1 if known else 4
-    prior = np.array([1e3, *[np.radians(1.0)] * 3])[
-        :free
-    ]  # a bias is some degrees per second at most
+    # A bias is some degrees per second at most.
+    prior = np.array([1e3, *[np.radians(1.0)] * 3])[:free]
     for _ in range(12):
         at, *moved = residuals(parameters + 1e-5 * np.eye(5, 4, -1)[: 1 + free])
         slopes = (np.array(moved) - at).T / 1e-5
@@ -447,8 +445,8 @@ def readings(
     vectors = np.concatenate([np.zeros((1, 3)), (rates[1:] + rates[:-1]) / 2 * steps[1:, None]])
     path = np.cumsum(vectors, axis=0)
     inside = (orientation_time >= time[0] - 1e-9) & (orientation_time <= time[-1] + 1e-9)
-    # An orientation may be printed for each sample or now and then: a turn over a tenth of a second
-    # is compared.
+    # An orientation may be printed for each sample or now and then: a turn over
+    # a tenth of a second is compared.
     stride = max(1, round(0.05 / np.median(np.diff(orientation_time))))
     places = np.flatnonzero(inside)[::stride]
     at = np.stack(

@@ -18,8 +18,8 @@ LONGEST = 30_000
 
 
 class Judged:
-    """A report that a notebook shows as a table with plots, and links under which it and what it
-    corrects are saved.
+    """A report that a notebook shows as a table with plots, and links under which
+    it and what it corrects are saved.
 
     Attributes
     ----------

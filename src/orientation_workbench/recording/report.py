@@ -158,8 +158,8 @@ def _in_short(examined: Examined) -> str:
 
 
 def as_html(examined: Examined, fragment: str | None = None) -> str:
-    """The report as one page that needs nothing else, and can be kept; ``fragment`` is its body
-    where it is made.
+    """The report as one page that needs nothing else, and can be kept;
+    ``fragment`` is its body where it is made.
     """
     name = escape(examined.name)
     return (
@@ -207,9 +207,8 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     few = slice(None, None, max(1, len(examined.time) // 1500))
 
     def drawing(height: float) -> tuple[Figure, Axes]:
-        figure = Figure(
-            figsize=(6.2, height), layout="constrained"
-        )  # its words can be read on a telephone
+        # Its words can be read on a telephone.
+        figure = Figure(figsize=(6.2, height), layout="constrained")
         return figure, figure.subplots()
 
     def kept(figure: Figure, words: str) -> None:
@@ -269,11 +268,10 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         axes.legend()
         kept(
             figure,
-            "Allan deviation of the gyroscope in its longest still stretch. Where it falls by half "
-            "for four times the "
-            "time, it is noise; what that line says at one second is the angle random walk, and "
-            "the lowest point is "
-            "the instability of the bias, if the stretch is long enough to have one.",
+            "Allan deviation of the gyroscope in its longest still stretch. "
+            "Where it falls by half for four times the time, it is noise; what that line says at "
+            "one second is the angle random walk, and the lowest point is the instability of the "
+            "bias, if the stretch is long enough to have one.",
         )
     if examined.field is not None and "offset of the magnetometer" in examined.facts:
         facts = examined.facts
@@ -314,8 +312,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         )
         kept(
             figure,
-            "Solid: by how much the filter run forwards and backwards differ in tilt. Dashed: how "
-            "much they should by "
-            "their own claims.",
+            "Solid: by how much the filter run forwards and backwards differ in tilt. "
+            "Dashed: how much they should by their own claims.",
         )
     return pictures

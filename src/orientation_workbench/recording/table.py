@@ -1,5 +1,5 @@
-"""Tables of numbers out of whatever a recording came in: text, JSON, a folder, a zip, or zips in a
-folder.
+"""Tables of numbers out of whatever a recording came in: text, JSON, a
+folder, a zip, or zips in a folder.
 
 Nothing is repaired: a row that does not fit is left out, counted and named by its line and column;
 where many do not fit, the file is refused in the same words.
@@ -49,14 +49,14 @@ MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refuse
 
 
 class RecordingError(ValueError):
-    """What keeps a file from being read as a recording, with its line and column where there is
-    one.
+    """What keeps a file from being read as a recording, with its
+    line and column where there is one.
     """
 
 
 class BrokenTable(RecordingError):
-    """A table too many of whose rows do not fit: not a remark that stands beside the
-    measurements.
+    """A table too many of whose rows do not fit: not a remark that
+    stands beside the measurements.
     """
 
 
@@ -156,9 +156,9 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
         text = content.decode("utf-16")
     elif b"\0" in content[:4096]:
         raise RecordingError(
-            f"{name} is no text: byte {content.index(0) + 1} is zero. Many loggers write a format "
-            "of their own; export "
-            "it as CSV with the maker's program first."
+            f"{name} is no text: byte {content.index(0) + 1} is zero. "
+            "Many loggers write a format of their own; export it as CSV with the maker's program "
+            "first."
         )
     else:
         try:
@@ -180,9 +180,8 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
             )
         except BrokenTable as error:
             broken.append(str(error))
-        except (
-            RecordingError
-        ) as error:  # beside the measurements there are often settings and remarks
+        except RecordingError as error:
+            # Beside the measurements there are often settings and remarks.
             reasons.append(str(error))
     if not tables:
         told = "".join(f"; {reason}" for reason in broken + reasons)
@@ -210,8 +209,8 @@ def _from_text(text: str, name: str) -> list[Table]:
 
 
 def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
-    """The column that says what each row holds, where rows of several kinds or instruments take
-    turns.
+    """The column that says what each row holds, where rows of several
+    kinds or instruments take turns.
     """
     rows = [row for row in rows if len(row) > 3]
     if len(rows) <= 20:
@@ -242,8 +241,8 @@ def _key_column(rows: Sequence[Sequence[str]], comma: bool) -> int | None:
 
 
 def _scaled(table: Table) -> Table:
-    """Counts, where the lines above them name their scales, as cameras that steady a picture write
-    them.
+    """Counts, where the lines above them name their scales, as cameras
+    that steady a picture write them.
     """
     scales = {
         letter: float(value)
@@ -319,8 +318,8 @@ def _table(
     numbers: Iterable[int] | None = None,
     columns: Sequence[str] | None = None,
 ) -> Table:
-    """One table out of rows of fields; ``numbers`` are the lines' numbers, where they are not all
-    there.
+    """One table out of rows of fields; ``numbers`` are the lines'
+    numbers, where they are not all there.
     """
     numbers = range(1, len(rows) + 1) if numbers is None else numbers
     there = [(line, row) for line, row in zip(numbers, rows, strict=True) if any(row)]
@@ -342,9 +341,8 @@ def _table(
         line, row = (sample or there)[0]
         raise RecordingError(
             f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} "
-            "columns of numbers, "
-            f"where a recording has eight rows and three columns at least. Line {line} begins: "
-            f"{' '.join(row)[:60]!r}"
+            "columns of numbers, where a recording has eight rows and three columns at least. "
+            f"Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
     def values(row: Sequence[str]) -> list[float | None]:
@@ -371,8 +369,8 @@ def _table(
         if None in found:
             column = numeric[found.index(None)]
             broken.append(
-                f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} "
-                "is no number"
+                f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is no "
+                "number"
             )
         elif inf in found or -inf in found:
             broken.append(f"line {line} holds an infinite number")
@@ -389,13 +387,12 @@ def _table(
 
 
 def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
-    """Names of the columns: of the last line above the numbers that has as many, with the units
-    below it.
+    """Names of the columns: of the last line above the numbers that has
+    as many, with the units below it.
     """
     bare = [[re.sub(r"^[#%/\s\"']+|[\"']+$", "", field) for field in row] for row in head]
-    bare = [
-        row[1:] if len(row) == width + 1 and not row[0] else row for row in bare
-    ]  # a sign that stands alone
+    # A sign that stands alone.
+    bare = [row[1:] if len(row) == width + 1 and not row[0] else row for row in bare]
     bare = [
         row
         for row in bare
@@ -403,8 +400,8 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
     ]
     if not bare:
         return [f"column {k + 1}" for k in range(width)]
-    # Above the numbers there may be lines of kinds and of units: they repeat themselves, names do
-    # not.
+    # Above the numbers there may be lines of kinds and of units: they
+    # repeat themselves, names do not.
     most = max(range(len(bare)), key=lambda k: (len(set(bare[k])), k))
     names = bare[most]
     below = bare[-1]
@@ -418,17 +415,16 @@ def _names(head: Sequence[Sequence[str]], width: int) -> list[str]:
 
 
 def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> list[Table]:
-    """A log of lines of several kinds, as those of drones and phones: which, a word says, mostly
-    the first.
+    """A log of lines of several kinds, as those of drones and phones:
+    which, a word says, mostly the first.
     """
     lines: dict[str, list[tuple[int, list[str]]]] = {}
     names: dict[str, list[str]] = {}
     for number, row in enumerate(rows, 1):
         if len(row) < max(3, key + 1):
             continue
-        if (
-            row[0] == "FMT" and len(row) > 5
-        ):  # of ArduPilot: type, length, name, formats, names of the columns
+        # Of ArduPilot: type, length, name, formats, names of the columns.
+        if row[0] == "FMT" and len(row) > 5:
             names[row[3]] = row[5:]
         else:
             # Of several instruments of one kind each is a table of its own.
@@ -499,8 +495,8 @@ def _from_entries(
 
 
 def _from_blocks(lines: Sequence[str], name: str) -> list[Table]:
-    """Messages one after another, parted by hyphens, as robots print them; indented lines belong to
-    the one above.
+    """Messages one after another, parted by hyphens, as robots print them;
+    indented lines belong to the one above.
     """
     entries: list[dict[str, str]] = []
     entry: dict[str, str] = {}

@@ -1,3 +1,3 @@
-"""What an author uses: questions from notebooks with solutions, their release and their
-selftest.
+"""What an author uses: questions from notebooks with solutions,
+their release and their selftest.
 """

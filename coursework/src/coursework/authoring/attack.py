@@ -55,11 +55,11 @@ Open: TypeAlias = Callable[[str], int]
 CODE = "\n\n```python\n"
 #: To be raised when the attack gets better: what an older one has measured is measured again then.
 VERSION = 2
-#: Slow hashes that the attack on one question may need; a question beyond it counts as not
-#: guessable.
+#: Slow hashes that the attack on one question may need; a question
+#: beyond it counts as not guessable.
 BUDGET = 2**16
-#: Candidates that are worked out together, and those that are tried before another idea has its
-#: turn.
+#: Candidates that are worked out together, and those that are tried
+#: before another idea has its turn.
 CHUNK, PORTION = 8192, 256
 #: Answers that are orientations: of what is built only that is tried which is one.
 ROTATIONS = ("direction cosine matrix", "quaternion", "Euler angles", "axis and angle")
@@ -90,8 +90,8 @@ class Found(NamedTuple):
 class Family(NamedTuple):
     """Candidates that are made by some choices: how many there are of each, and what they give.
 
-    ``evaluate`` takes choices, one row for each candidate, and gives its numbers as they are read
-    of an answer.
+    ``evaluate`` takes choices, one row for each candidate, and gives its
+    numbers as they are read of an answer.
     """
 
     name: str
@@ -141,8 +141,8 @@ def _shells(sizes: Sequence[int]) -> Iterator[Choices]:
 
 
 def attack(question: "AuthoredQuestion", text: str = "", budget: int = BUDGET) -> Found:
-    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and count the slow hashes that
-    it takes.
+    """Attack a :class:`coursework.authoring.author.AuthoredQuestion` and
+    count the slow hashes that it takes.
 
     Parameters
     ----------
@@ -162,8 +162,8 @@ def attack(question: "AuthoredQuestion", text: str = "", budget: int = BUDGET) -
 
 
 def really_attack(sealed: Sealed, text: str = "", budget: int = 100) -> Found:
-    """The same attack with the slow hash on what a student has; only ``budget`` hashes are
-    spent.
+    """The same attack with the slow hash on what a student has;
+    only ``budget`` hashes are spent.
     """
 
     def open_(known: str) -> int:
@@ -174,8 +174,8 @@ def really_attack(sealed: Sealed, text: str = "", budget: int = 100) -> Found:
 
 
 def _attack(public: Question, text: str, budget: int, open_: Open) -> Found:
-    """Try candidates until one is right. ``open_`` says of a fingerprint: 1 right, 2 a mistake, 0
-    neither.
+    """Try candidates until one is right. ``open_`` says of a fingerprint:
+    1 right, 2 a mistake, 0 neither.
     """
     tried: set[Key] = set()
     for family, choices in _in_turns(public, text) if budget else ():
@@ -191,8 +191,8 @@ def _attack(public: Question, text: str, budget: int, open_: Open) -> Found:
 
 
 def _in_turns(public: Question, text: str) -> Iterator[tuple[Family, Choices]]:
-    """Candidates from what the subject suggests, and from what the question gives, some of each in
-    turn.
+    """Candidates from what the subject suggests, and from what the
+    question gives, some of each in turn.
     """
     words = text.partition(CODE)[0]
     streams = [_portions(families(public, words))]
@@ -263,8 +263,8 @@ def shape_of(public: Question) -> tuple[int, ...]:
 def _of_values(
     public: Question, pool: typed.Pool, steps: Sequence[typed.Step], most: int = typed.MOST
 ) -> Iterator[Family]:
-    """Candidates that some steps lead to from what is given: at each price those first that use all
-    that is given.
+    """Candidates that some steps lead to from what is given: at each price those
+    first that use all that is given.
     """
     left_out: list[Family] = []
     with np.errstate(all="ignore"):
@@ -276,8 +276,8 @@ def _of_values(
 
 
 def _of_table(public: Question, table: Numbers, shape: tuple[int, ...] | None) -> Family:
-    """A family of candidates that stand in a table, a row for each; ``shape`` is that of an answer
-    at one point.
+    """A family of candidates that stand in a table, a row for each; ``shape``
+    is that of an answer at one point.
     """
 
     def near(choice: Sequence[int], shape: tuple[int, ...] = shape or ()) -> Numbers:
@@ -293,8 +293,8 @@ def _of_table(public: Question, table: Numbers, shape: tuple[int, ...] | None) -
 
 
 def _tables(public: Question, pool: typed.Pool, price: int, whole: bool) -> Iterator[Family]:
-    """The values of a pool that have a price as candidates: those that use all that is given, or
-    the others.
+    """The values of a pool that have a price as candidates: those that use
+    all that is given, or the others.
     """
     values, shape = public.kind_of_values, shape_of(public)
     special = values in ROTATIONS or bool(public.unit_vector)
@@ -308,8 +308,8 @@ def _tables(public: Question, pool: typed.Pool, price: int, whole: bool) -> Iter
 
 
 def _of_parts(public: Question, pool: typed.Pool) -> Iterator[Family]:
-    """Answers that are put together of what a pool has by then: a list of its parts, a matrix of
-    rows or of columns.
+    """Answers that are put together of what a pool has by then: a list of its
+    parts, a matrix of rows or of columns.
     """
     shape = shape_of(public)
     if public.kind_of_values not in ("vector", "matrix") or len(shape) not in (1, 2):
@@ -340,8 +340,8 @@ def _of_parts(public: Question, pool: typed.Pool) -> Iterator[Family]:
 
 
 def _compositions(size: int) -> list[tuple[int, ...]]:
-    """All ways to make a size of at least two parts, those of few parts first: as large ones, or
-    numbers alone.
+    """All ways to make a size of at least two parts, those of few parts first:
+    as large ones, or numbers alone.
     """
     found: list[tuple[int, ...]] = [
         sizes
@@ -375,15 +375,15 @@ def _with_units(public: Question, numbers: Numbers) -> Numbers:
 def fingerprints_of(public: Question, numbers: Candidates) -> list[str | None]:
     """The fingerprints of many candidates: texts, with ``None`` where a candidate is not finite.
 
-    As :func:`coursework.checking.reading.fingerprint`, in double precision; a test compares the
-    two.
+    As :func:`coursework.checking.reading.fingerprint`, in double
+    precision; a test compares the two.
     """
     return [None if key is None else _text_of(key) for key in _keys_of(public, numbers)]
 
 
 def _keys_of(public: Question, numbers: Candidates) -> Sequence[Key | None]:
-    """The cells of each candidate as bytes, from which its fingerprint is written only where it is
-    a new one.
+    """The cells of each candidate as bytes, from which its fingerprint is
+    written only where it is a new one.
     """
     if isinstance(numbers, list):
         return numbers
@@ -459,8 +459,8 @@ class At:
         self.ones = np.ones(len(self.points))
 
     def constants(self, step: int) -> Numbers:
-        """Special angles, and those of the text, which is in degrees or in radians; one row for
-        each.
+        """Special angles, and those of the text, which is in degrees
+        or in radians; one row for each.
         """
         degrees = [*self.given, *range(step, 360, step)]
         angles = [sign * math.radians(angle) for angle in degrees for sign in (1, -1) if angle]
@@ -602,8 +602,8 @@ def of_pools(public: Question, at: At, size: int) -> Iterator[Family]:
 
 
 def _monomials(at: At) -> Numbers:
-    """Small formulas of the symbols, one row each: products of up to three sines, cosines and
-    symbols.
+    """Small formulas of the symbols, one row each: products of up to
+    three sines, cosines and symbols.
     """
     atoms = []
     for name in at.symbols:
@@ -716,8 +716,8 @@ def size_of(public: Question) -> int:
 
 
 def _numbers_in(argument: Any) -> list[float]:
-    """All numbers of an argument of a call, in order; what else stands in it, the name of an axis
-    say, is left out.
+    """All numbers of an argument of a call, in order; what else stands in it, the
+    name of an axis say, is left out.
     """
     if isinstance(argument, (list, tuple, np.ndarray)):
         return [number for part in argument for number in _numbers_in(part)]

@@ -54,24 +54,24 @@ from ..checking.reading import (
 from ..checking.reply import Reply
 from ..checking.units import UnknownUnit
 
-#: What answers without symbols may be off by, if the question says nothing: three decimals are
-#: enough.
+#: What answers without symbols may be off by, if the question says
+#: nothing: three decimals are enough.
 TOLERANCE = 5e-4
-#: How wide the range of a symbol may be: each check looks through all quarter turns in it for
-#: points.
+#: How wide the range of a symbol may be: each check looks through
+#: all quarter turns in it for points.
 WIDEST = 10_000
-#: A mistake is known up to so many tolerances beyond the edge of its cell, which rounding may
-#: cross.
+#: A mistake is known up to so many tolerances beyond the edge of
+#: its cell, which rounding may cross.
 REACH = 0.5
 #: What is known of an answer is rounded to this share of what it may be off by; no finer than its
 #: doubles hold, and never to more than the last share: a seal must not follow from the last bits,
 #: which other processors have otherwise.
 ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-1")
-#: Where rounding tips from one number to the next: no number of few digits or small denominator
-#: lies there.
+#: Where rounding tips from one number to the next: no number of few
+#: digits or small denominator lies there.
 TIPS = MP.mpf("0.6371")
-#: Edges of cells that an answer may be near: beyond each there is another locker, and one for every
-#: combination.
+#: Edges of cells that an answer may be near: beyond each there is another
+#: locker, and one for every combination.
 MOST_EDGES = 6
 #: The same for those who have other numbers: each cell costs a slow hash at release.
 MOST_EDGES_FOR_OTHERS = 2
@@ -88,8 +88,8 @@ class AuthorError(ValueError):
 
 
 class Entry(NamedTuple):
-    """What one fingerprint stands for: as a rule one known answer; and one such answer as plain
-    data.
+    """What one fingerprint stands for: as a rule one known answer;
+    and one such answer as plain data.
 
     Numbers are known where the fingerprint is shared by several or the answer is the right one.
     """
@@ -117,8 +117,8 @@ class _Known(NamedTuple):
 
 
 def far_from_last_bits(question: Question, reading: Reading) -> Reading:
-    """An answer with a tolerance, rounded so that what is sealed of it is the same on every
-    processor.
+    """An answer with a tolerance, rounded so that what is sealed of
+    it is the same on every processor.
     """
     if question.tolerance is None or reading.text is not None:
         return reading
@@ -202,8 +202,8 @@ class AuthoredQuestion:
         )
         self._settle_points()
         self._demand_turns()
-        # What the author says of a mistake is closer to the question than what the catalogue says
-        # of it.
+        # What the author says of a mistake is closer to the question than
+        # what the catalogue says of it.
         self.mistakes = [
             *(
                 Mistake("authored", {"text": text}, wrong)
@@ -238,14 +238,14 @@ class AuthoredQuestion:
         return Locker() if text in self.near else None
 
     def reply_to(self, plain: Plain) -> Reply:
-        """The reply to an answer, as plain data: the one that a student gets, found without the
-        slow hash.
+        """The reply to an answer, as plain data: the one that a student
+        gets, found without the slow hash.
         """
         return compare(self.name, self.public, plain, self.find)
 
     def _settle_points(self) -> None:
-        """Choose the salt, and with it the points: at them each entry takes every sign that it can
-        take.
+        """Choose the salt, and with it the points: at them each entry
+        takes every sign that it can take.
 
         What is asked of a salt is so weak that nearly every answer would be content with nearly
         every salt: the choice tells nothing of the answer.
@@ -301,8 +301,8 @@ class AuthoredQuestion:
             raise AuthorError(f"{self.name}: the turns do not give the right answer.")
 
     def _demand_notes(self) -> None:
-        """Hints and credit belong to mistakes that the question knows: for another one they would
-        never be given.
+        """Hints and credit belong to mistakes that the question knows: for
+        another one they would never be given.
         """
         notes = dict.fromkeys(mistake.note for mistake in self.mistakes)
         texts = [mistake.details["text"] for mistake in self.mistakes if mistake.note == "authored"]
@@ -314,8 +314,8 @@ class AuthoredQuestion:
                 if key not in known:
                     raise AuthorError(
                         f"{self.name}: `{argument}` names {key!r}, and this question knows no such "
-                        "mistake. It knows "
-                        f"{', '.join(repr(one) for one in known)}."
+                        "mistake. "
+                        f"It knows {', '.join(repr(one) for one in known)}."
                     )
 
     def _catalogued(self) -> list[Mistake]:
@@ -399,8 +399,8 @@ class AuthoredQuestion:
         steps = [
             step
             for note, details in one.notes
-            # Those for one mistake of the author's are named by what it says; `authored` is for all
-            # of them.
+            # Those for one mistake of the author's are named by what it says;
+            # `authored` is for all of them.
             for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]
@@ -409,8 +409,8 @@ class AuthoredQuestion:
         return KnownAnswer(one.outcome, tuple(one.notes), tuple(steps), tuple(numbers))
 
     def names_for_others(self) -> list[str]:
-        """Under what names those who have another variant find that their answer is right for this
-        one.
+        """Under what names those who have another variant find that
+        their answer is right for this one.
         """
         if self.public.exam or kinds()[self.public.kind].by_a_person:
             return []
@@ -430,8 +430,8 @@ class AuthoredQuestion:
             The pages of the first variant, :attr:`pages` of its question when it was sealed: what
             stands there is not sealed once more.
 
-        Of a question of an exam nothing is sealed: what a student receives would be the same with
-        another answer.
+        Of a question of an exam nothing is sealed: what a student receives would
+        be the same with another answer.
         """
         answer = self.variable or ""
         if self.public.exam:
@@ -454,9 +454,8 @@ class AuthoredQuestion:
         wanted = []
         for text, entry in self.entries.items():
             names = [short_name(*found) for found in entry.notes[:2]]
-            known = all(
-                name in catalogue for name in names
-            )  # what the author says of a mistake is not
+            # What the author says of a mistake is not.
+            known = all(name in catalogue for name in names)
             plain = (
                 len(entry.answers) == 1
                 and not entry.answers[0].hints
@@ -506,8 +505,8 @@ class AuthoredQuestion:
 def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[Turn]) -> list[str]:
     """The steps of a ladder: its author's, or where to begin, and what the answer is built of.
 
-    No secret locks them, so nothing of the solution is among them: its first sentence is often the
-    answer.
+    No secret locks them, so nothing of the solution is among them: its
+    first sentence is often the answer.
     """
     if authored is not None:
         return list(authored)
@@ -521,8 +520,8 @@ def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[
 
 
 class Pages:
-    """The pages of a question; each has a key of its own, which nobody can make who does not know
-    the answer.
+    """The pages of a question; each has a key of its own, which nobody can
+    make who does not know the answer.
 
     Parameters
     ----------
@@ -545,8 +544,8 @@ class Pages:
         ).digest()
 
     def add(self, content: dict[str, Json], solution: bytes | None = None) -> bytes:
-        """Add a page, once; gives its key. The page of the right answer tells where the worked
-        solution stands.
+        """Add a page, once; gives its key. The page of the right answer tells
+        where the worked solution stands.
         """
         text = json.dumps(content, ensure_ascii=False, sort_keys=True)
         if self.first:
@@ -558,22 +557,22 @@ class Pages:
         return key
 
     def add_solution(self, text: str, variants: Variant | None) -> bytes:
-        """Add the worked solution, in variants as what differs from words that stand beside the
-        first one.
+        """Add the worked solution, in variants as what differs from words
+        that stand beside the first one.
         """
         if self.first and self.first.words:
             place = self.first.places()[self.first.words]
             short = sealing.shorten(text, str(self.first.contents[self.first.words][0]["words"]))
             return self.add({"solution": [place, self.first.words.hex(), short]})
         if variants:
-            # No number: they are what differs, and those of the first variant are not for
-            # everybody.
+            # No number: they are what differs, and those of the first
+            # variant are not for everybody.
             self.words = self.add({"words": re.sub(r"\d+", "", text)})
         return self.add({"solution": text})
 
     def places(self) -> dict[bytes, int]:
-        """The place of each page by its key: in an order that tells nothing, after those of the
-        first variant.
+        """The place of each page by its key: in an order that tells nothing,
+        after those of the first variant.
         """
         before = self.first.places() if self.first else {}
         start = len(self.first.sealed) if self.first else 0
@@ -600,8 +599,8 @@ class Pages:
 
 
 def solution_code(notebook: Mapping[str, Any]) -> str:
-    """The code that opens the worked solutions of a notebook: it follows from its source, so only
-    who has that has it.
+    """The code that opens the worked solutions of a notebook: it follows from its
+    source, so only who has that has it.
 
     The variants of its questions have the same code.
     """
@@ -621,16 +620,16 @@ def _varying_in(rows: Sequence[Sequence[Number]]) -> set[int]:
 
 
 def _replay(results: Iterable[object]) -> Callable[..., object]:
-    """A function that gives prepared results, one for each call: what a mistaken function would
-    return.
+    """A function that gives prepared results, one for each call: what
+    a mistaken function would return.
     """
     following = iter(itertools.cycle(results))
     return lambda *arguments: next(following)
 
 
 def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
-    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is otherwise left to
-    whoever shows it.
+    """Markdown of an author as HTML; ``formula`` turns TeX into HTML, which is
+    otherwise left to whoever shows it.
     """
     from markdown_it import MarkdownIt
     from mdit_py_plugins.dollarmath import dollarmath_plugin
@@ -706,8 +705,8 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
 
 
 def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
-    """What an answer may be off by is more than nothing: the last digits differ from machine to
-    machine.
+    """What an answer may be off by is more than nothing: the last
+    digits differ from machine to machine.
     """
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = (
@@ -735,8 +734,8 @@ def _demand_calls(name: str, calls: object) -> None:
     ):
         raise AuthorError(
             f"{name}: `calls` is a list of calls, each a list of its arguments: calls=[[1], [2]] "
-            "calls the function "
-            f"with 1, and then with 2. This is {calls!r}."
+            "calls the function with 1, and then with 2. "
+            f"This is {calls!r}."
         )
 
 
@@ -792,9 +791,10 @@ def question(
             else f"This is {answer!r}."
         )
         raise AuthorError(
-            f"{name}: the right answer cannot be read. The solution of a question of kind {kind!r} "
-            "is a number with "
-            f"its unit, such as `(3.2, 'kN m')`. {what}"
+            f"{name}: the right answer cannot be read. "
+            f"The solution of a question of kind {kind!r} is a number with its unit, such as "
+            "`(3.2, 'kN m')`. "
+            f"{what}"
         ) from None
     if rest.get("rubric") and not known.by_a_person:
         raise AuthorError(
@@ -840,7 +840,8 @@ def question(
         if not abs(high - low) <= WIDEST:  # of what is no number, too
             raise AuthorError(
                 f"{name}: {symbol!r} is tried from {low:g} to {high:g}; a range is at most "
-                f"{WIDEST} wide. It need not be that of practice, since forms are compared: "
-                "(0.5, 3) does for each length, force or stiffness."
+                f"{WIDEST} wide. "
+                "It need not be that of practice, since forms are compared: (0.5, 3) does for each "
+                "length, force or stiffness."
             )
     return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

@@ -1,5 +1,5 @@
-"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``selftest`` and
-``wheels``.
+"""The commands of authors: ``coursework new``, ``release``, ``publish``,
+``try``, ``selftest`` and ``wheels``.
 """
 
 from __future__ import annotations
@@ -137,8 +137,8 @@ def wheels(folder: Path) -> None:
 
 
 def _writable(page: str | Path) -> str | Path:
-    """The path of a page that is to be written; that it cannot be is said before the work is
-    done.
+    """The path of a page that is to be written; that it cannot be
+    is said before the work is done.
     """
     from .author import AuthorError
 

@@ -76,9 +76,8 @@ def find_course(start: str | Path = ".") -> Course:
     course = _course_around(start)
     if course is None:
         raise AuthorError(
-            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. `coursework "
-            "new COURSE` makes a "
-            "course that has one."
+            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. "
+            "`coursework new COURSE` makes a course that has one."
         )
     return course
 

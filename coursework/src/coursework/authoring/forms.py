@@ -1,5 +1,5 @@
-"""The same answer in other forms, to try checks with: what students write is rarely what the author
-wrote.
+"""The same answer in other forms, to try checks with: what students
+write is rarely what the author wrote.
 """
 
 import functools
@@ -66,8 +66,8 @@ def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
 
 
 def flat(answer: Answer) -> tuple[list[Answer], Put]:
-    """The entries of a matrix or a nested list, and a function that puts entries back into that
-    shape.
+    """The entries of a matrix or a nested list, and a function that
+    puts entries back into that shape.
     """
     if isinstance(answer, sympy.MatrixBase):
         return list(answer.flat()), lambda entries: sympy.Matrix(*answer.shape, list(entries))

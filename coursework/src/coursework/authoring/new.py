@@ -11,11 +11,15 @@ from .release import KERNEL, release
 
 NOTEBOOK = "first-steps"
 CELLS = [
-    "# First steps\n\nRun the cell below first. Then answer in place of the dots and "
-    "run the check.",
+    "# First steps\n"
+    "\n"
+    "Run the cell below first. "
+    "Then answer in place of the dots and run the check.",
     "import sympy as sm\nfrom coursework import check\n\nb, h, x = sm.symbols('b, h, x')",
-    "## Area\n\nA triangle has a base of length $b$ and a height of length $h$. Give its "
-    "area as `area`.",
+    "## Area\n"
+    "\n"
+    "A triangle has a base of length $b$ and a height of length $h$. "
+    "Give its area as `area`.",
     "### BEGIN SOLUTION\narea = b * h / 2\n### END SOLUTION",
     """check('first-steps/area', area)
 ### BEGIN HIDDEN TESTS

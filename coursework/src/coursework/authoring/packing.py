@@ -143,8 +143,8 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
 
 
 def archive_of(folder: str | Path, target: str | Path) -> Path:
-    """Make the archive for students of the course in a folder: for what makes pages of a course to
-    offer.
+    """Make the archive for students of the course in a folder: for what
+    makes pages of a course to offer.
     """
     return archive(find_course(folder), target)
 
@@ -202,8 +202,8 @@ def dated(
 
 
 def _own_version(root: Path) -> str:
-    """The version of this package; where it was installed from a wheel, that is the version of the
-    wheel.
+    """The version of this package; where it was installed from a wheel,
+    that is the version of the wheel.
     """
     tracked = (
         shutil.which("git")
@@ -216,8 +216,8 @@ def _own_version(root: Path) -> str:
 
 
 def wheel(name: str, folder: str | Path) -> Path:
-    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is installed here, and give its
-    file.
+    """Build one of :data:`DISTRIBUTIONS` out of the coursework that is
+    installed here, and give its file.
     """
     patterns, needs, summary = DISTRIBUTIONS[name]
     root = Path(coursework.__file__).parent

@@ -5,8 +5,7 @@ archive. So neither needs to know the other:
 
 .. code-block:: toml
 
-    [project.entry-points."coursework.pages"]
-    name = "module:function"
+    [project.entry-points."coursework.pages"] name = "module:function"
 
 ``function(parts, workshop, site)`` makes the folder ``site``, and may work in the folder
 ``workshop``. ``parts`` is what :func:`parts_of` describes, or a later format of it, which it must
@@ -117,8 +116,8 @@ def parts_of(course: Course, folder: str | Path) -> Parts:
 
 
 def questions_wheel(course: Course, module: str, folder: str | Path) -> Path:
-    """The sealed questions of a course as a package that ``check`` finds wherever it is
-    installed.
+    """The sealed questions of a course as a package that ``check``
+    finds wherever it is installed.
     """
     sealed = sorted(course.sealed.rglob("*.json"))
     version = dated("1.0", f"{module}-1.0", course.sealed, files=sealed)
@@ -141,10 +140,9 @@ def _maker() -> Callable[[Parts, Path, Path], None]:
     offers = list(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
-            "Nothing here makes pages from notebooks. Install notebook-pages beside coursework, "
-            "from its folder in the "
-            "repository of coursework; `python -m notebook_pages.set_up` then fetches what pages "
-            "are made with."
+            "Nothing here makes pages from notebooks. "
+            "Install notebook-pages beside coursework, from its folder in the repository of "
+            "coursework; `python -m notebook_pages.set_up` then fetches what pages are made with."
         )
     if len(offers) > 1:
         named = " and ".join(f"{offer.dist.name} ({offer.value})" for offer in offers if offer.dist)

@@ -1,5 +1,5 @@
-"""From the notebooks with the solutions to the exercises that students get, and the questions
-sealed for them.
+"""From the notebooks with the solutions to the exercises that students get,
+and the questions sealed for them.
 
 The cells of each source are run, so that the right answers are what the solutions compute, and two
 things are made of it: the exercise notebook with blanks, and the file of sealed questions. The same
@@ -97,8 +97,8 @@ class Made(NamedTuple):
 
 
 def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
-    """Whether a cell is the text of a question with variants, which students are shown by the cell
-    before.
+    """Whether a cell is the text of a question with variants, which
+    students are shown by the cell before.
     """
     return (
         number > 0
@@ -202,17 +202,17 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
         timeout=120,
         kernel_name="python3",
         resources={"metadata": {"path": str(folder)}},
-        extra_arguments=[
-            "--IPKernelApp.log_level=ERROR"
-        ],  # it warns of its own sockets, which are on this machine
+        # It warns of its own sockets, which are on this machine.
+        extra_arguments=["--IPKernelApp.log_level=ERROR"],
     )
     try:
         client.execute()
     except CellExecutionError as error:
         raise AuthorError(
             f"The notebook for students does not run with its blanks as they are: {error.ename}: "
-            f"{error.evalue}. Does "
-            f"a cell that is no solution use an answer? {error.traceback.partition(chr(10) * 3)[0]}"
+            f"{error.evalue}. "
+            "Does a cell that is no solution use an answer? "
+            f"{error.traceback.partition(chr(10) * 3)[0]}"
         ) from None
     for cell in notebook.cells:
         cell.metadata.pop("execution", None)
@@ -227,8 +227,8 @@ def sealed_file(
     first: Mapping[str, dict[str, Any]] | None = None,
     pages: Mapping[str, Pages] | None = None,
 ) -> str:
-    """The text of the file with the sealed questions of a notebook; of a variant, what differs from
-    the ``first``.
+    """The text of the file with the sealed questions of a notebook; of a variant,
+    what differs from the ``first``.
 
     ``pages`` are those of the first variant, by the name of the question.
     """
@@ -288,8 +288,8 @@ def _about_answer(question: AuthoredQuestion) -> AboutAnswer:
 
 
 def _answer_of(question: AuthoredQuestion) -> str:
-    """A short text that is the same for variants with one answer, whatever points each is compared
-    at.
+    """A short text that is the same for variants with one answer,
+    whatever points each is compared at.
     """
     public = replace(question.public, salt=question.name)
     reading = read(public, question.plain)
@@ -298,16 +298,16 @@ def _answer_of(question: AuthoredQuestion) -> str:
 
 
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
-    """Variants with one answer are one question: what a classmate has found is right for
-    everybody.
+    """Variants with one answer are one question: what a classmate
+    has found is right for everybody.
     """
     for question in answers[0]:
         found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
                 f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: "
-                "what is drawn "
-                "does not change it. Draw what the answer depends on, or ask it without variants."
+                "what is drawn does not change it. "
+                "Draw what the answer depends on, or ask it without variants."
             )
 
 
@@ -373,8 +373,8 @@ def _versions() -> Iterator[str]:
 
 
 def _even_out(name: str, code: str, course: Course) -> None:
-    """Give all variants of a question as many lockers as the one but most of them has, with empty
-    ones.
+    """Give all variants of a question as many lockers as the one but
+    most of them has, with empty ones.
 
     How many there are follows from the answer: from what mistakes lead to the same, and how near to
     the edges of their cells the numbers lie. Over sixteen variants that singles out a right formula
@@ -408,8 +408,8 @@ def _even_out(name: str, code: str, course: Course) -> None:
 def _add_names_for_others(
     name: str, answers: Sequence[Mapping[str, AboutAnswer]], course: Course
 ) -> None:
-    """Seal with the first variant of each question what is right in any: so a classmate's answer is
-    recognised.
+    """Seal with the first variant of each question what is right in any: so a
+    classmate's answer is recognised.
     """
     file = course.sealed / f"{name}.json"
     content = json.loads(file.read_text("utf8"))
@@ -433,8 +433,8 @@ def _run_one(path: Path, sealed: Path) -> None:
 
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        # The sealed questions stand beside the notebook, as they do where there is no package for
-        # them.
+        # The sealed questions stand beside the notebook, as they do
+        # where there is no package for them.
         shutil.copytree(sealed, Path(folder, "sealed"))
         run_notebook(notebook, folder)
     nbformat.write(notebook, path)

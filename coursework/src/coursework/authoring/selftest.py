@@ -1,5 +1,5 @@
-"""Questions tried before students get them: right forms pass, each mistake has its message, nothing
-leaks.
+"""Questions tried before students get them: right forms pass, each
+mistake has its message, nothing leaks.
 
 The result is a page for the author: what each question recognises, how hard it is to guess, and
 what is wrong with it, if anything is.
@@ -198,8 +198,8 @@ def try_question(
 
 
 def _try_text(question: AuthoredQuestion) -> Finding:
-    """A question whose answers a person reads: the untouched blank is none, and every text is put
-    aside.
+    """A question whose answers a person reads: the untouched blank is
+    none, and every text is put aside.
     """
     outcomes = [_judge(question, answer).outcome for answer in (..., "", question.answer)]
     faults = (
@@ -262,8 +262,8 @@ def _try_mistakes(
 
 
 def secrets_of(source: Source) -> Secrets:
-    """Texts of a notebook with solutions that no student may receive, without spaces: what each is,
-    and it.
+    """Texts of a notebook with solutions that no student may receive,
+    without spaces: what each is, and it.
     """
     texts: list[tuple[str, str]] = []
     for cell in source.notebook.cells:
@@ -286,8 +286,8 @@ def secrets_of(source: Source) -> Secrets:
         for cell in source.notebook.cells
         for line in HIDDEN.sub("", SOLUTION.sub("", cell.source)).splitlines()
     }
-    # What stands in place of a solution is given too: the signature of a function and its
-    # docstring.
+    # What stands in place of a solution is given too: the signature
+    # of a function and its docstring.
     owners = {question.variable or "": name for name, question in source.questions.items()}
     given |= {
         _dense(line)
@@ -314,8 +314,8 @@ def secrets_of(source: Source) -> Secrets:
 
 
 def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
-    """The faults of the ladder of a question: no secret locks its steps, so anybody can read them
-    with a few lines.
+    """The faults of the ladder of a question: no secret locks its steps, so
+    anybody can read them with a few lines.
 
     Parameters
     ----------
@@ -347,8 +347,8 @@ def _judge_code(question: AuthoredQuestion, code: str) -> str:
 
 
 def _tells_nothing(line: str) -> bool:
-    """Whether a line is an import, a mark, or the head of a function, a class or a loop over what
-    has a name.
+    """Whether a line is an import, a mark, or the head of a function, a
+    class or a loop over what has a name.
     """
     return (
         re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line)
@@ -382,8 +382,8 @@ def _dense(text: str) -> str:
 def released_texts(
     exercises: str | Path, sealed: str | Path, archive: str | Path
 ) -> dict[str, str]:
-    """Everything that students receive, as texts by place: files, what is packed in them, and
-    pictures.
+    """Everything that students receive, as texts by place: files, what
+    is packed in them, and pictures.
     """
     files = {
         str(path): path.read_bytes()
@@ -454,8 +454,8 @@ def selftest(
     budget: int = BUDGET,
     only: Collection[str] = (),
 ) -> list[str]:
-    """Try all questions of a course, or of the notebooks that are named, look for leaks, and write
-    the page.
+    """Try all questions of a course, or of the notebooks that are named,
+    look for leaks, and write the page.
 
     Returns
     -------
@@ -546,8 +546,8 @@ def measured_of(
     all_variants: bool = False,
     budget: int = BUDGET,
 ) -> dict[str, Measured]:
-    """What the attack finds of some questions of a notebook, by name: what is known of them is not
-    tried again.
+    """What the attack finds of some questions of a notebook, by name: what is
+    known of them is not tried again.
 
     Of each its points, a digest of all that the attack depends on, after how many tries each
     variant was found, 0 where it was not and ``None`` where it was not attacked, and by what way
@@ -607,8 +607,8 @@ def weakest_of(measured: Measured, budget: int = BUDGET) -> Found:
 
 
 def digest_of_question(source: Source, course: Course, name: str) -> str:
-    """A text that follows from what the attack on a question depends on: its cells, with the text,
-    and the attack.
+    """A text that follows from what the attack on a question depends on: its
+    cells, with the text, and the attack.
     """
     cells, needed = source.notebook.cells, sorted(cells_needed(source.notebook, [name]))
     digest = hashlib.sha256(f"{digest_of_attack()} {course.edition} {name}".encode())
@@ -625,8 +625,8 @@ def digest_of_question(source: Source, course: Course, name: str) -> str:
 
 @functools.cache
 def digest_of_attack() -> str:
-    """A text that follows from the attack: which versions of it there are, and what functions it
-    applies.
+    """A text that follows from the attack: which versions of it there
+    are, and what functions it applies.
     """
     modules = [f"{plugin.__name__}.attack" for plugin in plugins()]
     own = [importlib.import_module(name) for name in modules if importlib.util.find_spec(name)]
@@ -638,17 +638,17 @@ def digest_of_attack() -> str:
 def proposal(name: str, worth: float, found: Found) -> str:
     """What an author may do of a question that counts much and is soon guessed."""
     return (
-        f"{name}, {_of(worth, 'point')}, {found}. To carry them, ask for several parts in one "
-        "answer, for a function, "
-        "or say exam=True: then nothing is sealed, and the grader marks it."
+        f"{name}, {_of(worth, 'point')}, {found}. "
+        "To carry them, ask for several parts in one answer, for a function, or say exam=True: "
+        "then nothing is sealed, and the grader marks it."
     )
 
 
 def write_measured(
     sources: str | Path, paths: Iterable[Path], measured: Mapping[str, Measured]
 ) -> None:
-    """Write down what was measured of the questions of some notebooks; what is known of the others
-    stays.
+    """Write down what was measured of the questions of some notebooks;
+    what is known of the others stays.
     """
     tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
     questions = {
@@ -685,8 +685,8 @@ def _says_nothing(question: AuthoredQuestion) -> bool:
 
 
 def text_of(source: Source, question: AuthoredQuestion, course: Course) -> str:
-    """The text of a question, that of its variant or the Markdown above its check, and the open
-    code of its cell.
+    """The text of a question, that of its variant or the Markdown above its
+    check, and the open code of its cell.
 
     Where a question stands in a chapter, its text stands there, and not in the source.
     """
@@ -705,8 +705,8 @@ def text_of(source: Source, question: AuthoredQuestion, course: Course) -> str:
 
 
 def _above_check(cells: Iterable[Cell], question: AuthoredQuestion) -> tuple[str, str] | None:
-    """The Markdown above the cell that checks a question, and that cell; ``None`` where none
-    does.
+    """The Markdown above the cell that checks a question, and that
+    cell; ``None`` where none does.
     """
     above = ""
     for cell in cells:

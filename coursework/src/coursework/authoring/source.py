@@ -1,5 +1,5 @@
-"""A notebook with solutions: what its author wrote between nbgrader's marks, and what its cells
-compute.
+"""A notebook with solutions: what its author wrote between nbgrader's
+marks, and what its cells compute.
 
 ``### BEGIN SOLUTION`` and ``### BEGIN HIDDEN TESTS`` mark what students do not get.
 """
@@ -40,15 +40,15 @@ if TYPE_CHECKING:
 CHAPTERS = "chapters"
 #: Where the code is that the seals of a question follow from.
 ROOMS = ("authoring", "checking")
-#: Digits after the point of which a number that students see has no more: others are the rounding
-#: of a machine.
+#: Digits after the point of which a number that students see has no more:
+#: others are the rounding of a machine.
 MOST_PLACES = 10
 #: What is written in place of pi, and is not: right to some digits, and the answer to no more.
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: Characters of a parameter up to which it is a word, and not a part of the text.
 LONGEST_WORD = 40
-#: The file beside the sources in which the selftest writes after how many tries each question was
-#: guessed, if it was.
+#: The file beside the sources in which the selftest writes after how many tries
+#: each question was guessed, if it was.
 MEASURED = "strengths.json"
 FORMAT_OF_MEASURED = 2
 
@@ -100,8 +100,8 @@ class Source(NamedTuple):
 
 
 class Measured(TypedDict):
-    """What was measured of a question: after how many tries the attack guessed each variant, if it
-    did, and how.
+    """What was measured of a question: after how many tries the attack guessed
+    each variant, if it did, and how.
     """
 
     worth: float
@@ -121,9 +121,9 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
         raise author.AuthorError(
-            f"There is no notebook with solutions in {folder}. If the solutions are kept in a "
-            "private repository, "
-            "get them first; without them everything builds, but nothing is released or graded."
+            f"There is no notebook with solutions in {folder}. "
+            "If the solutions are kept in a private repository, get them first; without them "
+            "everything builds, but nothing is released or graded."
         )
     unknown = sorted(set(only) - {path.stem for path in found})
     if unknown:
@@ -134,8 +134,8 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
 
 @functools.cache
 def digest_of_code() -> str:
-    """A text that follows from the code that reads, attacks and seals questions, ours and that of
-    plug-ins.
+    """A text that follows from the code that reads, attacks and seals
+    questions, ours and that of plug-ins.
     """
     digest = hashlib.sha256()
     for folder in [
@@ -149,8 +149,8 @@ def digest_of_code() -> str:
 
 
 def names_asked(path: str | Path) -> dict[str, str]:
-    """The names of the questions of a notebook with solutions, and the variable of each; nothing is
-    run.
+    """The names of the questions of a notebook with solutions, and the
+    variable of each; nothing is run.
     """
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
     cells = json.loads(Path(path).read_text("utf8"))["cells"]
@@ -158,8 +158,8 @@ def names_asked(path: str | Path) -> dict[str, str]:
 
 
 def measured_strengths(sources: str | Path) -> dict[str, int]:
-    """After how many tries the attack guessed each question in its weakest variant, by name: 0
-    where it did not.
+    """After how many tries the attack guessed each question in its weakest
+    variant, by name: 0 where it did not.
 
     A question that is not named there has not been attacked yet.
 
@@ -176,8 +176,8 @@ def measured_strengths(sources: str | Path) -> dict[str, int]:
 
 
 def share_beyond(measured: Mapping[str, Measured]) -> float:
-    """The share of the points that the attack has not found, of what was measured: every variant
-    counts alike.
+    """The share of the points that the attack has not found, of what was
+    measured: every variant counts alike.
     """
     points = sum(one["worth"] for one in measured.values())
     beyond = 0.0
@@ -188,8 +188,8 @@ def share_beyond(measured: Mapping[str, Measured]) -> float:
 
 
 def said_beyond(measured: Mapping[str, Measured]) -> str:
-    """That share in words, for authors and for instructors; and how many variants it is of, where
-    there are any.
+    """That share in words, for authors and for instructors; and how many
+    variants it is of, where there are any.
 
     >>> arm, plain = {"worth": 1, "tries": [0, 20, None]}, {"worth": 2, "tries": [0]}
     >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[:62]
@@ -236,9 +236,8 @@ def measured_questions(sources: str | Path) -> dict[str, Measured]:
     if not file.is_file():
         return {}
     measured = json.loads(file.read_text("utf8"))
-    if (
-        measured.get("format") == 1
-    ):  # of the first variant alone, by an attack that nobody knows any more
+    # Of the first variant alone, by an attack that nobody knows any more.
+    if measured.get("format") == 1:
         return {
             name: {"worth": 1, "digest": "", "tries": [count], "way": ""}
             for name, count in measured["tries"].items()
@@ -375,8 +374,8 @@ def read_source(
         "draw": draw,
         "drawing": Drawing,
     }
-    # A figure is nobody's answer: it is drawn where pictures are asked for, and once for all
-    # variants.
+    # A figure is nobody's answer: it is drawn where pictures are
+    # asked for, and once for all variants.
     plots = [
         number
         for number, cell in enumerate(notebook.cells)
@@ -449,8 +448,8 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
             if found:
                 raise author.AuthorError(
                     f"{file}, cell {number}: the solution has {found[0]} for pi, and a student who "
-                    "takes all digits "
-                    "would be told that the value is wrong. Write `sm.pi` or `math.pi`."
+                    "takes all digits would be told that the value is wrong. "
+                    "Write `sm.pi` or `math.pi`."
                 )
 
 
@@ -485,9 +484,8 @@ def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, st
         for node in ast.walk(ast.parse(posed(text, owners))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the question stands between `### BEGIN "
-                    "HIDDEN TESTS` and "
-                    "`### END HIDDEN TESTS`, or students would get it."
+                    f"{file}, cell {number}: the question stands between `### BEGIN HIDDEN TESTS` "
+                    "and `### END HIDDEN TESTS`, or students would get it."
                 )
 
 
@@ -499,8 +497,8 @@ def _demand_shown(
     texts: Mapping[str, str],
     questions: Mapping[str, author.AuthoredQuestion],
 ) -> None:
-    """What varies belongs to a question, and what a text shows in braces is drawn; students see all
-    that is drawn.
+    """What varies belongs to a question, and what a text shows in braces is
+    drawn; students see all that is drawn.
     """
     codes = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
     code = "\n".join(VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", text))) for text in codes)
@@ -524,14 +522,14 @@ def _demand_shown(
         if unseen and not rules[name].picture and not rules[name].where:
             raise author.AuthorError(
                 f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, "
-                "which would show it as "
-                f"{{{{{unseen[0]}}}}}, nor a cell that they get, nor a picture."
+                f"which would show it as {{{{{unseen[0]}}}}}, nor a cell that they get, nor a "
+                "picture."
             )
 
 
 def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
-    """The text of each question with variants, with the places of its parameters: the Markdown
-    below what may vary.
+    """The text of each question with variants, with the places of its parameters:
+    the Markdown below what may vary.
     """
     texts: dict[str, str] = {}
     for cell, after in itertools.pairwise([*notebook.cells, None]):
@@ -562,8 +560,8 @@ def variant_drawn(
 def texts_of_questions(
     notebook: NotebookNode, figures: Mapping[int, Drawing] | None = None
 ) -> dict[str, str]:
-    """The text of each question as it stands in the source: the Markdown between the check before
-    it and its own.
+    """The text of each question as it stands in the source: the Markdown between
+    the check before it and its own.
 
     ``figures`` are the drawings by the numbers of their cells, which students get as pictures.
     """
@@ -583,8 +581,8 @@ def texts_of_questions(
 
 
 def _is_given(value: object) -> bool:
-    """Whether a student's cell may need a parameter: numbers, words and lists of them, no whole
-    sentences.
+    """Whether a student's cell may need a parameter: numbers, words and
+    lists of them, no whole sentences.
     """
     return (
         (isinstance(value, str) and len(value) <= LONGEST_WORD)
@@ -626,8 +624,8 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
 def cells_needed(
     notebook: NotebookNode, names: Iterable[str], also: Collection[int] = ()
 ) -> set[int]:
-    """The numbers of the code cells that some questions of a notebook need: by the names that cells
-    bind and use.
+    """The numbers of the code cells that some questions of a notebook need: by
+    the names that cells bind and use.
 
     What a cell binds or changes and a needed cell uses makes it needed too. Rather too many than
     too few: which of several values a name has when a function is called is not followed.
@@ -653,8 +651,8 @@ def cells_needed(
 
 
 class _Uses(ast.NodeVisitor):
-    """What a cell binds or may change, what it uses, at once or in its functions, and the texts in
-    it.
+    """What a cell binds or may change, what it uses, at once or in
+    its functions, and the texts in it.
     """
 
     #: Functions that change nothing of what they are given.

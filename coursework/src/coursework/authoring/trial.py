@@ -1,5 +1,5 @@
-"""The author's preview of a question: its text, and everything that a student may hear about an
-answer.
+"""The author's preview of a question: its text, and everything that
+a student may hear about an answer.
 """
 
 import html
@@ -70,8 +70,8 @@ def _with_mathematics(page: str) -> str:
 
 
 def _text(source: Source, question: AuthoredQuestion) -> str:
-    """All that stands above a question as students meet it: the heading, the text and the
-    pictures.
+    """All that stands above a question as students meet it: the
+    heading, the text and the pictures.
     """
     return "\n\n".join(
         [
@@ -82,8 +82,8 @@ def _text(source: Source, question: AuthoredQuestion) -> str:
 
 
 def _above(source: Source, question: AuthoredQuestion) -> list[str]:
-    """The Markdown and the figures between the question before and the cell that its answer stands
-    in.
+    """The Markdown and the figures between the question before and
+    the cell that its answer stands in.
     """
     cells = source.notebook.cells
     above: list[str] = []

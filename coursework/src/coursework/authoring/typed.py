@@ -1,5 +1,5 @@
-"""Candidates for an answer that are built from what a student holds: a question's own data, and the
-course's functions.
+"""Candidates for an answer that are built from what a student holds: a question's
+own data, and the course's functions.
 
 Nothing here knows a question. A value has a sort: a number, a vector, a unit vector, a matrix, a
 rotation. It begins with the numbers of the text, of the variant and of the open code; each step
@@ -37,8 +37,8 @@ Priced: TypeAlias = tuple[list[Values], list[int]]
 Arrays: TypeAlias = tuple[Values, NDArray[np.int64]]
 Work: TypeAlias = Callable[..., Any]
 
-#: Values that one step may give at one price, values in all, and calls that a function needs for
-#: them.
+#: Values that one step may give at one price, values in all, and
+#: calls that a function needs for them.
 MOST_OF_A_STEP, MOST, MOST_CALLS = 1_500, 100_000, 60
 #: Calls of functions, in all.
 MOST_CALLS_IN_ALL = 25_000
@@ -85,8 +85,8 @@ class Symbols(Protocol):
 
 
 class Step(NamedTuple):
-    """A function of the course with its words chosen, or an operation; how many values it takes,
-    and what it costs.
+    """A function of the course with its words chosen, or an operation; how many
+    values it takes, and what it costs.
     """
 
     name: str
@@ -97,11 +97,11 @@ class Step(NamedTuple):
 
 
 class Pool:
-    """Values by sort and price, each once, with what data they use; each at all points: shape
-    (points, ...).
+    """Values by sort and price, each once, with what data they use; each at
+    all points: shape (points, ...).
 
-    ``data`` counts what a question gives; what a value uses of it is a number whose bits stand for
-    these.
+    ``data`` counts what a question gives; what a value uses of it is a
+    number whose bits stand for these.
     """
 
     def __init__(self, points: int, wanted: Sequence[Shape] = ()) -> None:
@@ -116,8 +116,8 @@ class Pool:
         return 1 << (self.data - 1)
 
     def add(self, values: Values, price: int, uses: Uses = 0) -> None:
-        """Add an array of values, shape (values, points, ...); what they use is one number, or one
-        for each.
+        """Add an array of values, shape (values, points, ...); what they use
+        is one number, or one for each.
         """
         values = np.asarray(values, dtype=float)
         if values.ndim < 2 or values.ndim > 5 or values.shape[1] != self.points or not values.size:
@@ -157,8 +157,8 @@ class Pool:
         price: int | None = None,
         whole: bool | None = None,
     ) -> list[Values]:
-        """All values of a shape, the cheap ones first, or those of one price: shape (values,
-        points, ...).
+        """All values of a shape, the cheap ones first, or those of one
+        price: shape (values, points, ...).
 
         With ``whole`` those that use all of the data, or those that do not.
         """
@@ -204,8 +204,8 @@ OF_ENTRIES = (np.sum, np.mean, np.max, np.min, np.median, np.prod, np.std, len, 
 def beginning(
     at: Symbols, given: Mapping[str, object], text: str, code: str, wanted: Sequence[Shape]
 ) -> Pool:
-    """The pool of what a student holds: symbols, the numbers of a variant, of the text and of the
-    open code.
+    """The pool of what a student holds: symbols, the numbers of a variant,
+    of the text and of the open code.
     """
     pool, in_degrees = Pool(len(at.points), wanted), DEGREES.search(text)
 
@@ -259,8 +259,8 @@ def beginning(
     for value in pool.of_shape(())[:30]:
         pool.add(np.radians(value)[None], 2)
     _add_constants(pool)
-    # What stands as separate numbers may be meant as one triple, of angles or of components, most
-    # likely in order.
+    # What stands as separate numbers may be meant as one triple, of angles or of
+    # components, most likely in order.
     values, bits = pool.sorts.get(((), False), {}).get(1, ([], []))
     numbers, used = np.array(values[:8]), np.array(bits[:8])
     for size in (3, 4):
@@ -306,8 +306,8 @@ def _number(text: str) -> float | None:
 
 
 def of_arguments(calls: Sequence[Sequence[Any]], wanted: Sequence[Shape]) -> Pool:
-    """The pool of the arguments that a function is called with, where they have one shape in all
-    calls.
+    """The pool of the arguments that a function is called with, where
+    they have one shape in all calls.
     """
     pool = Pool(len(calls), wanted)
     for column in zip(*calls, strict=False):
@@ -383,8 +383,8 @@ def _vee(m: Values) -> Values:
 
 
 def _inverse(m: Values) -> Values:
-    """The inverse; not a number where there is none, so that the others of a batch are found all
-    the same.
+    """The inverse; not a number where there is none, so that the others
+    of a batch are found all the same.
     """
     singular = np.abs(np.linalg.det(m)) < 1e-12
     return np.where(
@@ -523,8 +523,8 @@ TURNS = (
 
 @functools.cache
 def public_functions() -> list[Step]:
-    """The public functions of the course's packages, once for each choice of the words that they
-    need.
+    """The public functions of the course's packages, once for each
+    choice of the words that they need.
     """
     words: dict[str, Sequence[str]] = {}
     steps: list[Step] = []
@@ -571,11 +571,11 @@ def priced(steps: Iterable[Step], text: str) -> list[Step]:
 
 
 def near(value: Values) -> Values:
-    """What differs little from a value: shape (points, ...), and (values, points, ...) of the
-    result.
+    """What differs little from a value: shape (points, ...), and
+    (values, points, ...) of the result.
 
-    Tried where a value turns out to be a mistake, since most mistakes are one sign, one order or
-    one unit away.
+    Tried where a value turns out to be a mistake, since most mistakes are one
+    sign, one order or one unit away.
     """
     shape = value.shape[1:]
     whole = [factor * value for factor in (-1, np.pi / 180, 180 / np.pi, 2, 0.5, 1000, 0.001)]
@@ -640,8 +640,8 @@ def _swaps(size: int) -> Iterator[list[int]]:
 
 
 def by_price(pool: Pool, steps: Iterable[Step], most: int = MOST) -> Iterator[int]:
-    """Make all values of a price from cheaper ones, price by price; yields the price, first that of
-    what is given.
+    """Make all values of a price from cheaper ones, price by price; yields the
+    price, first that of what is given.
     """
     yield from (1, 2)
     refused: set[tuple[Step, tuple[Sort, ...]]] = set()
@@ -718,8 +718,8 @@ def _apply(pool: Pool, chosen: Sequence[Arrays], step: Step, price: int) -> bool
 
 
 def _parts(work: Work, values: Sequence[Values], *begin: int) -> list[Values]:
-    """What a step gives for all values at once, each part of it, as far as their shapes begin so;
-    or nothing.
+    """What a step gives for all values at once, each part of it, as far as
+    their shapes begin so; or nothing.
     """
     try:
         found = work(*values)

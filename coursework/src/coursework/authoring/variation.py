@@ -1,16 +1,15 @@
 """How the parameters of a question's variants are drawn, by rule, and how its text shows them.
 
-In a source, a cell above the text of a question says what may vary; the text shows a parameter as
-``{{force}}``:
+In a source, a cell above the text of a question says what may vary; the text
+shows a parameter as ``{{force}}``:
 
 .. code-block:: python
 
-    ### BEGIN VARIANTS
-    lever = draw('levers/see-saw', force=[20, 30, 45], arm=[0.2, 0.4, 0.5])
-    ### END VARIANTS
+    ### BEGIN VARIANTS lever = draw('levers/see-saw', force=[20, 30, 45],
+    arm=[0.2, 0.4, 0.5]) ### END VARIANTS
 
-Students get in place of both ``lever = variant('levers/see-saw')``, which shows the text of their
-own variant.
+Students get in place of both ``lever = variant('levers/see-saw')``, which
+shows the text of their own variant.
 """
 
 import ast
@@ -62,8 +61,8 @@ class Rule:
     picture: Callable[..., Any] | None = None
 
     def parameters(self, number: int, edition: str = "") -> dict[str, Any]:
-        """The parameters of a variant. Of the first edition, variant 0 takes the first of each
-        list.
+        """The parameters of a variant. Of the first edition, variant
+        0 takes the first of each list.
 
         Raises
         ------
@@ -83,8 +82,8 @@ class Rule:
             else:
                 raise AuthorError(
                     f"{self.name}: after {MOST_ATTEMPTS} attempts there are {order} different "
-                    f"variants; {self.count} "
-                    "are wanted. Give longer lists, or a smaller count."
+                    f"variants; {self.count} are wanted. "
+                    "Give longer lists, or a smaller count."
                 )
         return found[number]
 

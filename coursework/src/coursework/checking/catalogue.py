@@ -1,5 +1,5 @@
-"""The catalogue: every mistake that a question knows, by its short name, with what the student is
-told.
+"""The catalogue: every mistake that a question knows, by its short
+name, with what the student is told.
 """
 
 import functools

@@ -32,8 +32,8 @@ REVIEW_AFTER = 3
 DAY = 86_400
 #: Different answers of one question that are remembered.
 MOST_ANSWERS = 100
-#: Of so many wrong answers the notebook tells the grader so many digits: enough to see that two are
-#: the same.
+#: Of so many wrong answers the notebook tells the grader so many digits:
+#: enough to see that two are the same.
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
@@ -94,8 +94,8 @@ def check(name: str, answer: object) -> Reply:
 
 
 def hint(name: str) -> Reply:
-    """Show the hints that you have earned for a question: each different answer that is wrong earns
-    one more.
+    """Show the hints that you have earned for a question: each different
+    answer that is wrong earns one more.
     """
     student = identity()
     entry = _entry(Progress.read(), name, student)
@@ -119,8 +119,8 @@ def hint(name: str) -> Reply:
 
 
 def worked_solution(name: str, code: str) -> Reply:
-    """Show the worked solution of a question to one who gives up, with the code that the instructor
-    gave out.
+    """Show the worked solution of a question to one who gives up, with the
+    code that the instructor gave out.
     """
     student = identity()
     sealed = find_question(name, student)
@@ -151,8 +151,8 @@ def _note_help(name: str, student: str, kind: str) -> Entry:
 
 
 def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
-    """Say of the siblings of a question what concerns one who had help, or who has solved one
-    without.
+    """Say of the siblings of a question what concerns one who had
+    help, or who has solved one without.
     """
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.variants)
@@ -216,8 +216,8 @@ def _show_next_hint(student: str, reply: Reply, entry: Entry) -> None:
 
 
 def progress() -> Reply:
-    """Show how far you are, by chapter, and what is worth another look; from the record beside this
-    notebook.
+    """Show how far you are, by chapter, and what is worth another look; from
+    the record beside this notebook.
     """
     kept, student = Progress.read(), identity()
     known = {name: entry for name in kept.entries if (entry := _entry(kept, name, student)).outcome}
@@ -268,8 +268,8 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
 
 
 def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) -> list[str]:
-    """The questions whose points are not all earned, since they were right with help and no sibling
-    without.
+    """The questions whose points are not all earned, since they were right
+    with help and no sibling without.
     """
     alone = {
         without_sibling(name)[0]
@@ -304,8 +304,8 @@ def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
 
 
 def _right_for_others(progress: Progress, student: str) -> list[str]:
-    """What is said of questions that are right with other numbers than a student's own: that stays
-    known.
+    """What is said of questions that are right with other numbers than a
+    student's own: that stays known.
     """
     found = [
         f"`{name}`"

@@ -1,5 +1,5 @@
-"""Sealed variants that lie where the pages lie: only a browser's Python asks for them, one by
-one.
+"""Sealed variants that lie where the pages lie: only a browser's
+Python asks for them, one by one.
 """
 
 from importlib.resources.abc import Traversable

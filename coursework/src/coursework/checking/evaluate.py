@@ -25,8 +25,8 @@ Node: TypeAlias = Sequence[str | int]
 #: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
-#: Below two to this power a number is not worked with: what is done with it takes memory in the
-#: size of the exponent.
+#: Below two to this power a number is not worked with: what is done with it takes
+#: memory in the size of the exponent.
 SMALLEST = -3_333_333
 #: The smaller part of a complex number of which the larger one is this many powers of two larger is
 #: taken for nothing: no digit depends on it, and some functions would write out every place between

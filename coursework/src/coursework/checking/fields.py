@@ -1,5 +1,5 @@
-"""JSON from outside, read into what has types: whatever is wrong is said with its key and its
-value.
+"""JSON from outside, read into what has types: whatever is wrong
+is said with its key and its value.
 
 A reader takes what :func:`json.loads` gave, and where it stood, and gives the value or raises
 :class:`Misread`. It keeps a number as it is, so that what is written again is the same to the byte.

@@ -1,5 +1,5 @@
-"""Sealed files of format 3, as they were made until November 2026: read for ever, and never made
-again.
+"""Sealed files of format 3, as they were made until November 2026:
+read for ever, and never made again.
 
 A locker held the place of a mistake in the catalogue of that time. That order is kept here, and for
 the kinds of a plug-in in its ``FORMAT_3``; what is added to the catalogue is not added here.
@@ -49,8 +49,8 @@ def mistakes_in(inside: bytes, question: Question) -> list[Note]:
 
 
 def numbered(question: Question) -> list[Note]:
-    """Every mistake of the catalogue of that time for a question, with its details, in its
-    order.
+    """Every mistake of the catalogue of that time for a question,
+    with its details, in its order.
     """
     kind = question.kind_of_values
     symbols = sorted(question.symbols)

@@ -1,5 +1,5 @@
-"""Who works in this notebook: said once, kept beside the notebooks, and known to page, notebook and
-grader alike.
+"""Who works in this notebook: said once, kept beside the notebooks, and known
+to page, notebook and grader alike.
 
 With it each student gets numbers of their own. Who forgets it works on those that everybody sees,
 and would learn from the grader that they earn nothing: so it is said beside every such question,
@@ -15,9 +15,9 @@ from .question import Question
 KEPT = Path(".coursework", "me.txt")
 #: What is said where nobody has said who works here.
 FORGOTTEN = (
-    "These are the numbers that everybody sees. In a course they earn no points: there, first say "
-    "who you are, by "
-    "`student('...')` in the first cell of code, and run it."
+    "These are the numbers that everybody sees. "
+    "In a course they earn no points: there, first say who you are, by `student('...')` in the "
+    "first cell of code, and run it."
 )
 _identity = ""
 
@@ -49,14 +49,13 @@ def student(identity: str = "") -> None:
     for whose, names in (Progress.read().right_for_others(_identity) if _identity else {}).items():
         print(
             f"With {f'the numbers of {whose}' if whose else 'the numbers that everybody sees'} you "
-            "have solved "
-            f"{', '.join(names)}. That stays written down; for the numbers of {_identity}, run the "
-            "cells again."
+            f"have solved {', '.join(names)}. "
+            f"That stays written down; for the numbers of {_identity}, run the cells again."
         )
 
 
-#: The older name, which stands in notebooks that were handed out; elsewhere it is SymPy's
-#: mechanics.
+#: The older name, which stands in notebooks that were handed out;
+#: elsewhere it is SymPy's mechanics.
 me = student
 
 
@@ -71,7 +70,7 @@ def plain_identity(identity: str) -> str:
 
 
 def forgotten(student: str, question: Question) -> str:
-    """What is said beside a question with other numbers for each student, while nobody has said who
-    works here.
+    """What is said beside a question with other numbers for each student,
+    while nobody has said who works here.
     """
     return FORGOTTEN if question.variants > 1 and not student else ""

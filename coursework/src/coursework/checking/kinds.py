@@ -1,5 +1,5 @@
-"""The kinds of questions that no course owns: how the entries of an answer are found, and what is
-wrong with its form.
+"""The kinds of questions that no course owns: how the entries of an answer are
+found, and what is wrong with its form.
 
 Plug-ins build their kinds from what stands here. An answer is the plain data of
 :mod:`coursework.checking.plain`; what becomes of its entries is in
@@ -35,8 +35,8 @@ class Blank(Exception):
 
 
 class Fault(Exception):
-    """An answer is not of the form that is asked for: a short note for statistics, and a
-    message.
+    """An answer is not of the form that is asked for: a short
+    note for statistics, and a message.
     """
 
     def __init__(self, note: str, message: str) -> None:
@@ -155,8 +155,8 @@ def _measurement(question: Question, value: Value) -> list[int]:
 
 
 def scale_of(answer: Any) -> dict[str, str]:
-    """What the sealed part of a measurement tells of its unit: how large it is, and not what it
-    measures.
+    """What the sealed part of a measurement tells of its unit: how large
+    it is, and not what it measures.
     """
     return {"scale": MP.nstr(unit(answer[1]).size, 15)}
 
@@ -216,8 +216,8 @@ def word(plain: Plain, wanted: str) -> str:
 
 
 def _spelled(plain: Plain) -> str | None:
-    """The word that is meant by a number or a symbol: ``-1`` for ``'-1'``, the symbol ``-i`` for
-    ``'-i'``.
+    """The word that is meant by a number or a symbol: ``-1`` for
+    ``'-1'``, the symbol ``-i`` for ``'-i'``.
     """
     if plain["value"][0] != "expression":
         return None
@@ -235,8 +235,8 @@ def _spelled(plain: Plain) -> str | None:
 def _choice(question: Question, plain: Plain) -> str:
     given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
     given = " ".join(given.split())
-    # A minus of typography is no mistake; nor is a plus that nobody asked for, or one that is left
-    # out.
+    # A minus of typography is no mistake; nor is a plus that nobody
+    # asked for, or one that is left out.
     text = given.lower().translate(MINUS)
     options = {option.lower(): option for option in question.options}
     # Nor are wide letters, or quotation marks within those of Python.
@@ -320,8 +320,8 @@ def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
 
 
 def sign_limit(question: Question) -> Number:
-    """Below this a component counts as zero, so that rounding does not decide which sign is
-    taken.
+    """Below this a component counts as zero, so that rounding does
+    not decide which sign is taken.
     """
     return MP.mpf("2e-9") if question.tolerance is None else 8 * MP.mpf(str(question.tolerance))
 
@@ -374,12 +374,12 @@ BEGIN = {
     "vector": "Along which frame are the components asked for? Write the vector down where it is "
     "simplest.",
     "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
-    "choice": "Put each of the possibilities to the test on the simplest case that "
-    "tells them apart.",
-    "words": "Take them one by one, and begin with those that you are sure of; find a test "
-    "for the others.",
-    "truth values": "Look for an example that breaks a claim; where there is none, look "
-    "for the proof.",
+    "choice": "Put each of the possibilities to the test on the simplest case that tells them "
+    "apart.",
+    "words": "Take them one by one, and begin with those that you are sure of; find a test for the "
+    "others.",
+    "truth values": "Look for an example that breaks a claim; where there is none, look for the "
+    "proof.",
     "measurement": "Work with the units as with the numbers: what do those that are given make "
     "together?",
     "order": "Find the first and the last; then compare two at a time.",

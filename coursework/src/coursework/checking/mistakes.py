@@ -29,16 +29,15 @@ FACTORS = (
 )
 NUMBERS = (
     "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen "
-    "sixteen "
-    "seventeen eighteen nineteen twenty"
+    "sixteen seventeen eighteen nineteen twenty"
 ).split()
 #: Mistakes that say little: where a more telling one leads to the same answer, they are left out.
 GENERAL = ("one wrong", "factor", "half", "double", "opposite")
 
 
 class Mistake(NamedTuple):
-    """A note for statistics, what the message needs to know, and the answer that the mistake leads
-    to.
+    """A note for statistics, what the message needs to know, and the
+    answer that the mistake leads to.
     """
 
     note: str
@@ -73,8 +72,8 @@ MESSAGES: dict[str, Callable[..., str]] = {
     "supplement": lambda question: "This angle and the one asked for add up to half a turn.",
     "complement": lambda question: "This angle and the one asked for add up to a quarter turn.",
     "not turned": lambda question: (
-        "These are the components along the frame that you started from. You still have "
-        "to turn them."
+        "These are the components along the frame that you started from. "
+        "You still have to turn them."
     ),
     "turned the wrong way": lambda question: (
         "The components were multiplied by the transpose of the matrix that turns them."
@@ -98,8 +97,8 @@ OF_ORDERS = {
 
 
 def short_name(note: str, details: Mapping[str, Json]) -> bytes:
-    """The name that a mistake has in a locker: it follows from its note and details, and from
-    nothing else.
+    """The name that a mistake has in a locker: it follows from its note
+    and details, and from nothing else.
 
     So files that were sealed before keep their meaning, whatever is added to the catalogue.
 
@@ -118,9 +117,9 @@ def as_matrix(answer: Any) -> Any:
 
     if hasattr(answer, "dcm"):
         raise TypeError(
-            "A reference frame is the right answer here: bind its direction cosine matrix "
-            "instead, so "
-            "that mistakes can be made of it. A student may still answer with the frame."
+            "A reference frame is the right answer here: bind its direction cosine matrix instead, "
+            "so that mistakes can be made of it. "
+            "A student may still answer with the frame."
         )
     return sympy.Matrix(answer)
 

@@ -5,11 +5,10 @@ a text. Here it becomes a table of numbers, names and operations that JSON can h
 
 ``{'value': value, 'nodes': [node, ...]}``
 
-``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``,
-``['matrix', rows, columns, [k, ...]]``, ``['list', [value, ...]]``,
-``['frame', name, {other: value, ...}]`` (its direction cosine matrix with respect to each frame it
-is connected to), ``['frames', {target: {source: value, ...}, ...}]``,
-``['vector', {frame: value, ...}]`` (its components in each frame) or
+``value`` is ``['blank']``, ``['text', t]``, ``['truth', b]``, ``['expression', k]``, ``['matrix',
+rows, columns, [k, ...]]``, ``['list', [value, ...]]``, ``['frame', name, {other: value, ...}]``
+(its direction cosine matrix with respect to each frame it is connected to), ``['frames', {target:
+{source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its components in each frame) or
 ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says whether its
 body works anything out. Each ``k`` counts into ``nodes``; a node is ``['integer', digits]``,
 ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``, ``['constant', name]`` or
@@ -155,8 +154,8 @@ class NotPlain(ValueError):
 
 
 class TooMuchWork(BaseException):
-    """Working out a part took more calls than it may; no Exception, so that SymPy does not catch
-    it.
+    """Working out a part took more calls than it may; no Exception,
+    so that SymPy does not catch it.
     """
 
 
@@ -244,8 +243,8 @@ def _is_blank(answer: object) -> bool:
 
 
 class _Writer:
-    """Writes one answer; the memory of what was written already is what keeps shared parts
-    shared.
+    """Writes one answer; the memory of what was written already is
+    what keeps shared parts shared.
     """
 
     def __init__(self, raise_missing: bool) -> None:
@@ -361,9 +360,8 @@ class _Writer:
                 ]
             except ValueError:
                 raise NotPlain(
-                    "The parts of this vector belong to frames that are not connected: "
-                    "orient one of "
-                    "them with respect to another first."
+                    "The parts of this vector belong to frames that are not connected: orient one "
+                    "of them with respect to another first."
                 ) from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
@@ -422,15 +420,15 @@ class _Writer:
     def node(self, *parts: str | int) -> int:
         if len(self.nodes) >= MOST_NODES:
             raise NotPlain(
-                f"The answer is made of more than {MOST_NODES} different parts, so it is not "
-                "read. Simplify it, or build it in fewer steps."
+                f"The answer is made of more than {MOST_NODES} different parts, so it is not read. "
+                "Simplify it, or build it in fewer steps."
             )
         self.nodes.append(list(parts))
         return len(self.nodes) - 1
 
     def matrix(self, answer: sympy.matrices.MatrixExpr | sympy.MatrixBase) -> Entries:
-        """The rows, columns and entries of a matrix expression, whose products and inverses are
-        worked out here.
+        """The rows, columns and entries of a matrix expression, whose products
+        and inverses are worked out here.
 
         SymPy's own inverse of a product of three turns takes half a minute; written as cofactors
         over a determinant it is a few more nodes.
@@ -502,8 +500,8 @@ class _Writer:
         size, _, entries = matrix
         if size > 4:
             raise NotPlain(
-                "The inverse of a matrix of this size is not worked out here: call `.doit()` "
-                "on it first."
+                "The inverse of a matrix of this size is not worked out here: call `.doit()` on it "
+                "first."
             )
         minus = self.node("integer", "-1")
         numbers_left = tuple(range(size))
@@ -596,8 +594,8 @@ class _Writer:
         return self.written[root]
 
     def worked_out(self, part: sympy.Basic) -> sympy.Basic:
-        """A part that SymPy has put off, worked out; or itself, which has no value, where that
-        takes too long.
+        """A part that SymPy has put off, worked out; or itself, which has no
+        value, where that takes too long.
         """
         if self.gave_up < 2:
             try:
@@ -622,8 +620,8 @@ class _Writer:
         return () if part in self.put_off else tuple(part.args)
 
     def without_unit(self, unit: sympy.Basic) -> sympy.Expr:
-        """What stands for a unit in a matrix of numbers: a radian is none, and a degree a part of
-        it.
+        """What stands for a unit in a matrix of numbers: a radian is
+        none, and a degree a part of it.
         """
         units = sys.modules["sympy.physics.units"]
         if unit == units.radian:
@@ -631,8 +629,8 @@ class _Writer:
         if unit == units.degree:
             return sympy.pi / 180
         raise NotPlain(
-            f"The answer holds the unit `{unit}`. Give numbers alone, in the unit that the "
-            "question names."
+            f"The answer holds the unit `{unit}`. "
+            "Give numbers alone, in the unit that the question names."
         )
 
     def operation(self, part: sympy.Basic, children: tuple[sympy.Basic, ...]) -> int:
@@ -674,8 +672,8 @@ PUT_OFF = (
 
 
 def _name_of(symbol: str) -> str:
-    """The name of a symbol in the letters of a keyboard: ``θ`` is ``theta``, ``θ_1`` is
-    ``theta_1``.
+    """The name of a symbol in the letters of a keyboard: ``θ`` is
+    ``theta``, ``θ_1`` is ``theta_1``.
     """
     return _text("".join(map(_spelled, unicodedata.normalize("NFKC", symbol))))
 
@@ -697,14 +695,14 @@ def _text(text: str) -> str:
 
 
 def _module(kind: type) -> str:
-    # A function of time, theta(t), is of a type that SymPy made on the spot and that belongs to no
-    # module.
+    # A function of time, theta(t), is of a type that SymPy made on the
+    # spot and that belongs to no module.
     return str(kind.__module__)
 
 
 def _is_array(answer: object) -> TypeGuard[Array]:
-    """Whether this is an array of NumPy, or one of those that stand in for it where it is not: by
-    what it can do.
+    """Whether this is an array of NumPy, or one of those that stand in for it
+    where it is not: by what it can do.
     """
     return callable(getattr(answer, "tolist", None)) and isinstance(
         getattr(answer, "shape", None), tuple
@@ -725,8 +723,8 @@ def _is_rate(part: sympy.Basic) -> TypeGuard[sympy.Derivative]:
 def _has_unit(part: object) -> bool:
     if not isinstance(part, sympy.Expr):
         return False
-    # Each shared part is looked at once: SymPy's own `has` goes through the tree that would be
-    # printed.
+    # Each shared part is looked at once: SymPy's own `has` goes
+    # through the tree that would be printed.
     seen: set[int] = set()
     waiting = [part]
     while waiting:
@@ -740,8 +738,8 @@ def _has_unit(part: object) -> bool:
 
 
 def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr, str]:
-    """Write an expression with quantities of :mod:`sympy.physics.units` as a number and a text in
-    base units.
+    """Write an expression with quantities of :mod:`sympy.physics.units` as a
+    number and a text in base units.
     """
     base = {getattr(units, name): sympy.Dummy(name, positive=True) for name in BASE}
     pure = {
@@ -786,8 +784,8 @@ def _in_order(parts: Iterable[object]) -> list[object]:
 
 
 def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:
-    """All frames that are connected with those given, found through SymPy's own record of
-    neighbours.
+    """All frames that are connected with those given, found through
+    SymPy's own record of neighbours.
     """
     connected = list(dict.fromkeys(frames))
     for frame in connected:

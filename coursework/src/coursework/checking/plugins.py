@@ -4,11 +4,10 @@ A plug-in is a module that an installed distribution names in its entry points:
 
 .. code-block:: toml
 
-    [project.entry-points."coursework.plugins"]
-    orientation = "orientation_course"
+    [project.entry-points."coursework.plugins"] orientation = "orientation_course"
 
-Its folder ``sealed``, if it has one, holds sealed questions. These names in it are read, each if it
-is there:
+Its folder ``sealed``, if it has one, holds sealed questions. These names
+in it are read, each if it is there:
 
 ``KINDS``
     A :class:`coursework.checking.kind.Kind` for each further kind of question, by its name.
@@ -80,8 +79,8 @@ def kinds() -> dict[str, Kind]:
 
 
 def catalogue_of_format_3(kind: str) -> Sequence[tuple[str, Mapping[str, Any]]]:
-    """The mistakes that a plug-in's kind had in sealed files of format 3, in their order, with
-    their details.
+    """The mistakes that a plug-in's kind had in sealed files of format 3, in
+    their order, with their details.
     """
     for plugin in plugins():
         if kind in getattr(plugin, "FORMAT_3", {}):
@@ -103,8 +102,8 @@ def kind_of_values(question: Question) -> Kind:
 
 
 def packages() -> list[str]:
-    """Names of the packages that the notebooks of the installed courses import, and of the
-    plug-ins.
+    """Names of the packages that the notebooks of the installed
+    courses import, and of the plug-ins.
     """
     found = []
     for plugin in plugins():

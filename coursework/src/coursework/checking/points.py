@@ -13,8 +13,8 @@ from typing import Any
 from .evaluate import MP
 from .question import Question
 
-#: So many that each angle has been in all four quadrants, and no two signs of sines and cosines
-#: always agree.
+#: So many that each angle has been in all four quadrants, and no two signs
+#: of sines and cosines always agree.
 POINTS = 5
 #: Where an angle is sampled if its question says nothing: in all four quadrants, so that no root is
 #: taken for the cosine it equals in the first one, and within a half turn, where half-angle forms
@@ -65,8 +65,8 @@ def _points(asked: str) -> list[dict[str, Any]]:
 
 
 def _placed(salt: str, ranges: list[tuple[float, float]]) -> list[tuple[Any, ...]]:
-    """Rows of values, one for each point, such that no two signs of sines and cosines agree at all
-    of them.
+    """Rows of values, one for each point, such that no two signs of sines
+    and cosines agree at all of them.
     """
     best: list[list[Any]] = []
     most = -1

@@ -1,5 +1,5 @@
-"""What is written down beside a notebook: how far its student is with each question, and with whose
-numbers.
+"""What is written down beside a notebook: how far its student is with
+each question, and with whose numbers.
 
 Never an answer, and never a hint: where hints can be read again. The file may hold anything, since
 it is the student's: what is no record is none, and what a newer version has added to an entry stays
@@ -141,8 +141,8 @@ class Entry:
         return found | ({OTHERS: _by_variant(self.others)} if self.others else {})
 
     def has(self, variant: int, numbers: str) -> bool:
-        """Whether it is of these numbers. Older entries know their place among the variants
-        alone.
+        """Whether it is of these numbers. Older entries know their
+        place among the variants alone.
         """
         return self.numbers == numbers if self.numbers and numbers else self.variant == variant
 
@@ -168,8 +168,8 @@ def _opened(found: object, where: str) -> tuple[str, Place]:
 
 
 def _by_variant(entries: Iterable[Entry]) -> dict[str, Json]:
-    """Entries by the number of their variant; where two editions have other numbers under one, by
-    these, too.
+    """Entries by the number of their variant; where two editions have other
+    numbers under one, by these, too.
     """
     found: dict[str, Json] = {}
     for one in entries:
@@ -199,8 +199,8 @@ class Progress:
         return Entry.from_json(self.entries.get(name))
 
     def put(self, entries: Mapping[str, Entry]) -> None:
-        """Write some entries; a folder that cannot be written to costs the record and nothing
-        else.
+        """Write some entries; a folder that cannot be written to
+        costs the record and nothing else.
         """
         self.entries |= {name: entry.as_json() for name, entry in entries.items()}
         with suppress(OSError):
@@ -210,8 +210,8 @@ class Progress:
             draft.replace(KEPT)
 
     def right_for_others(self, student: str) -> dict[str, list[str]]:
-        """The questions that are right with other numbers, and not with those of a student: by
-        whose they were.
+        """The questions that are right with other numbers, and not with those
+        of a student: by whose they were.
         """
         found: dict[str, list[str]] = {}
         for name in sorted(self.entries):

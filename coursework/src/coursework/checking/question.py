@@ -1,5 +1,5 @@
-"""A question as a student's computer knows it, and what is locked up with it: the data, and how it
-is read and written.
+"""A question as a student's computer knows it, and what is locked up with it: the
+data, and how it is read and written.
 
 JSON calls a field as Python does, with spaces for underscores: ``either_sign`` is ``"either
 sign"``. What is empty is left out. The files of sealed questions are read by
@@ -29,8 +29,8 @@ from .fields import (
     written,
 )
 
-#: Of the files with sealed questions. Format 3, which called a mistake by its place in a catalogue,
-#: is read, too.
+#: Of the files with sealed questions. Format 3, which called a mistake by its
+#: place in a catalogue, is read, too.
 FORMAT = 4
 #: What an answer that a question knows may be, by its number in a locker.
 OUTCOMES = ("correct", "mistake")
@@ -225,8 +225,8 @@ class Question:
 
 
 class Place(NamedTuple):
-    """Where something is locked up: the number of a page, its key, and what is to be put into the
-    words there.
+    """Where something is locked up: the number of a page, its key, and what
+    is to be put into the words there.
     """
 
     page: int

@@ -31,8 +31,8 @@ from .reading import Reading, canonical, distance, fault, fingerprint, read, tol
 from .reply import Reply
 from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
-#: In a folder of sealed questions: where in the web those are that it lacks. Only a browser's
-#: Python has such a file.
+#: In a folder of sealed questions: where in the web those are that it lacks. Only a
+#: browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
 #: In a folder of sealed questions: the names that questions had in earlier editions.
 MOVED = "moved.json"
@@ -40,31 +40,29 @@ MOVED = "moved.json"
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 NOT_IN_THIS_CATALOGUE = (
     "This is a mistake that others have made, too, and this version of coursework has no words for "
-    "it: install the "
-    "package that came with the notebook."
+    "it: install the package that came with the notebook."
 )
 #: Faults of the form that no right value makes good.
 ALWAYS_WRONG = ("not unit length",)
-#: Up to so many tolerances from the right answer, its locker opens, and one is told that it is
-#: close.
+#: Up to so many tolerances from the right answer, its locker opens,
+#: and one is told that it is close.
 NEARLY = 3
 #: The note of an answer that is right for another variant, here and in the marks, and what is said
 #: of it, by whether that is the one that everybody sees.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = {
-    True: "This is right for the numbers that everybody sees. Since you have said who "
-    "you are, yours "
-    "are others: they ",
+    True: "This is right for the numbers that everybody sees. "
+    "Since you have said who you are, yours are others: they ",
     False: "This is right for other numbers than yours, those of another student. Yours ",
 }
 WHERE_ONES_OWN_ARE = "stand in the text of the question, as its cell shows it once it has run."
-#: As far from it one is told so where the locker has opened all the same: its cell is wider for
-#: several numbers.
+#: As far from it one is told so where the locker has opened all the same: its
+#: cell is wider for several numbers.
 CLOSE = 30
 #: What numbers may be off by that were rounded to two digits after the point.
 COARSE = 0.005
-#: Denominators up to which a decimal fraction is plainly that fraction: one with few digits, and
-#: one with all of them.
+#: Denominators up to which a decimal fraction is plainly that fraction: one with few
+#: digits, and one with all of them.
 SMALL, LARGE = 64, 1000
 
 
@@ -73,8 +71,8 @@ Find = Callable[[str], Locker | None]
 
 
 class NoSuchQuestion(KeyError):
-    """There is no question of that name, and the message names the nearest one; or its numbers are
-    missing."""
+    """There is no question of that name, and the message names the nearest
+    one; or its numbers are missing."""
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -101,8 +99,8 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
     except ValueError as error:
         cut = f"The sealed questions of {notebook} are no whole file."
         raise RuntimeError(
-            f"{error if isinstance(error, Misread) else cut} "
-            "Unpack the exercises again; what you have written is kept."
+            f"{error if isinstance(error, Misread) else cut} Unpack the exercises again; what you "
+            "have written is kept."
         ) from None
     return found
 
@@ -131,9 +129,9 @@ def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Jso
 
         raise RuntimeError(
             f"The sealed questions of {notebook} are of format {format}, and this is coursework "
-            f"{__version__}, "
-            f"which reads formats 3 and {FORMAT}. Install the package that came with the notebook: "
-            "`python -m coursework update exercises.zip` says how."
+            f"{__version__}, which reads formats 3 and {FORMAT}. "
+            "Install the package that came with the notebook: `python -m coursework update "
+            "exercises.zip` says how."
         )
     return format, about.get("questions", by_name(by_name(anything)))
 
@@ -151,8 +149,8 @@ def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[st
 
 
 def places() -> list[Traversable]:
-    """Where sealed questions may lie: the folder ``sealed`` beside the notebook, and those of
-    plug-ins.
+    """Where sealed questions may lie: the folder ``sealed`` beside the
+    notebook, and those of plug-ins.
     """
     beside = Path("sealed")
     return [*([beside] if beside.is_dir() else []), *sealed_folders()]
@@ -202,9 +200,8 @@ def find_question(name: str, student: str) -> Sealed:
     if not found:
         raise NoSuchQuestion(
             f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with "
-            "this notebook is "
-            "not "
-            f"beside it (in {Path.cwd()}), and no package with sealed questions is installed."
+            f"this notebook is not beside it (in {Path.cwd()}), and no package with sealed "
+            "questions is installed."
         )
     if now := _moved().get(asked):
         raise NoSuchQuestion(
@@ -260,8 +257,8 @@ def variant(name: str) -> Given:
 
 
 def own_numbers(name: str, student: str) -> tuple[int, str]:
-    """The variant in which a student finds a question, or a sibling, and what its numbers are
-    called.
+    """The variant in which a student finds a question, or a sibling,
+    and what its numbers are called.
 
     0 and nothing where there is only one, and for a question of another release; no name where the
     variant cannot be had, as without a network.
@@ -316,8 +313,8 @@ def salt_of_all(name: str) -> str:
 
 
 def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
-    """Whether a wrong answer is right in some other variant of the question, as a classmate's
-    pasted one is.
+    """Whether a wrong answer is right in some other variant of the
+    question, as a classmate's pasted one is.
     """
     if not sealed.others:
         return False
@@ -345,8 +342,8 @@ def code_text(code: str) -> str:
 
 
 def rung_key(question: Question, number: int) -> bytes:
-    """The key of a step of the ladder of hints: no secret, it only keeps the step from being read
-    in passing.
+    """The key of a step of the ladder of hints: no secret, it only keeps the
+    step from being read in passing.
     """
     seed = f"step {number} for {question.kind}"
     return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
@@ -380,8 +377,8 @@ def open_page(sealed: Sealed, place: Place) -> object:
 def solution_on(sealed: Sealed, solution: Place | str) -> str:
     """The worked solution as HTML, from where it stands.
 
-    That of a variant is what differs from words that all variants have in common, on a page of
-    their own.
+    That of a variant is what differs from words that all variants have
+    in common, on a page of their own.
     """
     if isinstance(solution, str):
         return solution
@@ -417,8 +414,8 @@ def compare(
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
             said = (
-                f"A person will read this text of {words} "
-                f"{'word' if words == 1 else 'words'} and decide."
+                f"A person will read this text of {words} {'word' if words == 1 else 'words'} and "
+                "decide."
             )
             return Reply(name, "undecided", "for a person", [said])
         text = fingerprint(question, reading)
@@ -455,9 +452,8 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
         "recorded",
         "",
         [
-            "Your answer can be read, and has the right form. It is marked later: nothing "
-            "that you have "
-            "tells whether it is right."
+            "Your answer can be read, and has the right form. "
+            "It is marked later: nothing that you have tells whether it is right."
         ],
     )
 
@@ -513,8 +509,8 @@ def _close(name: str, question: Question) -> Reply:
 
 
 def _known_in(question: Question, reading: Reading, locker: Locker | None) -> KnownAnswer | None:
-    """Which of the answers of a locker this is: the nearest, if that is near enough; or
-    ``None``.
+    """Which of the answers of a locker this is: the nearest, if
+    that is near enough; or ``None``.
     """
     if locker is None or not locker.answers:
         return None
@@ -547,8 +543,8 @@ def _not_known(
     ):
         return _close(name, question)
     decimals = _decimals(question, plain, reading)
-    # Each look costs a slow hash: what is exact was not rounded, and what was rounded is no known
-    # mistake to the digit.
+    # Each look costs a slow hash: what is exact was not rounded, and what was rounded
+    # is no known mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if not precise else []
     others = [] if rounded else list(other_readings(question, reading))
@@ -572,8 +568,8 @@ def _not_known(
         if known and known.outcome != "correct":
             note, details = known.notes[0]
             if note == slip:
-                # What is right once a slip is undone twice is the right answer itself, but for the
-                # last digits.
+                # What is right once a slip is undone twice is the right answer
+                # itself, but for the last digits.
                 return _close(name, question)
             said = f"Two things at once: {why} {message(question, note, details)}"
             return Reply(name, "wrong", f"{slip}, and {note}", [said], details=details)
@@ -585,8 +581,8 @@ def _not_known(
 
 
 def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
-    """Begin some work in a thread, since the slow hash lets others run; what it gives comes when it
-    is asked for.
+    """Begin some work in a thread, since the slow hash lets others run; what it
+    gives comes when it is asked for.
     """
     from concurrent.futures import ThreadPoolExecutor  # needed here alone
 
@@ -600,23 +596,21 @@ def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
 
 
 def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """What is known of each fingerprint; the slow hash lets other threads run: all is looked up at
-    once.
+    """What is known of each fingerprint; the slow hash lets other
+    threads run: all is looked up at once.
     """
     if len(texts) > 1:
         from concurrent.futures import ThreadPoolExecutor
 
-        with (
-            suppress(RuntimeError),
-            ThreadPoolExecutor(len(texts)) as threads,
-        ):  # a browser's Python has no threads
+        # A browser's Python has no threads.
+        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:
             return list(threads.map(find, texts))
     return [find(text) for text in texts]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
-    """The answer with one common slip undone, by what is said of the slip: it may be a known
-    mistake then.
+    """The answer with one common slip undone, by what is said of the
+    slip: it may be a known mistake then.
     """
     if reading.text is None:
         for name, (said, undo) in kind_of_values(question).slips.items():
@@ -637,11 +631,11 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
 
 
 def _few_digits(question: Question, plain: Plain) -> str:
-    """What is said of numbers that are given to fewer places than the answer may be off by: they
-    may be rounded.
+    """What is said of numbers that are given to fewer places than the answer
+    may be off by: they may be rounded.
 
-    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the
-    right answer.
+    It follows from what the student wrote and from the tolerance alone, so it
+    tells nothing of the right answer.
     """
     if question.tolerance is None:
         return ""
@@ -653,16 +647,16 @@ def _few_digits(question: Question, plain: Plain) -> str:
             if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    f"Was this rounded? `{float(digits):g}` has {count} after the point, and an "
-                    "answer may be off by "
+                    "Was this rounded? "
+                    f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
                     f"{allowed:.1g} at most: if so, keep all digits until the end."
                 )
     return ""
 
 
 def _coarse(question: Question, reading: Reading) -> str:
-    """What is said of numbers that do not fit together, and would if fewer of their digits
-    counted.
+    """What is said of numbers that do not fit together, and would
+    if fewer of their digits counted.
     """
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
@@ -672,8 +666,8 @@ def _coarse(question: Question, reading: Reading) -> str:
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
-    """Of the decimal fractions of an answer: whether each is plainly exact, and whether one of them
-    is plainly rounded.
+    """Of the decimal fractions of an answer: whether each is plainly exact, and
+    whether one of them is plainly rounded.
 
     >>> numbers = lambda *texts: {"nodes": [["float", text] for text in texts]}
     >>> _precision(numbers("0.5", "0.8660254037844386")), _precision(numbers("0.5", "0.866"))
@@ -685,9 +679,8 @@ def _precision(plain: Plain) -> tuple[bool, bool]:
             size = abs(float(node[1]))
             short = float(f"{size:.8g}") == size
             most = SMALL if short else LARGE
-            numbers = (
-                [size] if short else [size, size * size]
-            )  # a root of a fraction has all of its digits
+            # A root of a fraction has all of its digits.
+            numbers = [size] if short else [size, size * size]
             if not any(
                 abs(one - Fraction(one).limit_denominator(most)) <= 1e-13 * max(1, one)
                 for one in numbers

@@ -35,16 +35,16 @@ from .units import UnknownUnit, unit
 EXACT = MP.mpf(10) ** -12
 #: Width of its cells in that unit: far below every real difference.
 EXACT_WIDTH = 1000
-#: What an answer may be off by that is said to be nearly right where an exact one is asked for:
-#: three digits.
+#: What an answer may be off by that is said to be nearly right where an
+#: exact one is asked for: three digits.
 NEAR = MP.mpf("2e-3")
 #: What two units that measure something else are apart, in tolerances.
 FAR = 10**6
 
 
 class Reading(NamedTuple):
-    """An answer as numbers: ``numbers`` is a list for each point; ``text`` is set for words
-    instead.
+    """An answer as numbers: ``numbers`` is a list for each point;
+    ``text`` is set for words instead.
     """
 
     numbers: list[list[Number]]
@@ -110,8 +110,8 @@ def fingerprint(question: Question, reading: Reading, near: bool = False) -> str
 def fingerprints(
     question: Question, reading: Reading, reach: float = 1, near: bool = False, most: int = 6
 ) -> list[str]:
-    """The fingerprints of all answers that are within ``reach`` tolerances of one: its cell and
-    those beside it.
+    """The fingerprints of all answers that are within ``reach`` tolerances of
+    one: its cell and those beside it.
 
     Of more than ``most`` edges that are as near as that, the nearest are taken.
     """
@@ -127,8 +127,8 @@ def fingerprints(
 def edges_near(
     question: Question, numbers: Sequence[Number], reach: float = 1, near: bool = False
 ) -> list[tuple[Number, int, int]]:
-    """The edges within ``reach`` tolerances, nearest first: how far, of which number, and the cell
-    beyond.
+    """The edges within ``reach`` tolerances, nearest first: how far, of
+    which number, and the cell beyond.
     """
     margin = MP.mpf(reach) / _width(question, len(numbers), near)
     edges = []
@@ -145,8 +145,8 @@ def _text_of(cells: Iterable[int], near: bool) -> str:
 
 
 def tolerances(question: Question) -> tuple[Number, Number]:
-    """What each number of an answer may be off by: an absolute part, and a share of the right
-    number.
+    """What each number of an answer may be off by: an absolute part,
+    and a share of the right number.
     """
     if question.tolerance is None:
         return EXACT, EXACT
@@ -178,8 +178,8 @@ def within(
 
 
 def _width(question: Question, count: int, near: bool) -> int:
-    """Width of a cell in tolerances. The more numbers, the wider: so the cells that an answer is
-    near stay few.
+    """Width of a cell in tolerances. The more numbers, the wider: so the cells
+    that an answer is near stay few.
     """
     if near:
         return 4 * count
@@ -210,8 +210,8 @@ def offsets(salt: str, count: int) -> list[Number]:
 
 
 def canonical(question: Question, reading: Reading) -> list[Number]:
-    """The numbers of a reading with what is a matter of taste removed, all points one after
-    another.
+    """The numbers of a reading with what is a matter of taste
+    removed, all points one after another.
     """
     unique = kind_of_values(question).unique
     if not unique:
@@ -234,8 +234,8 @@ def fault(question: Question, reading: Reading) -> Fault | None:
 
 
 def _entries(question: Question, value: Value) -> Sequence[int]:
-    """The nodes of the entries of an answer; every kind whose answers are no words says which they
-    are.
+    """The nodes of the entries of an answer; every kind whose answers
+    are no words says which they are.
     """
     entries = kinds()[question.kind].entries
     assert entries is not None

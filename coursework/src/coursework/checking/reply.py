@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Mapping
 from .fields import Json
 from .question import KnownAnswer, Locker
 
-#: Each outcome with its sign and its word: the word is for those who do not see the sign or its
-#: colour.
+#: Each outcome with its sign and its word: the word is for those who
+#: do not see the sign or its colour.
 OUTCOMES = {
     "correct": ("✓", "Correct", "#1a7f37"),
     "wrong": ("✗", "Not yet", "#b54708"),
@@ -127,15 +127,15 @@ class Reply:
 
 
 def tex_is_typeset() -> bool:
-    """Whether whatever shows this notebook typesets TeX in HTML: VS Code, Colab and marimo do
-    not.
+    """Whether whatever shows this notebook typesets TeX in HTML:
+    VS Code, Colab and marimo do not.
     """
     return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
 
 
 def mathml(source: str, display: str = "inline") -> str:
-    """A formula as MathML, which every browser shows by itself; TeX in a box where there is no
-    converter.
+    """A formula as MathML, which every browser shows by itself; TeX in a
+    box where there is no converter.
 
     >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
     ('<math xmlns="http://www.w3.org/1998/Math', False)
@@ -144,9 +144,8 @@ def mathml(source: str, display: str = "inline") -> str:
         from latex2mathml.converter import convert
 
         return str(convert(source, display=display))
-    except (
-        Exception
-    ):  # no converter, or one that does not know a command: a reply is never lost for that
+    except Exception:
+        # No converter, or one that does not know a command: a reply is never lost for that.
         return f"<code>{html.escape(source)}</code>"
 
 

@@ -25,8 +25,8 @@ from typing import Any
 ROUNDS = 40_000
 #: Pages are filled up to a multiple of this, so that their length tells little.
 BLOCK = 48
-#: Bytes of the name of a locker, of what lies in it, of its tag, of the key of a page and of the
-#: tag of one.
+#: Bytes of the name of a locker, of what lies in it, of its tag, of the
+#: key of a page and of the tag of one.
 NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
 #: Bytes of the short name of a mistake.
@@ -84,8 +84,8 @@ def locker(
     page: int = NO_PAGE,
     page_key: bytes = b"",
 ) -> bytes:
-    """Make a locker: one of two outcomes, and up to two short names of mistakes, or a page with its
-    key.
+    """Make a locker: one of two outcomes, and up to two short names of
+    mistakes, or a page with its key.
     """
     inside = bytes([outcome, page]) + (
         b"".join(mistakes).ljust(PAGE_KEY, b"\0") if page == NO_PAGE else page_key
@@ -121,8 +121,8 @@ def count_of(lockers: str) -> int:
 
 
 def filled_up(lockers: str, count: int, secret: str) -> str:
-    """The text of some lockers with empty ones among them, ``count`` in all: only the secret tells
-    them apart.
+    """The text of some lockers with empty ones among them, ``count`` in all:
+    only the secret tells them apart.
 
     >>> few = pack([locker(bytes(32), 0)])
     >>> many = filled_up(few, 8, "a secret")

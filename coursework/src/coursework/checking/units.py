@@ -1,5 +1,5 @@
-"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is, and of which base
-units it is made.
+"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is,
+and of which base units it is made.
 
 Only the names of the International System, and those that it accepts beside its own (brochure of
 the BIPM, 9th edition, tables 1 to 8).
@@ -74,9 +74,8 @@ def unit(text: str) -> Unit:
             raise UnknownUnit(plain[place:][:20])
         place = found.end()
         if found["unit"] == "°" and plain[place : place + 1] in ("C", "F"):
-            raise UnknownUnit(
-                plain[place - 1 : place + 1]
-            )  # a scale with a zero of its own, and no angle times coulomb
+            # A scale with a zero of its own, and no angle times coulomb.
+            raise UnknownUnit(plain[place - 1 : place + 1])
         if found["over"]:
             sign = -1
         elif found["open"]:

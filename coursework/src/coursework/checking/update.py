@@ -19,8 +19,8 @@ from .fields import Fields, by_name, many, text, whole
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
 REQUIREMENTS = "requirements.txt"
-#: The folder of the sealed questions: no student changes them, so a newer one takes the place of
-#: the older one.
+#: The folder of the sealed questions: no student changes them, so a newer one
+#: takes the place of the older one.
 SEALED = "sealed/"
 
 
@@ -30,8 +30,8 @@ FORMAT = 1
 
 
 class ArchiveRefused(ValueError):
-    """The archive is none, or is older than the folder, or the folder is of a newer coursework; the
-    message says which.
+    """The archive is none, or is older than the folder, or the folder is of a newer
+    coursework; the message says which.
     """
 
 
@@ -54,8 +54,8 @@ def _digest_of_all(digests: Mapping[str, str]) -> str:
 
 
 def digest_of(name: str, data: bytes) -> str:
-    """A digest of what stands in a file; of a notebook, of what its cells say: to run it is not to
-    change it.
+    """A digest of what stands in a file; of a notebook, of what its cells
+    say: to run it is not to change it.
     """
     if name.endswith(".ipynb"):
         try:
@@ -176,8 +176,8 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
 
 
 def _place(entry: str) -> str:
-    """Where an entry of the archive goes: sealed questions into a folder of their own, other files
-    into the folder.
+    """Where an entry of the archive goes: sealed questions into a folder of their
+    own, other files into the folder.
     """
     path = Path(entry)
     if path.parent.name == "variants":
@@ -260,7 +260,8 @@ def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder is of format {format}, and the coursework that is "
-            f"installed reads {FORMAT}: "
-            "install the package that lies in this folder, and run this again. Nothing was changed."
+            f"installed reads {FORMAT}: install the package that lies in this folder, and run this "
+            "again. "
+            "Nothing was changed."
         )
     return files, list(archives)

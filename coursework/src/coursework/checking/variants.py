@@ -1,5 +1,5 @@
-"""A question in several variants: each student gets one, found from who the student is, with no
-server.
+"""A question in several variants: each student gets one, found from
+who the student is, with no server.
 
 The variants of a question differ in their numbers, axes or names, and are sealed one by one. Which
 one is a student's follows from the student's identity, the question and the edition of the course
@@ -39,15 +39,15 @@ def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
     student = plain_identity(student)
     if not student or count < 2:
         return 0
-    # JSON and the like could be read in two ways only if a part held a line break: names and
-    # editions hold none.
+    # JSON and the like could be read in two ways only if a part held a line
+    # break: names and editions hold none.
     digest = hashlib.sha256(f"{edition}\n{name}\n{student}".encode()).digest()
     return int.from_bytes(digest[:8]) % count
 
 
 def names_of_variants(variants: Iterable[Variant]) -> list[str]:
-    """What variants are called, whatever their numbers: it follows from what is given and shown in
-    each.
+    """What variants are called, whatever their numbers: it follows from
+    what is given and shown in each.
 
     Parameters
     ----------
@@ -69,8 +69,8 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
 
 
 def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -> list[int]:
-    """The numbers of all variants in a student's own order: first the student's own, then its
-    siblings.
+    """The numbers of all variants in a student's own order: first the
+    student's own, then its siblings.
 
     A course that names its variants gives them by these names (rendezvous hashing): each student
     has an order of all names that there could be, so that one that is taken out moves only those
@@ -138,13 +138,13 @@ def shown(text: str, written: Mapping[str, str]) -> str:
 
 
 def image(picture: str, alt: str) -> str:
-    """A picture, given as SVG, as Markdown: on white paper of its own, with its text for those who
-    do not see it.
+    """A picture, given as SVG, as Markdown: on white paper of its own, with its
+    text for those who do not see it.
     """
     (width,) = re.findall(r'width="(\S+)"', picture)[:1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
-    # As HTML: Markdown readers that are careful refuse this kind of address in an image of their
-    # own.
+    # As HTML: Markdown readers that are careful refuse this kind of
+    # address in an image of their own.
     return (
         f'<p><img alt="{html.escape(alt)}" width="{width}" '
         f'src="data:image/svg+xml;base64,{data}"></p>'

@@ -1,3 +1,3 @@
-"""Safe grading: students' notebooks in, their answers out as plain data, marks and reports from
-those.
+"""Safe grading: students' notebooks in, their answers out as plain
+data, marks and reports from those.
 """

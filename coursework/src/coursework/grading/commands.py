@@ -171,8 +171,8 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         default=[],
         metavar="OURS=THEIRS",
-        help="what a column is called in a gradebook of another language, such as "
-        "--name identifier=ID",
+        help="what a column is called in a gradebook of another language, such as --name "
+        "identifier=ID",
     )
     export.add_argument(
         "--rules",
@@ -295,8 +295,8 @@ class NeedsLinux(RuntimeError):
     def __str__(self) -> str:
         return (
             "this judges what strangers wrote, apart from all else and by means of Linux that this "
-            "system has not. Run "
-            "it in WSL or in a container; review, merge, term and export run here, too."
+            "system has not. "
+            "Run it in WSL or in a container; review, merge, term and export run here, too."
         )
 
 
@@ -348,12 +348,8 @@ def grade(
             allow_weak_isolation=allow_weak_isolation,
             as_listed=as_listed,
         )
-    except (
-        InUse,
-        WeakIsolation,
-        WorkerDied,
-        ValueError,
-    ) as error:  # NothingToGrade and BadRoster are such
+    except (InUse, WeakIsolation, WorkerDied, ValueError) as error:
+        # NothingToGrade and BadRoster are such.
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
@@ -488,8 +484,7 @@ def merge(out: str, ledgers: Sequence[str], dry_run: bool) -> None:
         for first, second in differing:
             print(
                 f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
-                f"{second.who} gave "
-                f"{second.credit}; the later one counts."
+                f"{second.who} gave {second.credit}; the later one counts."
             )
 
 
@@ -558,9 +553,8 @@ def export(
         known = None if as_graded else rules or rules_of(store)
         if known and not rules and (lms or nbgrader):
             raise gradebooks.CannotExport(
-                f"The term has rules, {known}, and these would be the points before them. Say "
-                f"--rules {known}, or "
-                "--as-graded."
+                f"The term has rules, {known}, and these would be the points before them. "
+                f"Say --rules {known}, or --as-graded."
             )
         marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
         if lms:

@@ -1,5 +1,5 @@
-"""Grades a class: from what was handed in to a record of each student's work, and reports of all
-records.
+"""Grades a class: from what was handed in to a record of each
+student's work, and reports of all records.
 
 A record is written as soon as a student's work on an assignment is graded. Its key follows from
 everything that it depends on: the bytes of the notebooks, the questions, the limits, the versions
@@ -45,9 +45,8 @@ from .tables import in_a_line, lines
 from .versions import software
 from .workers import processors, side_by_side
 
-if (
-    TYPE_CHECKING
-):  # what runs code takes a while to be loaded, and where nothing is graded it is not needed
+# What runs code takes a while to be loaded, and where nothing is graded it is not needed.
+if TYPE_CHECKING:
     from .execution.sandbox import Job, Limits
 
 #: The questions of an assignment, each in all its variants, by name.
@@ -67,8 +66,8 @@ class NothingToGrade(ValueError):
 
 
 class Work(NamedTuple):
-    """What one student handed in for one assignment: the notebooks that count, and those that do
-    not.
+    """What one student handed in for one assignment: the notebooks
+    that count, and those that do not.
     """
 
     student: str
@@ -117,16 +116,16 @@ class Course:
         }
 
     def assignments_of(self, notebook: Notebook) -> list[str]:
-        """The assignments that a notebook answers, by the names in its cells, or else by its own
-        name.
+        """The assignments that a notebook answers, by the names in its
+        cells, or else by its own name.
         """
         by_cell = {name.replace("/", "-"): name for names in self.names.values() for name in names}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
         counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
         most = max(counts.values())
         if most:
-            # The one it names most of; and any other of which it names half: some work in a single
-            # notebook.
+            # The one it names most of; and any other of which it names half:
+            # some work in a single notebook.
             first = next(assignment for assignment, count in counts.items() if count == most)
             return [
                 assignment
@@ -318,8 +317,8 @@ def grade(
         )
 
         def before(one: Work) -> Record | None:
-            """The record of the same student before, from which it is known which variants are
-            whose.
+            """The record of the same student before, from which it is
+            known which variants are whose.
             """
             return store.read(one.student, one.assignment)
 
@@ -409,8 +408,8 @@ def grade(
 
 
 def _demand_submissions(submissions: Path, course: Course) -> None:
-    """Refuse the folder of the course, or of results, where that of the students' work is asked
-    for.
+    """Refuse the folder of the course, or of results, where that of
+    the students' work is asked for.
     """
     if course.folder.resolve().is_relative_to(submissions.resolve()):
         raise NothingToGrade(
@@ -446,8 +445,8 @@ def _say_whose(
     if len(around) == 1:
         (folder,) = around
         print(
-            f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for "
-            "nobody's name.",
+            f"The folder {in_a_line(folder, 120)!r} encloses everything, and is taken for nobody's "
+            "name.",
             file=show,
         )
     for student, assignment, file, matched, _ in itertools.islice(rows(), MOST_SHOWN):
@@ -476,8 +475,8 @@ def _say_whose(
 
 
 def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
-    """Say which notebooks say that they are of somebody else than whose they are graded as; give
-    these.
+    """Say which notebooks say that they are of somebody else than
+    whose they are graded as; give these.
     """
     foreign = [
         (one, notebook)
@@ -487,9 +486,9 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     ]
     for one, notebook in foreign[:MOST_SHOWN]:
         print(
-            f"  ! {in_a_line(notebook.file, 120)} says that it is of "
-            f"{in_a_line(notebook.says, 60)!r}, and is graded "
-            f"as that of {in_a_line(one.student, 60)!r}",
+            "  ! "
+            f"{in_a_line(notebook.file, 120)} says that it is of {in_a_line(notebook.says, 60)!r}, "
+            f"and is graded as that of {in_a_line(one.student, 60)!r}",
             file=show,
         )
     if len(foreign) > MOST_SHOWN:
@@ -507,8 +506,8 @@ def _demand_own_numbers(
     foreign: Sequence[Foreign],
     roster: Roster | None,
 ) -> None:
-    """Numbers follow from who one is: where many say to be somebody else, all would be judged by
-    wrong numbers.
+    """Numbers follow from who one is: where many say to be somebody else, all
+    would be judged by wrong numbers.
     """
     varied = {
         name
@@ -527,32 +526,29 @@ def _demand_own_numbers(
     (one, notebook), *_ = wrong
     why = (
         "The roster knows them by another word than they wrote: of `student`, `email` and `name` "
-        "the first column that "
-        "it has is the one that their numbers follow from."
+        "the first column that it has is the one that their numbers follow from."
         if roster
         else "Give the --roster in which they are called as they wrote, or name their folders so."
     )
     raise NothingToGrade(
         f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else "
-        "than they are graded "
-        f"as: {notebook.says!r} as {one.student!r}, say. Each student's numbers follow from that "
-        "word, so their "
-        f"answers would be judged by other numbers than they were given. {why} If all of it is "
-        "right as it is listed: "
-        "--as-listed."
+        f"than they are graded as: {notebook.says!r} as {one.student!r}, say. "
+        "Each student's numbers follow from that word, so their answers would be judged by other "
+        "numbers than they were given. "
+        f"{why} If all of it is right as it is listed: --as-listed."
     )
 
 
-#: From this share of the answers to questions with variants on, right answers to other numbers are
-#: no accident.
+#: From this share of the answers to questions with variants on, right answers
+#: to other numbers are no accident.
 MANY_OTHER_NUMBERS = 0.1
 
 
 def _say_other_numbers(
     store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO
 ) -> None:
-    """Say it where many answers are right for other numbers than those that their authors are
-    believed to have had.
+    """Say it where many answers are right for other numbers than those that their
+    authors are believed to have had.
     """
     for assignment, asked in questions.items():
         varied = {name for name, variants in asked.items() if len(variants) > 1}
@@ -569,18 +565,16 @@ def _say_other_numbers(
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
-                "other numbers than "
-                "those of the student whose they are, and earn nothing. Are the students called "
-                "here as they have "
-                "written into their notebooks? If not, grade again with the right --roster: "
-                "nothing is lost.",
+                "other numbers than those of the student whose they are, and earn nothing. "
+                "Are the students called here as they have written into their notebooks? "
+                "If not, grade again with the right --roster: nothing is lost.",
                 file=show,
             )
 
 
 def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
-    """Everything from one student is a question, not a result: a folder around it may have been
-    taken for one.
+    """Everything from one student is a question, not a result: a folder
+    around it may have been taken for one.
     """
     students = {one.student for one in work}
     doubtful = [
@@ -593,18 +587,17 @@ def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | 
         (only,) = students
         raise NothingToGrade(
             f"The notebooks would all be of one student, {only!r}, and all but the newest would "
-            "not count. If that is "
-            f"so, say --student {only!r}; if not, name the folder in which each student has one of "
-            "their own, or "
-            "give a --roster."
+            "not count. "
+            f"If that is so, say --student {only!r}; if not, name the folder in which each student "
+            "has one of their own, or give a --roster."
         )
 
 
 def _put_renamed_aside(
     store: Store, work: Sequence[Work], ledger: Ledger, dry_run: bool = False
 ) -> Iterator[str]:
-    """Move the record of a student away whose very notebooks are now another's: the folder was
-    renamed.
+    """Move the record of a student away whose very notebooks are now
+    another's: the folder was renamed.
 
     What people decided on the answers is entered for the new name too.
     """
@@ -623,8 +616,8 @@ def _put_renamed_aside(
             owners.setdefault((one.assignment, digests), []).append(one)
     for student, assignment, files in absent:
         fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
-        # Of equal notebooks, those that lie where they lay: then a roster has given the student
-        # another name.
+        # Of equal notebooks, those that lie where they lay: then a roster has
+        # given the student another name.
         there = [
             one
             for one in fitting
@@ -657,8 +650,8 @@ def _take_in_decisions(ledger: Ledger, store: Store, show: TextIO) -> None:
 
 
 def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
-    """What waits for people beside undecided answers: appeals, and decisions on what has changed
-    since.
+    """What waits for people beside undecided answers: appeals, and
+    decisions on what has changed since.
     """
     appeals: list[str] = []
     changed: list[str] = []
@@ -711,8 +704,8 @@ def _strengths(
 def _say_guessable(
     questions: Mapping[str, Questions], strengths: Mapping[str, str], show: TextIO
 ) -> None:
-    """Say which points a script could have guessed: whoever tries answers in the check earns
-    them.
+    """Say which points a script could have guessed: whoever tries
+    answers in the check earns them.
     """
     for assignment, asked in questions.items():
         if assignment in strengths:
@@ -747,11 +740,11 @@ def _is_same(record: Record, other: Record, name: str) -> bool:
 
 
 def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) -> str:
-    """What of a record depends on running the work, as one short text; it is judged again without
-    that.
+    """What of a record depends on running the work, as one short text;
+    it is judged again without that.
 
-    ``asked`` is what the sandbox is told of the questions: with a call that was mended just those
-    are run again.
+    ``asked`` is what the sandbox is told of the questions: with a call that was
+    mended just those are run again.
     """
     depends = [
         FORMAT,
@@ -774,8 +767,8 @@ def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) ->
 
 
 def reply_of(work: Work) -> str:
-    """How the name of a page begins that goes back to the student: what the system wrote of the
-    newest notebook.
+    """How the name of a page begins that goes back to the student: what the
+    system wrote of the newest notebook.
     """
     return max((*work.notebooks, *work.superseded), key=_by_age).claim.reply
 
@@ -853,8 +846,8 @@ def _here(
     allow_weak_isolation: bool,
     store: Store,
 ) -> Iterator[Finished]:
-    """Run and judge on this machine: each process has a sandbox, and does one student's work after
-    another.
+    """Run and judge on this machine: each process has a sandbox, and does
+    one student's work after another.
     """
     from .execution.sandbox import Sandbox, WeakIsolation, WorkerDied, copies_are_apart, given_up
 
@@ -869,9 +862,8 @@ def _here(
         def run(job: Job) -> Result:
             try:
                 return sandbox.run(job)
-            except (
-                WorkerDied
-            ) as error:  # it costs only the notebook under which the sandbox dies again and again
+            except WorkerDied as error:
+                # It costs only the notebook under which the sandbox dies again and again.
                 return given_up(job, str(error))
 
         return lambda order: finish(order, [run(job) for job in jobs.of(order)])
@@ -975,8 +967,8 @@ def _says_little(answer: Answer) -> int:
 def marked(
     record: Record, judge: Judge, standing: Standing | None = None, policies: Policies | None = None
 ) -> Record:
-    """A record with the verdicts on its answers; what a person decided on an answer stands above
-    them.
+    """A record with the verdicts on its answers; what a person
+    decided on an answer stands above them.
     """
     questions = judge.questions[record.assignment]
     own, cases = marking.of_student(
@@ -1021,8 +1013,8 @@ class _Progress:
         now = time.monotonic()
         on_screen = self.show.isatty()
         if self.done == 1:
-            # What comes before the first is the start of the sandboxes, which takes no longer for
-            # more.
+            # What comes before the first is the start of the sandboxes,
+            # which takes no longer for more.
             self.first = self.last = now
         if self.done == self.total or now - self.last > (0.2 if on_screen else 10):
             self.last = now
@@ -1093,8 +1085,8 @@ def regrade(
     list of Moved
         For a dry run a :class:`Laboratory`.
 
-    Nothing is run. A question that was added since has no answers in the records; grade again for
-    that.
+    Nothing is run. A question that was added since has no answers in
+    the records; grade again for that.
     """
     from .reporting import reports
 
@@ -1109,8 +1101,7 @@ def regrade(
         if unknown:
             raise NothingToGrade(
                 f"{store.folder / COURSE} does not say which notebooks make up "
-                f"{', '.join(map(repr, unknown))}; "
-                "grade again with --assignment."
+                f"{', '.join(map(repr, unknown))}; grade again with --assignment."
             )
         course = Course(solutions, {name: known[name] for name in names})
         questions = course.questions(names, store.folder / "questions")

@@ -1,5 +1,5 @@
-"""A file that one process at a time has for itself, until it closes it: on Linux, on macOS and on
-Windows.
+"""A file that one process at a time has for itself, until it closes it:
+on Linux, on macOS and on Windows.
 """
 
 import time

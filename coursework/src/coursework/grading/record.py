@@ -1,8 +1,8 @@
-"""The record of one student's work on one assignment, as it is stored: what was handed in, asked,
-answered and marked.
+"""The record of one student's work on one assignment, as it is stored: what was
+handed in, asked, answered and marked.
 
-JSON calls a field as Python does, with spaces for underscores. A record of an earlier format lacks
-what came later.
+JSON calls a field as Python does, with spaces for underscores. A record of an
+earlier format lacks what came later.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from ..checking.fields import (
 from ..checking.plain import Plain
 
 FORMAT = 3
-#: How a case came to be known: by the rule when the work was graded, or later from a record that
-#: did not hold it.
+#: How a case came to be known: by the rule when the work was graded, or later
+#: from a record that did not hold it.
 AS_GRADED, FROM_THE_VERSION, BY_THE_RULE = (
     "as graded",
     "from the version in an older record",
@@ -82,9 +82,8 @@ class Answer:
         about = Fields(found, where)
         return cls(
             about.get("outcome", text),
-            cast(
-                "Plain | None", about.maybe("plain", anything)
-            ),  # read_plain looks at it where it is judged
+            # read_plain looks at it where it is judged.
+            cast("Plain | None", about.maybe("plain", anything)),
             about.maybe("why", text),
             about.maybe("error", text),
             about.maybe("from", text),
@@ -582,8 +581,8 @@ class Record:
         if format > FORMAT:
             raise ValueError(
                 f"{where} is of format {format}, and this coursework reads formats up to {FORMAT}: "
-                "a later one made "
-                "it. Install that one."
+                "a later one made it. "
+                "Install that one."
             )
         finished = about.maybe("finished", truth)
         return cls(

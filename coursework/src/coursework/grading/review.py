@@ -149,11 +149,11 @@ class Class:
         for record in self.records:
             for question, mark in record.marks.items():
                 judged = mark.judged
-                # An answer that has a fingerprint is equal to those that share it; another one to
-                # its very copies.
+                # An answer that has a fingerprint is equal to those that share it;
+                # another one to its very copies.
                 same = mark.group or digest_of_answer(record, question)
-                # Equal words to other numbers are another answer: each variant has a right answer
-                # of its own.
+                # Equal words to other numbers are another answer: each variant
+                # has a right answer of its own.
                 groups[
                     record.assignment, question, mark.version, judged.outcome, judged.note, same
                 ].append(record)
@@ -169,8 +169,8 @@ class Class:
                 self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
     def contract(self, cluster: Cluster) -> Contract | None:
-        """The question by which the answers of a cluster were judged: these students' own variant;
-        or nothing.
+        """The question by which the answers of a cluster were judged: these
+        students' own variant; or nothing.
         """
         return self.contracts.of(cluster.mark.version)
 
@@ -279,8 +279,8 @@ class Class:
     def lines(
         self, cluster: Cluster, record: Record
     ) -> list[tuple[str, float | None, float | None, int]]:
-        """The lines of the rubric of a question: what each is worth now, what the source says, how
-        many used it.
+        """The lines of the rubric of a question: what each is worth now, what
+        the source says, how many used it.
         """
         source = record.marks[cluster.question].rubric or {}
         found = dict.fromkeys(
@@ -343,8 +343,8 @@ class Class:
     def cells(
         self, cluster: Cluster, record: Record
     ) -> tuple[Sequence[str], list[int], dict[int, tuple[str, ...]]]:
-        """The code of one student's notebook, which of its cells come first, and the pictures that
-        it keeps.
+        """The code of one student's notebook, which of its cells come first,
+        and the pictures that it keeps.
 
         First come the cell of the answer and those above it, up to the check of another; of several
         notebooks the one in which it is asked.
@@ -419,8 +419,8 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
 
 
 def _note_shared_tries(found: Hints, tried: Mapping[tuple[str, str], set[str]]) -> None:
-    """Note who tried the same wrong answers as one other, if they were several: one may be
-    chance.
+    """Note who tried the same wrong answers as one other, if they
+    were several: one may be chance.
     """
     together: Counter[tuple[str, str]] = Counter()
     where: defaultdict[tuple[str, str], set[str]] = defaultdict(set)
@@ -647,8 +647,8 @@ class _Answer(_Page):
         self.redirect(f"/{self.settings['secret']}/answer/{target}?{query}", status=303)
 
     def decide(self, cluster: Cluster, comment: str, why: str) -> bool:
-        """Enter a decision on all of a cluster or one of it, or take it back; say whether to stay
-        at it.
+        """Enter a decision on all of a cluster or one of it, or take it
+        back; say whether to stay at it.
         """
         graded, who, said = self.graded, self.settings["grader"], self.get_argument("credit")
         worth, only = cluster.mark.worth, self.get_argument("only", "")
@@ -772,8 +772,8 @@ class _Answer(_Page):
 def _history(
     events: Iterable[Event], cluster: Cluster, students: Collection[str]
 ) -> list[tuple[str, ...]]:
-    """What was decided on the answers of a cluster, said of them, and said of its rubric, in
-    words.
+    """What was decided on the answers of a cluster, said of them,
+    and said of its rubric, in words.
     """
     said: list[tuple[str, ...]] = []
     for one in events:
@@ -807,8 +807,8 @@ NONE = "-"
 
 
 def _as_asked(contract: Contract | None) -> str:
-    """The text of a question as these students saw it, with their numbers; its author is
-    trusted.
+    """The text of a question as these students saw it, with their
+    numbers; its author is trusted.
     """
     if not contract:
         return ""

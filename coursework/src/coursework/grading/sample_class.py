@@ -54,18 +54,23 @@ HOSTILE = {
     "calls home": "import socket\ntry:\n    socket.create_connection(('192.0.2.1', 80), 1)\n"
     "except OSError:\n"
     "    pass",
-    "forks": "import os\nfor number in range(50):\n    try:\n        if os.fork() == 0:\n"
-    "            os._exit(0)\n  "
-    "  except OSError:\n        pass",
+    "forks": "import os\n"
+    "for number in range(50):\n"
+    "    try:\n"
+    "        if os.fork() == 0:\n"
+    "            os._exit(0)\n"
+    "    except OSError:\n"
+    "        pass",
     "fills the memory": "try:\n    much = [bytearray(1 << 26) for number in range(40)]\n"
     "except MemoryError:\n"
     "    pass",
     "writes much": "for number in range(200_000):\n    print('x' * 100)",
     "a name that is code": 'theta = sm.Symbol(\'__import__("os").system("touch /tmp/forged")\')',
     "a script": "_ = check('<script>alert(1)</script>', '<img src=x onerror=alert(1)>')",
-    "walks the frames": "import sys\nframe = sys._getframe()\nwhile frame:\n"
-    "    frame.f_globals['check'] = "
-    "frame.f_globals.get('check')\n"
+    "walks the frames": "import sys\n"
+    "frame = sys._getframe()\n"
+    "while frame:\n"
+    "    frame.f_globals['check'] = frame.f_globals.get('check')\n"
     "    frame = frame.f_back",
     "never ends": "while True:\n    pass",
 }
@@ -146,8 +151,8 @@ class _Exercise:
 
 
 def _symbols(source: str) -> dict[str, str]:
-    """The variable of each symbol that a cell makes by ``sm.symbols('...')`` or
-    ``me.dynamicsymbols``.
+    """The variable of each symbol that a cell makes by
+    ``sm.symbols('...')`` or ``me.dynamicsymbols``.
     """
     variable_of: dict[str, str] = {}
     for node in ast.parse(source).body:
@@ -268,8 +273,8 @@ def _slip(question: AuthoredQuestion) -> Any:
 
 
 class _Answers:
-    """Code for right and wrong answers to every question, with what is to come of each; worked out
-    once.
+    """Code for right and wrong answers to every question, with what is
+    to come of each; worked out once.
     """
 
     def __init__(self, exercise: _Exercise, dice: random.Random) -> None:
@@ -626,8 +631,7 @@ def _gradebook(layout: str, students: Sequence[str], worth: float) -> bytes:
     if layout == "moodle":
         lines = [
             'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be '
-            'changed","Feedback '
-            'comments"'
+            'changed","Feedback comments"'
         ]
         lines += [
             f'"Participant {number}","{name}",{student}@example.org,"Submitted for '

@@ -50,8 +50,8 @@ class Store:
             yield
 
     def in_copy_of_process(self) -> None:
-        """Leave the lock to the process that has it: when that one ends, nobody is kept away any
-        more.
+        """Leave the lock to the process that has it: when that one
+        ends, nobody is kept away any more.
         """
         self.lock.close()
 
@@ -103,8 +103,8 @@ class Store:
         return reader(json.loads(path.read_text("utf8")), str(path)) if path.exists() else None
 
     def put_aside(self, student: str, assignment: str) -> Path:
-        """Move a record, and the page made of it, to where it counts no more; give its new
-        place.
+        """Move a record, and the page made of it, to where it
+        counts no more; give its new place.
         """
         place = self.place(student, assignment)
         aside = self.folder / "put-aside" / place.relative_to(self.records)
@@ -120,8 +120,8 @@ class Store:
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
                 record = record_in(path)
-                # Not what lies where it would not be written: a copy, or what another version
-                # called so.
+                # Not what lies where it would not be written: a copy, or
+                # what another version called so.
                 if path == self.place(record.student, record.assignment):
                     yield record
 
@@ -145,8 +145,8 @@ def record_in(path: Path) -> Record:
 
 
 def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
-    """JSON with a line for each entry of the outermost list or object: short, and still to be
-    read.
+    """JSON with a line for each entry of the outermost list or
+    object: short, and still to be read.
     """
     if isinstance(value, Mapping):
         lines = [
@@ -157,14 +157,14 @@ def as_text(value: Mapping[str, object] | Iterable[object]) -> str:
     return "[\n" + ",\n".join(json.dumps(inner, ensure_ascii=False) for inner in value) + "\n]\n"
 
 
-#: What Windows keeps for itself, whatever follows a dot: folders of it are what containers there
-#: write to.
+#: What Windows keeps for itself, whatever follows a dot: folders of it
+#: are what containers there write to.
 RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")
 
 
 def file_name(name: str) -> str:
-    """A name for a file that a student's name cannot lead astray; different names stay
-    different.
+    """A name for a file that a student's name cannot lead astray;
+    different names stay different.
     """
     plain = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip(".-")[:60]
     # The letter's case counts too: some file systems do not tell a from A. And what looks like a
@@ -184,8 +184,8 @@ def write(
     lasting: bool = True,
     private: bool = False,
 ) -> None:
-    """Write a file so that it is there whole or not at all; if it is to last, also if the machine
-    goes down.
+    """Write a file so that it is there whole or not at all; if it is to
+    last, also if the machine goes down.
 
     ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds
     right answers: nobody else who works on this machine may read it.

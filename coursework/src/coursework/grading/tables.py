@@ -59,15 +59,15 @@ def lines(header: Iterable[str], rows: Iterable[Iterable[object]]) -> Iterator[s
 
 
 def in_a_line(text: str, most: int) -> str:
-    """Text of strangers as part of one line: it cannot begin another, which would seem to be
-    ours.
+    """Text of strangers as part of one line: it cannot begin
+    another, which would seem to be ours.
     """
     return " ".join(readable(text, most).split())
 
 
 def readable(text: str, most: int = 2_000) -> str:
-    """Text that shows what it holds: without signs that are not seen, or that turn the rest
-    round.
+    """Text that shows what it holds: without signs that are not
+    seen, or that turn the rest round.
     """
     if len(text) <= most and text.isascii() and text.isprintable():
         return text

@@ -115,8 +115,8 @@ class _Worker(Generic[Task, Done]):
         self.attempts = 0
         asking = os.getpid()
         with warnings.catch_warnings():
-            # The copy uses nothing that another thread of this process may hold: it works on its
-            # own things only.
+            # The copy uses nothing that another thread of this process may hold: it
+            # works on its own things only.
             warnings.simplefilter("ignore", DeprecationWarning)
             self.process = multiprocessing.get_context("fork").Process(
                 target=_work, args=(other, prepare, asking), daemon=True

@@ -1,5 +1,5 @@
-"""Attacks by names: classes in which somebody's files are called so that they might count as
-somebody else's.
+"""Attacks by names: classes in which somebody's files are called so that
+they might count as somebody else's.
 
 Each is what was handed in, as a system or an instructor would hold it, with whose each file really
 is. Nothing may ever be given to anybody else: either the files are told apart, or a person is

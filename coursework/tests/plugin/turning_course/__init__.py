@@ -1,5 +1,5 @@
-"""A plug-in for the tests: what a course about turns in space would bring of its own, with one kind
-of question.
+"""A plug-in for the tests: what a course about turns in space would bring of
+its own, with one kind of question.
 """
 
 from coursework.checking.kinds import TRANSPOSED, Fault, row_entries, slack

@@ -33,8 +33,8 @@ LOCK = "lite-lock.json"
 FETCHED = runtime.FETCHED_FOR_NOTEBOOKS
 WORKSHOP = BUILD / FOLDER
 APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
-# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving
-# figures.
+# The parts of the interface that are not JupyterLite's own: the
+# kernel, sliders, and the moving figures.
 EXTENSIONS = (
     "@jupyterlite/pyodide-kernel-extension",
     "@jupyter-widgets/jupyterlab-manager",
@@ -50,9 +50,8 @@ NOTE = (
     "*File > Download* gives you the notebook." + (f" {LICENCES_SAID}" if LICENCES_SAID else "")
 )
 NUMERICAL = (
-    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. The next cell "
-    "fetches them from "
-    "{place}.*",
+    "*From here on, cells of this page compute or draw with NumPy and Matplotlib. "
+    "The next cell fetches them from {place}.*",
     "import matplotlib\nimport numpy",
 )
 PLACES = {
@@ -98,8 +97,8 @@ def wheel_of_stand_in():
 
 
 def write_lock(site):
-    """Put the wheels of the kernel beside the others, and list all of them; return the names of
-    what to load.
+    """Put the wheels of the kernel beside the others, and list all of them;
+    return the names of what to load.
     """
     target = site / runtime.FOLDER
     lock = json.loads((target / runtime.LOCK).read_text("utf8"))
@@ -113,8 +112,8 @@ def write_lock(site):
 
 
 def fingerprint_of_code(text):
-    """The short hash that the scripts of the page make of a cell's code (``fingerprint`` in
-    live/js/store.js).
+    """The short hash that the scripts of the page make of a cell's code
+    (``fingerprint`` in live/js/store.js).
     """
     a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
     for unit in array("H", text.encode("utf-16-le")):
@@ -130,11 +129,11 @@ def fingerprint_of_code(text):
 
 
 def stamp(notebook):
-    """Say in the notebook what the book had in each of its code cells, by the names that the page
-    gives them.
+    """Say in the notebook what the book had in each of its code cells, by
+    the names that the page gives them.
 
-    A copy that a reader keeps can then be told from a newer edition, and its answers from the
-    book's code.
+    A copy that a reader keeps can then be told from a newer edition, and
+    its answers from the book's code.
     """
     seen, cells = Counter(), {}
     for cell in notebook.cells:
@@ -148,8 +147,8 @@ def stamp(notebook):
 
 
 def announce_numpy(notebook, kinds, place):
-    """Fetch NumPy in a cell of its own, which says so, above the first cell that computes or draws
-    with it.
+    """Fetch NumPy in a cell of its own, which says so, above the first
+    cell that computes or draws with it.
 
     The kernel fetches what a cell imports; some cells here use NumPy through our own package only,
     and plain Python cannot stand in for it in all of them.
@@ -198,8 +197,8 @@ def write_workshop(site, settings, names):
     version = runtime.official_lock()["info"]["python"].rpartition(".")[0]
     # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
     kernel = {
-        # The kernel takes it for a module by the end of the address, servers by the name of the
-        # file.
+        # The kernel takes it for a module by the end of the address,
+        # servers by the name of the file.
         "pyodideUrl": f"./../{runtime.FOLDER}/{runtime.pyodide_folder()}/pyodide.js?as=.mjs",
         "disablePyPIFallback": True,
         # The name is the same in every version of the book: what follows it tells them apart.
@@ -232,8 +231,8 @@ def write_workshop(site, settings, names):
 
 
 def bring_answers_first(target):
-    """Have the interface wait, before it opens a notebook, for what brings the page's answers into
-    it.
+    """Have the interface wait, before it opens a notebook, for what
+    brings the page's answers into it.
     """
     page = target / APPS[0] / "index.html"
     before = page.read_text("utf8")

@@ -57,8 +57,8 @@ def add_live_code(app, pagename, templatename, context, doctree):
     kinds = on_the_page(kinds_of_cells()[pagename]) if pagename in kinds_of_cells() else []
     if kinds and len(kinds) != count:
         raise ExtensionError(
-            f"{pagename}: the page shows {count} cells, and {len(kinds)} of its notebook "
-            "are to be run"
+            f"{pagename}: the page shows {count} cells, and {len(kinds)} of its notebook are to be "
+            "run"
         )
     context["live_data"] = json.dumps(
         {
@@ -86,8 +86,8 @@ def add_live_code(app, pagename, templatename, context, doctree):
 
 
 def take_settings(app, config):
-    """Ask the environment for NumPy; have every page written anew whose scripts or Pyodide have
-    another version.
+    """Ask the environment for NumPy; have every page written anew whose scripts
+    or Pyodide have another version.
     """
     config.numpy_in_the_page = runtime.numpy_setting(config.numpy_in_the_page)
     config.runtime_folders = f"{scripts.folder_name()} {runtime.pyodide_folder()}"
@@ -100,6 +100,5 @@ def setup(app):
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
     app.connect("html-page-context", add_live_code, priority=970)
-    app.connect(
-        "build-finished", write_runtime, priority=900
-    )  # after take_away.py has built the wheel
+    # After take_away.py has built the wheel.
+    app.connect("build-finished", write_runtime, priority=900)

@@ -67,8 +67,8 @@ json.dump(told, sys.__stdout__)
 
 
 def write_python(folder):
-    """Write what the page's Python starts from: our files, and IPython's way of writing values as
-    text.
+    """Write what the page's Python starts from: our files, and
+    IPython's way of writing values as text.
     """
     shutil.copytree(
         PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
@@ -79,8 +79,8 @@ def write_python(folder):
 
 
 def run_alone(codes, *more):
-    """What the cells of a page put out, one after another, without NumPy; or with
-    ``"everything"``.
+    """What the cells of a page put out, one after another, without
+    NumPy; or with ``"everything"``.
     """
     with tempfile.TemporaryDirectory() as folder:
         write_python(Path(folder, "python"))
@@ -92,8 +92,8 @@ def run_alone(codes, *more):
 
 
 def outputs_of_messages(messages):
-    """What a cell put out, as a list that can be compared: printed text, and the shown form of each
-    value.
+    """What a cell put out, as a list that can be compared: printed text,
+    and the shown form of each value.
     """
     outputs = []
     for message in messages:
@@ -127,8 +127,8 @@ def shown_form(data):
 
 
 def alike(outputs, stored):
-    """Whether two lists of outputs are the same, but for what the last digits of numbers may move
-    by.
+    """Whether two lists of outputs are the same, but for what the
+    last digits of numbers may move by.
     """
     return [form for form, _ in outputs] == [form for form, _ in stored] and not any(
         move.too_far
@@ -149,8 +149,8 @@ def imports_numpy(code):
 
 
 def names_taken(code):
-    """The names that a cell may take from the cells before it: all it uses, but for what it
-    imports.
+    """The names that a cell may take from the cells before it: all
+    it uses, but for what it imports.
     """
     tree = parse(code)
     imported = {
@@ -174,8 +174,8 @@ def needs_of_names(names, codes, kinds):
 
 
 def classify(cells):
-    """For each code cell what it needs beyond SymPy, whether a run may leave it out, and its name
-    for graders.
+    """For each code cell what it needs beyond SymPy, whether a run may leave
+    it out, and its name for graders.
 
     Also whether it imports ``numpy`` itself, which plain Python may stand in for, and which a
     notebook's kernel fetches then.
@@ -199,14 +199,15 @@ def classify(cells):
             if outcome["status"] == "missing":
                 needs.add(outcome["package"])
             if outcome.get("plain"):
-                needs.add(
-                    "numpy"
-                )  # what plain Python makes of it is not what the book prints, to the last digit
+                # What plain Python makes of it is not what the book prints, to the last digit.
+                needs.add("numpy")
             if not needs and known:
                 raise RuntimeError(
-                    f"cell {position + 1} gives another result in the page than the stored one "
-                    f"(is that one old? `make notebooks`):\n"
-                    f"{cell.source}\n{outcome.get('traceback', told['messages'])}"
+                    f"cell {position + 1} gives another result in the page than the stored one (is "
+                    "that one old? "
+                    "`make notebooks`):\n"
+                    f"{cell.source}\n"
+                    f"{outcome.get('traceback', told['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])
         kinds.append(
@@ -226,8 +227,8 @@ def classify(cells):
 
 
 def kept_name(path, notebook):
-    """The name under which the kinds of a notebook's cells are kept, by all that they follow from;
-    not by its prose.
+    """The name under which the kinds of a notebook's cells are kept, by all that
+    they follow from; not by its prose.
     """
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     seen = [
@@ -273,11 +274,11 @@ def kinds_of_cells():
 
 
 def on_the_page(kinds):
-    """The kinds of those cells that a page shows; each is to run, before itself, the code of the
-    hidden ones above it.
+    """The kinds of those cells that a page shows; each is to run, before itself, the
+    code of the hidden ones above it.
 
-    What hidden cells need, the next cell needs; and it is not left out, since others may take names
-    from them.
+    What hidden cells need, the next cell needs; and it is not left out, since
+    others may take names from them.
     """
     shown, code, needs = [], [], set()
     for kind in kinds:

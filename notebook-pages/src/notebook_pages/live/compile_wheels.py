@@ -17,12 +17,12 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = tuple(f"{name}/" for name in Path("/wheels/ours.txt").read_text("utf8").split())
-# The sealed variants are fetched one by one: a reader needs few of them. This file says where they
-# are.
+# The sealed variants are fetched one by one: a reader needs few of
+# them. This file says where they are.
 APART = "/sealed/variants/"
 ELSEWHERE = "/sealed/elsewhere.txt"
-# What nobody needs in a browser: tests, and what Jedi, which completes names, knows of 200
-# packages.
+# What nobody needs in a browser: tests, and what Jedi, which
+# completes names, knows of 200 packages.
 LEFT_OUT = (APART, "/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
 THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
 
@@ -44,8 +44,8 @@ def compiled(name, source):
 
 
 def place_of_variants(wheel):
-    """The file that says where the sealed variants are, with an address that follows from their
-    contents.
+    """The file that says where the sealed variants are, with an address
+    that follows from their contents.
     """
     names = sorted(name for name in wheel.namelist() if APART in name)
     digest = hashlib.sha256(

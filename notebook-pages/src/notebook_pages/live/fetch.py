@@ -13,8 +13,8 @@ from . import runtime
 
 
 def fetch(folder, packages, address):
-    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the names of those that
-    were fetched.
+    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the
+    names of those that were fetched.
     """
     folder.mkdir(parents=True, exist_ok=True)
     fetched = []

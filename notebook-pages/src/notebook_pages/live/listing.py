@@ -1,5 +1,5 @@
-"""The directive ``cells-that-need-more``: which cells do not run with SymPy alone, page by page,
-and why.
+"""The directive ``cells-that-need-more``: which cells do not run with
+SymPy alone, page by page, and why.
 """
 
 from docutils import nodes
@@ -9,8 +9,8 @@ from sphinx.util.docutils import SphinxDirective
 from .cells import kinds_of_cells, on_the_page
 
 SOURCES = {
-    "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a "
-    "cell needs them.",
+    "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a cell needs "
+    "them.",
     "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
     "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
 }
@@ -31,8 +31,8 @@ def column(kind):
 
 
 def asks_nobody(kind):
-    """Whether a cell runs with what comes with this site; the Python side of a moving figure
-    does.
+    """Whether a cell runs with what comes with this site; the
+    Python side of a moving figure does.
     """
     return set(kind["needs"]) <= {"anywidget"}
 
@@ -62,13 +62,11 @@ class NeedsMore(SphinxDirective):
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
             f"Of {len(every)} cells, {alone} run in the page with what comes with this site, and "
-            "ask no other server: "
-            f"{int(100 * alone / len(every))} per cent. {len(pages) - len(some)} pages need "
-            "nothing but SymPy and this "
-            "book's own packages. The cells that need more, by their numbers from the top of each "
-            "page, are these; a "
-            "cell that takes a name from one of them needs the same. What a moving figure needs "
-            "comes with this site.",
+            f"ask no other server: {int(100 * alone / len(every))} per cent. "
+            f"{len(pages) - len(some)} pages need nothing but SymPy and this book's own packages. "
+            "The cells that need more, by their numbers from the top of each page, are these; a "
+            "cell that takes a name from one of them needs the same. "
+            "What a moving figure needs comes with this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),

@@ -1,5 +1,5 @@
-"""The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and their lock
-file.
+"""The runtime folder of the site: Pyodide from npm, wheels from
+PyPI and our own, and their lock file.
 
 Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is
 byte-compiled and put in place. A wheel is compiled once: the result is kept under its contents'
@@ -25,14 +25,13 @@ from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-FETCHED = (
-    paths.FETCHED / ".venv" / "runtime" / "live"
-)  # where the set-up puts the wheels of wheels.txt
+# Where the set-up puts the wheels of wheels.txt.
+FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"
 FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
-# Names in the site, by those in npm's package: servers that do not know .mjs would send no script
-# that runs.
+# Names in the site, by those in npm's package: servers that do not know
+# .mjs would send no script that runs.
 PYODIDE_FILES = {
     "pyodide.js": "pyodide.mjs",
     "pyodide.asm.js": "pyodide.asm.mjs",
@@ -45,8 +44,8 @@ FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
 #: The book's own package, or SymPy alone: it leads to all that a page's Python starts with.
 DISTRIBUTION = PROJECTS[-1].name if PROJECTS else "sympy"
-#: What moving figures talk with their Python through: wheels that the notebook interface needs as
-#: well.
+#: What moving figures talk with their Python through: wheels that the
+#: notebook interface needs as well.
 WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
 DEPENDS = {
     "sympy": ["mpmath"],
@@ -178,8 +177,8 @@ def own_packages(wheels, target):
 
 
 def numpy_setting(stated):
-    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it, unless BOOK_NUMPY names
-    a folder.
+    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it,
+    unless BOOK_NUMPY names a folder.
     """
     return os.environ.get("BOOK_NUMPY") or stated
 
@@ -187,8 +186,8 @@ def numpy_setting(stated):
 def numerical_packages(setting, target, official, address):
     """NumPy's and Matplotlib's part of the lock file: see the setting numpy_in_the_page.
 
-    Where ``setting`` is the path of a folder, the wheels that ``official`` names are copied from
-    it.
+    Where ``setting`` is the path of a folder, the wheels that
+    ``official`` names are copied from it.
     """
     if setting in (False, "off"):
         return {}
@@ -214,8 +213,8 @@ def numerical_packages(setting, target, official, address):
 
 
 def write_variants(wheels, compiled, target):
-    """Put beside the wheels what ``compiled`` have not of ``wheels``: the sealed variants, each
-    fetched alone.
+    """Put beside the wheels what ``compiled`` have not of ``wheels``: the
+    sealed variants, each fetched alone.
     """
     kept = set()
     for before, after in zip(wheels, compiled, strict=True):
@@ -226,9 +225,8 @@ def write_variants(wheels, compiled, target):
                     kept.add((target / address).resolve())
                     for name in whole.namelist():
                         file = target / address / name.removeprefix(folder)
-                        if (
-                            name.startswith(f"{folder}variants/") and not file.is_file()
-                        ):  # named by what is in them
+                        # Named by what is in them.
+                        if name.startswith(f"{folder}variants/") and not file.is_file():
                             file.parent.mkdir(parents=True, exist_ok=True)
                             file.write_bytes(whole.read(name))
     for outdated in target.glob("sealed-*/"):

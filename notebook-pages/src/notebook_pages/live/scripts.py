@@ -1,5 +1,5 @@
-"""The scripts of the page, put together by esbuild: a small one for every page with code, and what
-it loads.
+"""The scripts of the page, put together by esbuild: a small one for every
+page with code, and what it loads.
 """
 
 import shutil
@@ -14,8 +14,8 @@ from .cells import PRETTY, PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-#: What a moving figure and its widget share; the figures of the build and those of the page's
-#: Python have one.
+#: What a moving figure and its widget share; the figures of the build and
+#: those of the page's Python have one.
 MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
 
 
@@ -72,7 +72,7 @@ def write_loaded(target):
             "--loader:.py=text",
             f"--outdir={target}",
         )
-    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a layer: those of
-    # the page go before.
+    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a
+    # layer: those of the page go before.
     rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
     (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")

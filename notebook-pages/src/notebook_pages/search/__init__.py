@@ -43,15 +43,14 @@ def text_of(element, left_out=()):
             parts.append(one)
         elif id(one) not in left_out:
             waiting += reversed(one.contents)
-    words = " ".join(
-        " ".join(parts).replace("\u2061", "").split()
-    )  # the sign by which a function is applied
+    # The sign by which a function is applied.
+    words = " ".join(" ".join(parts).replace("\u2061", "").split())
     return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
 
 
 def first_sentence(element, left_out=()):
-    """The first words that stand as text in ``element``: a sentence, or as much of it as a line
-    shows.
+    """The first words that stand as text in ``element``: a sentence,
+    or as much of it as a line shows.
     """
     if element.name in ("dd", "p"):
         paragraph = element
@@ -89,8 +88,8 @@ def captions():
 
 
 def entries_of_page(page, article):
-    """The places of one page, with the text of each in ``text``, from which its words are
-    chosen.
+    """The places of one page, with the text of each in ``text``,
+    from which its words are chosen.
     """
     tex = {
         box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
@@ -181,8 +180,8 @@ def entries_of_page(page, article):
 
 
 def words_of(entry):
-    """The words of an entry's text that its title and first sentence do not have; one that comes
-    back counts twice.
+    """The words of an entry's text that its title and first sentence do not have;
+    one that comes back counts twice.
     """
     count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
     shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
@@ -192,8 +191,8 @@ def words_of(entry):
 
 
 def weight_of(page):
-    """What a page counts beside the others: chapters explain, and others hold what belongs to
-    them.
+    """What a page counts beside the others: chapters explain, and
+    others hold what belongs to them.
     """
     if is_solutions(page):
         return 0.3
@@ -211,8 +210,8 @@ def questions(path):
 
 
 def index(site):
-    """What the palette asks: pages, places and synonyms, as plain data; and, for later, each
-    place's words and TeX.
+    """What the palette asks: pages, places and synonyms, as plain data; and, for
+    later, each place's words and TeX.
     """
     caption, pages, entries = captions(), [], []
     synonyms = yaml.load(SYNONYMS.read_text("utf8"), YAML) if SYNONYMS.exists() else {}
@@ -254,8 +253,8 @@ def index(site):
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
-    # Equations are found by what stands in them, and figures are many and seldom what is looked
-    # for: they come later.
+    # Equations are found by what stands in them, and figures are many and seldom
+    # what is looked for: they come later.
     first = [one for one in entries if one["kind"] not in LATER]
     last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
     words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
@@ -296,11 +295,11 @@ def row(entry):
 
 
 def write(site):
-    """Write the palette with its index as one script: it answers from a disk, too, where pages may
-    fetch nothing.
+    """Write the palette with its index as one script: it answers from a disk,
+    too, where pages may fetch nothing.
 
-    The words of the text and the formulas, which weigh more than all the rest, come after it, as
-    another script.
+    The words of the text and the formulas, which weigh more than all the rest,
+    come after it, as another script.
     """
     flags = [
         "--bundle",
@@ -339,6 +338,5 @@ def setup(app):
     app.connect("builder-inited", begin)
     app.connect("html-collect-pages", add_page)
     app.connect("html-page-context", add_address)
-    app.connect(
-        "build-finished", finish, priority=970
-    )  # when all pages are written, before they name its version
+    # When all pages are written, before they name its version.
+    app.connect("build-finished", finish, priority=970)

@@ -22,13 +22,12 @@ def picture(sheet, dcm, ghost=None):
 
 
 _TASKS = {
-    "match": "The box is to be turned until its matrix is a given one; where that is, "
-    "is not shown.",
-    "undo": "The box has been turned, and is to be turned back to where its triad lies "
-    "on that of N.",
-    "ghost": "A second box, E, shows where three turns of a ghost have led; the axes of "
-    "its turns are "
-    "to be found.",
+    "match": "The box is to be turned until its matrix is a given one; where that is, is not "
+    "shown.",
+    "undo": "The box has been turned, and is to be turned back to where its triad lies on that of "
+    "N.",
+    "ghost": "A second box, E, shows where three turns of a ghost have led; the axes of its turns "
+    "are to be found.",
 }
 
 
@@ -39,9 +38,9 @@ def drawing(figure, Sheet):
     ]
     sheet = Sheet(
         "A box with the triad of A, and from the same origin the triad of N. "
-        f"{_TASKS[figure.task]} Along N, the unit "
-        f"vectors of A are {', '.join(rows).replace('-0.00', '0.00')}. A turn of "
-        f"{math.degrees(figure.remaining):.0f} degrees remains.",
+        f"{_TASKS[figure.task]} Along N, the unit vectors of A are "
+        f"{', '.join(rows).replace('-0.00', '0.00')}. "
+        f"A turn of {math.degrees(figure.remaining):.0f} degrees remains.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.dcm, figure.goal if figure.task == "ghost" else None)

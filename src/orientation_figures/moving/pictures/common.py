@@ -18,14 +18,14 @@ def around(sheet, axis, angle, start, *, colour="muted", head=False, kind=""):
 
 
 def chain(turns, kind="body", start=simple_dcm("z", 0.0)):
-    """The direction cosine matrices of the first frame and of every further one with respect to
-    N.
+    """The direction cosine matrices of the first frame and of
+    every further one with respect to N.
     """
     frames = [start]
     for axis, angle in turns:
         turn = simple_dcm(axis, angle)
-        # A turn about the frame's own unit vector multiplies from the left, one about N's from the
-        # right.
+        # A turn about the frame's own unit vector multiplies from the
+        # left, one about N's from the right.
         frames.append(multiply(turn, frames[-1]) if kind == "body" else multiply(frames[-1], turn))
     return frames
 

@@ -17,8 +17,8 @@ SYMBOLS = (r"$\psi$", r"$\theta$", r"$\varphi$")
 
 
 def device(angles, sequence):
-    """Return the frames as rows along A, the indices of the axes in the sequence, and the axes
-    themselves.
+    """Return the frames as rows along A, the indices of the axes in the
+    sequence, and the axes themselves.
     """
     B, b, c = [simple_dcm(axis, angle) for axis, angle in zip(sequence, angles)]
     C = multiply(b, B)
@@ -28,8 +28,8 @@ def device(angles, sequence):
 
 
 def picture(sheet, gimbal, close=False, lit=None):
-    """Near gimbal lock (``close``) the first and the third axis stand out; ``lit`` is the number
-    that is touched.
+    """Near gimbal lock (``close``) the first and the third axis stand out;
+    ``lit`` is the number that is touched.
     """
     B, C, D = gimbal["B"], gimbal["C"], gimbal["D"]
     at, axes = gimbal["at"], gimbal["axes"]
@@ -37,8 +37,8 @@ def picture(sheet, gimbal, close=False, lit=None):
     def near(direction):
         return -1 if dot(direction, sheet.view[2]) < 0 else 1
 
-    # Shells about one centre, from the camera outwards: the near half of each lies above all that
-    # is in it.
+    # Shells about one centre, from the camera outwards: the near half of
+    # each lies above all that is in it.
     down = scale(-1, axes[0])
     sheet.layer = 6 * near(down)
     sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, "A")
@@ -74,8 +74,8 @@ def picture(sheet, gimbal, close=False, lit=None):
             sheet.layer = 7 * near(arm)
             begin = (INNER if k == 2 else OUTER) + 0.1
             sheet.line([scale(begin, arm), scale(END, arm)], colour, "thick" if same else "guide")
-        # At lock the names of the two axes stand side by side, also where the axes point opposite
-        # ways.
+        # At lock the names of the two axes stand side by side, also
+        # where the axes point opposite ways.
         end = scale(-END if same and dot(axis, axes[0]) < 0 else END, axis)
         sheet.layer = 7 * near(end)
         sheet.turn(axis, 4.4, rests[k], radius=0.16, origin=scale(0.9, end), colour=colour)
@@ -115,11 +115,10 @@ def drawing(figure, Sheet):
     )
     sheet = Sheet(
         "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each "
-        "turned from the "
-        f"one before about an axis that both share: {spoken}. The axes of psi and phi are "
-        f"{math.degrees(figure.margin):.0f} degrees apart; at 0 the gimbal is locked. Beside it "
-        "stand the triads "
-        "of A and D.",
+        f"turned from the one before about an axis that both share: {spoken}. "
+        f"The axes of psi and phi are {math.degrees(figure.margin):.0f} degrees apart; at 0 the "
+        "gimbal is locked. "
+        "Beside it stand the triads of A and D.",
         view=view_from(math.radians(58), math.radians(22)),
         scale=SIZE,
     )

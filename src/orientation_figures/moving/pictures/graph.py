@@ -14,8 +14,8 @@ CORNERS = ((-19, 18), (-19, -18), (19, 18), (19, -18))
 
 
 def places(edges):
-    """Return where each frame is drawn, pixels to the right and down: its depth in the tree, and
-    its line.
+    """Return where each frame is drawn, pixels to the right and down: its
+    depth in the tree, and its line.
     """
     children, depth, line, leaves = {"N": []}, {"N": 0}, {}, []
     names = ["N", *[edge[0] for edge in edges]]
@@ -65,9 +65,8 @@ def picture(sheet, edges, dcms, path):
         sheet.triad(name, dcms[name], origin=place, length=reach, labels=["", "", ""])
         tips = [sheet.on_sheet(scale(reach, row)) for row in dcms[name]]
         for k, row in enumerate(dcms[name]):
-            if (
-                length(tips[k]) > SHORT
-            ):  # an arrow that points at the reader or away has no room for its letter
+            # An arrow that points at the reader or away has no room for its letter.
+            if length(tips[k]) > SHORT:
                 sheet.label(add(place, scale(reach + 0.1, row)), f"${AXES[k]}$", name, [0, 0], 14)
         best, most = CORNERS[0], 0
         for corner in CORNERS:
@@ -84,9 +83,9 @@ def drawing(figure, Sheet):
         for frame, reference, axis, angle in figure.edges
     )
     sheet = Sheet(
-        f"A tree of frames, each drawn as a small triad. {words}. The path from {figure.source} to "
-        f"{figure.target} is "
-        f"marked: {figure.path}.",
+        "A tree of frames, each drawn as a small triad. "
+        f"{words}. "
+        f"The path from {figure.source} to {figure.target} is marked: {figure.path}.",
         scale=SIZE,
     )
     frames = figure.frames

@@ -40,13 +40,8 @@ STRINGS = [
 ]
 THROAT = ((0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0))
 HANDLE = ((-0.24, 0, 0), (-0.85, 0, 0))
-COVER = (
-    (-1, -1),
-    (1, -1),
-    (1, 1),
-    (-1, 1),
-    (-1, -1),
-)  # the widest cut through the middle of a block
+# The widest cut through the middle of a block.
+COVER = ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))
 LONGEST_EDGE = 1.4
 
 
@@ -57,8 +52,8 @@ def body_of(moments):
 
 
 def edges_of(moments):
-    """Return the edges of a uniform block: about each axis the moment is that of the two other
-    edges squared.
+    """Return the edges of a uniform block: about each axis the moment is
+    that of the two other edges squared.
     """
     edges = [math.sqrt(max(sum(moments) / 2 - moment, 0)) for moment in moments]
     return scale(LONGEST_EDGE / max(edges), edges)
@@ -78,8 +73,8 @@ def outlines_of(moments):
 
 
 def placed(points, dcm):
-    """Components along N of points along A: the rows of the matrix are A's unit vectors, skewed or
-    not.
+    """Components along N of points along A: the rows of the matrix are
+    A's unit vectors, skewed or not.
     """
     columns = transpose(dcm)
     return [times(columns, point) for point in points]
@@ -190,22 +185,17 @@ def drawing(figure, Sheet):
     )
     sheet = Sheet(
         f"A {figure.body} that spins freely about its {figure.axis} axis, with the moments of "
-        "inertia "
-        f"{', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, drawn "
-        "with its triad A as "
-        "its "
-        f"{_DESCRIPTIONS[figure.description]} says after {run['time'][-1]:.1f} seconds, "
-        f"{restored}, with the "
-        f"{_METHODS[figure.method]} method in steps of {1000 * figure.step:g} milliseconds. It "
-        f"{times}. "
+        f"inertia {', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, "
+        f"drawn with its triad A as its {_DESCRIPTIONS[figure.description]} says after "
+        f"{run['time'][-1]:.1f} seconds, {restored}, with the {_METHODS[figure.method]} method in "
+        f"steps of {1000 * figure.step:g} milliseconds. "
+        f"It {times}. "
         f"The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is not "
-        "orthogonal by "
-        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. Dashed: the "
-        "reference, "
-        "computed with steps ten times finer; the angular velocity of those steps is given to "
-        "every description. "
-        "The arrow H is the angular momentum, which keeps its direction. In the corner stands the "
-        "triad of N.",
+        f"orthogonal by {_words(fault)}, and the orientation is wrong by {_words(error)} radians. "
+        "Dashed: the reference, computed with steps ten times finer; the angular velocity of those "
+        "steps is given to every description. "
+        "The arrow H is the angular momentum, which keeps its direction. "
+        "In the corner stands the triad of N.",
         scale=SIZE,
     )
     reference = dcm_from_quaternion(run["reference"][-1])
@@ -236,18 +226,16 @@ def plot(figure, Sheet):
         [margins[max(0, k - every + 1) : k + 1].min() for k in range(0, len(margins), every)]
     )
     last = "; ".join(
-        f"{title}, not orthogonal by {_words(faults[name][-1])}, error "
-        f"{_words(errors[name][-1])} radians"
+        f"{title}, not orthogonal by {_words(faults[name][-1])}, error {_words(errors[name][-1])} "
+        "radians"
         for name, title in _DESCRIPTIONS.items()
     )
     sheet = Sheet(
         f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} "
-        "seconds. Above, "
-        "on a "
-        "logarithmic scale, by how much each description is not orthogonal; in the middle, its "
-        "error against the "
-        "reference; below, the margin of the Euler angles to gimbal lock, at the least "
-        f"{margin.min():.0f} degrees. "
+        "seconds. "
+        "Above, on a logarithmic scale, by how much each description is not orthogonal; in the "
+        "middle, its error against the reference; below, the margin of the Euler angles to gimbal "
+        f"lock, at the least {margin.min():.0f} degrees. "
         f"At the last: {last}."
     )
     sheet.paint(axes)

@@ -32,10 +32,10 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", figure.dcm)
     ]
     sheet = Sheet(
-        "A phone, frame B, and the triad of the ground N: n x east, n y north, n z up. The phone "
-        "is turned by "
-        f"alpha {alpha}, beta {beta} and gamma {gamma} degrees, body fixed z-x-y. Along N, b "
-        f"{', b '.join(rows)}. "
+        "A phone, frame B, and the triad of the ground N: n x east, n y north, n z up. "
+        f"The phone is turned by alpha {alpha}, beta {beta} and gamma {gamma} degrees, body fixed "
+        "z-x-y. "
+        f"Along N, b {', b '.join(rows)}. "
         "b x points to the right across the screen, b y to its top, b z out of it.",
         scale=SIZE,
     )

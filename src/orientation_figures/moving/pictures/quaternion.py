@@ -1,5 +1,5 @@
-"""The picture of the quaternion and its double, and of three ways from one orientation to
-another.
+"""The picture of the quaternion and its double, and of three
+ways from one orientation to another.
 """
 
 import math
@@ -37,8 +37,8 @@ TOPS = (30, 60, 90, 120, 180, 360, 720)
 
 
 def double(sheet, axis, angle, dcm, more):
-    """A frame that turns in N, and beside it the circle of half the angle with q, and -q if there
-    is ``more``.
+    """A frame that turns in N, and beside it the circle of half the angle
+    with q, and -q if there is ``more``.
     """
     knob, sizes = scale(KNOB, axis), [abs(entry) for entry in axis]
     far = IDENTITY[sizes.index(min(sizes))]
@@ -130,8 +130,8 @@ def ways(sheet, ends, tracks, speeds, now, raw, k, share):
 
 
 def plotted(speeds):
-    """Return the top of the scale, the pieces of each way's curve below it, and the fastest speed
-    if it is cut off.
+    """Return the top of the scale, the pieces of each way's curve below it, and
+    the fastest speed if it is cut off.
 
     Speeds come in radians per second, and all else is in degrees.
     """
@@ -177,15 +177,14 @@ def _double(figure, Sheet):
     half = figure.angle / 2
     q = ", ".join(f"{entry:.3f}" for entry in figure.quaternion)
     sheet = Sheet(
-        f"The triad of N, and from the same origin the triad of A, turned from N through theta, "
+        "The triad of N, and from the same origin the triad of A, turned from N through theta, "
         f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
-        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). Beside it a circle of radius 1 "
-        "with the "
-        "scalar part of a quaternion to the right and its part along e upwards. The point q "
-        "stands at half the angle, "
-        f"{math.degrees(half):.0f} degrees{', and minus q opposite to it' if figure.more else ''}. "
-        f"q is ({q}), scalar "
-        f"first{'; minus q is the same orientation' if figure.more else ''}.",
+        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). "
+        "Beside it a circle of radius 1 with the scalar part of a quaternion to the right and its "
+        "part along e upwards. "
+        f"The point q stands at half the angle, {math.degrees(half):.0f} "
+        f"degrees{', and minus q opposite to it' if figure.more else ''}. "
+        f"q is ({q}), scalar first{'; minus q is the same orientation' if figure.more else ''}.",
         scale=SIZE,
     )
     return sheet.paint(double, figure.axis, figure.angle, figure.dcm, figure.more)
@@ -209,22 +208,16 @@ def _ways(figure, Sheet):
     )
     sheet = Sheet(
         f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the "
-        "orientation of A to "
-        "that of "
-        f"B, a turn of {math.degrees(angle_between(*ends)):.0f} degrees: of C by slerp, an even "
-        "turn about "
-        "one axis; "
-        "of D by interpolated Euler angles z-x-y; of E, the same way as C but at another pace, by "
-        "the matrix "
-        "nearest to interpolated entries. A "
-        "straight dashed line inside the sphere shows where the blended entries lead before they "
+        f"orientation of A to that of B, a turn of {math.degrees(angle_between(*ends)):.0f} "
+        "degrees: of C by slerp, an even turn about one axis; of D by interpolated Euler angles "
+        "z-x-y; of E, the same way as C but at another pace, by the matrix nearest to interpolated "
+        "entries. "
+        "A straight dashed line inside the sphere shows where the blended entries lead before they "
         "are repaired. "
         f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D "
-        "and E are "
-        f"{now[0]}, {now[1]} and {now[2]} "
-        f"degrees per second, and the blended rows have the lengths "
-        f"{', '.join(f'{size:.2f}' for size in map(length, raw))}. Below, the three speeds over "
-        f"time{cut}.",
+        f"and E are {now[0]}, {now[1]} and {now[2]} degrees per second, and the blended rows have "
+        f"the lengths {', '.join(f'{size:.2f}' for size in map(length, raw))}. "
+        f"Below, the three speeds over time{cut}.",
         scale=BALL,
     )
     return sheet.paint(

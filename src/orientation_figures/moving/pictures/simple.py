@@ -32,10 +32,9 @@ def drawing(figure, Sheet):
     ]
     sheet = Sheet(
         "The triads of the frames N and A from one origin, and a weather vane that belongs to A. "
-        "The frames share "
-        f"{figure.axis}, and A is turned about it through theta, {math.degrees(figure.angle):.0f} "
-        "degrees. Along N, "
-        f"{', '.join(rows)}.",
+        f"The frames share {figure.axis}, and A is turned about it through theta, "
+        f"{math.degrees(figure.angle):.0f} degrees. "
+        f"Along N, {', '.join(rows)}.",
         scale=SIZE,
     )
     return sheet.paint(picture, AXES.index(figure.axis), figure.angle, figure.dcm)

@@ -34,8 +34,8 @@ def axis_of(frames, turns, kind, k):
 
 
 def picture(sheet, turns, kind, share, compare, lit=False):
-    """Where a number is touched (``lit``) the frames on the way step back, as they do beside a
-    second chain.
+    """Where a number is touched (``lit``) the frames on the way step back,
+    as they do beside a second chain.
     """
     now = partly(turns, share)
     frames = chain(now, kind)
@@ -60,8 +60,8 @@ def picture(sheet, turns, kind, share, compare, lit=False):
         other_frames = chain(other_now, other_kind)
         if last:
             between, angle = axis_angle_from_dcm(multiply(other_frames[-1], transpose(end)))
-            # The axis between two orientations has the same components in both: along N it is found
-            # through either.
+            # The axis between two orientations has the same components in both: along
+            # N it is found through either.
             if angle > 0.02:
                 for row in end:
                     around(sheet, times(transpose(end), between), angle, row)
@@ -103,9 +103,8 @@ def drawing(figure, Sheet):
 def _words(figure, now, frames):
     about = ["n" if figure.fixed == "space" else letter.lower() for letter in LETTERS]
     steps = "; ".join(
-        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {math.degrees(angle):.0f} "
-        "degrees about "
-        f"{about[k]} {axis}"
+        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {math.degrees(angle):.0f} degrees "
+        f"about {about[k]} {axis}"
         for k, (axis, angle) in enumerate(now)
     )
     rows = [
@@ -115,8 +114,7 @@ def _words(figure, now, frames):
     end = LETTERS[len(now)]
     words = (
         f"The triads of the frames {', '.join(LETTERS[: len(now) + 1])} from one origin, and below "
-        "them each "
-        f"frame by itself, in order, with a small box that turns with it. "
+        "them each frame by itself, in order, with a small box that turns with it. "
     )
     words += f"{steps}. " if steps else "No turn has been made yet. "
     words += f"Along N, the unit vectors of {end} are {', '.join(rows)}."
@@ -128,7 +126,6 @@ def _words(figure, now, frames):
         )
         words += (
             f" A second chain, {kind}, ends in the frame E; a turn of "
-            f"{math.degrees(figure.angle_between):.1f} "
-            f"degrees lies between the two ends."
+            f"{math.degrees(figure.angle_between):.1f} degrees lies between the two ends."
         )
     return words

@@ -28,12 +28,11 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", figure.dcm)
     ]
     sheet = Sheet(
-        "The triad of frame N, and from the same origin the triad of A: turned from N "
-        "through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the "
-        "components "
-        f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. Along N, a "
-        f"{', a '.join(rows)}. Thin arcs show the way of each tip, all about e.",
+        "The triad of frame N, and from the same origin the triad of A: turned from N through "
+        f"theta, {math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the "
+        f"components ({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. "
+        f"Along N, a {', a '.join(rows)}. "
+        "Thin arcs show the way of each tip, all about e.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.axis, figure.angle, figure.dcm)

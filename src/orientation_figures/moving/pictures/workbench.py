@@ -40,9 +40,9 @@ def drawing(figure, Sheet):
     said = " ".join(str(found).splitlines())
     sheet = Sheet(
         "Two pairs of triads side by side, each the triad of the frame N and from the same origin "
-        "another: on the left "
-        "that of A, as the first program's numbers are read, on the right that of B, as the "
-        f"second's. {said}",
+        "another: on the left that of A, as the first program's numbers are read, on the right "
+        "that of B, as the second's. "
+        f"{said}",
         scale=SIZE,
     )
     dcms = [None, None]

@@ -75,8 +75,8 @@ def run_job(job: bytes, name: str) -> bytes:
 
 
 class _PlainData(pickle.Unpickler):
-    """Reads pickles of texts, bytes, numbers, lists and the like, which can do nothing; Dask wraps
-    some in others.
+    """Reads pickles of texts, bytes, numbers, lists and the like, which can do
+    nothing; Dask wraps some in others.
     """
 
     def find_class(self, module: str, name: str) -> object:
@@ -102,8 +102,8 @@ def plain_data(data: bytes, *, buffers: Iterable[object] = ()) -> object:
 
 @contextlib.contextmanager
 def no_pickles() -> Iterator[None]:
-    """Have this process, as a client of Dask, run nothing by unpickling what a worker or the
-    scheduler sends.
+    """Have this process, as a client of Dask, run nothing by unpickling what
+    a worker or the scheduler sends.
 
     Naming the serializers of the results is not enough: the types of results, errors and warnings
     come as pickles of their own.
@@ -131,8 +131,8 @@ def run_on_cluster(
     keys: Path | None = None,
     allow_weak_isolation: bool = False,
 ) -> Iterator[Result]:
-    """Run jobs on the cluster at an address; give the results as they come. ``keys`` is the folder
-    of its keys.
+    """Run jobs on the cluster at an address; give the results as they come.
+    ``keys`` is the folder of its keys.
 
     Raises
     ------
@@ -179,8 +179,8 @@ def run_on_cluster(
             try:
                 answer = json.loads(future.result())
             except Exception as error:
-                # What a worker did comes as a pickle, which stays one: an error of the connection
-                # is our own client's.
+                # What a worker did comes as a pickle, which stays one: an error of the
+                # connection is our own client's.
                 if client.status != "running" or isinstance(
                     error, (FutureCancelledError, CancelledError, OSError)
                 ):
@@ -188,8 +188,8 @@ def run_on_cluster(
                         f"The scheduler at {address} was lost. What was graded is kept; the same "
                         "command goes on."
                     ) from None
-                # An error comes as a pickle, and stays one. That worker after worker died is no
-                # secret in it.
+                # An error comes as a pickle, and stays one. That worker after
+                # worker died is no secret in it.
                 if not any(
                     b"KilledWorker" in part for part in error.args if isinstance(part, bytes)
                 ):
@@ -215,8 +215,8 @@ def _security(keys: Path | None) -> Security | None:
 
 
 def _leave(client: Client, name: str) -> None:
-    """End the sandboxes of the workers. Where the scheduler is gone, its workers end with it:
-    nobody is to be told.
+    """End the sandboxes of the workers. Where the scheduler is gone, its workers
+    end with it: nobody is to be told.
     """
     if client.status == "running":
         with contextlib.suppress(OSError):  # it may be lost at this very moment
@@ -224,8 +224,8 @@ def _leave(client: Client, name: str) -> None:
 
 
 def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
-    """A worker may have been captured by what it ran: what it sends is looked at like what a
-    notebook sends.
+    """A worker may have been captured by what it ran: what it sends is
+    looked at like what a notebook sends.
     """
     try:
         about = Fields(answer, "what a worker sent")

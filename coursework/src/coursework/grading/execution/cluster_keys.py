@@ -74,8 +74,8 @@ def options(folder: Path) -> list[str]:
     for name in (CERTIFICATE, KEY):
         if not (folder / name).exists():
             raise NoKeys(
-                f"There is no {folder / name}. Copy the folder from the machine where the "
-                "scheduler is."
+                f"There is no {folder / name}. "
+                "Copy the folder from the machine where the scheduler is."
             )
     certificate, key = str(folder / CERTIFICATE), str(folder / KEY)
     return ["--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key]
@@ -127,7 +127,6 @@ def demand_keys(address: str, folder: Path | None) -> None:
     elif urlsplit(address if "://" in address else f"tcp://{address}").hostname not in LOOPBACK:
         raise NoKeys(
             f"The scheduler at {address} asks for no key: whoever can reach it runs code on all of "
-            "its machines, and "
-            "could send any results. Start one with `coursework cluster --keys FOLDER`, and name "
-            "it as tls://..."
+            "its machines, and could send any results. "
+            "Start one with `coursework cluster --keys FOLDER`, and name it as tls://..."
         )

@@ -1,7 +1,7 @@
 """An event loop for cells that await something, where no socket may be opened.
 
-The loops of the standard library wake themselves up through a pair of sockets; this one does
-through a pipe.
+The loops of the standard library wake themselves up through a pair of
+sockets; this one does through a pipe.
 """
 
 import asyncio

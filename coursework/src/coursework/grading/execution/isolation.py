@@ -1,5 +1,5 @@
-"""What keeps a student's code apart from the machine, in layers that are tried before they are
-trusted.
+"""What keeps a student's code apart from the machine, in layers that
+are tried before they are trusted.
 
 Each layer alone stops something; together they must stop every attempt of :data:`ATTEMPTS`, and it
 is tried at each start whether they do. Student code is not run otherwise.
@@ -60,12 +60,12 @@ LIMITS, PRIVILEGES = "resource limits", "no privileges"
 LAYERS = (NAMESPACES, LANDLOCK, SECCOMP, LIMITS, PRIVILEGES)
 
 HOW_TO_GET = {
-    NAMESPACES: "install bubblewrap, or allow unprivileged user namespaces "
-    "(sysctl kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu), or start as root",
+    NAMESPACES: "install bubblewrap, or allow unprivileged user namespaces (sysctl "
+    "kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu), or start as root",
     LANDLOCK: "use Linux 6.2 or newer with Landlock enabled (lsm=landlock,... on the kernel's "
     "command line)",
-    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that "
-    "forbids them",
+    SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids "
+    "them",
     LIMITS: "start grading where the limits of memory, time and files may be lowered",
     PRIVILEGES: "start grading as an ordinary user, or as root with the right to change users",
 }
@@ -245,8 +245,8 @@ def bubblewrap_command(bubblewrap: str, readable: Iterable[str]) -> list[str]:
 
 
 def unshare_all() -> None:
-    """Leave the machine's namespaces; the process that is forked next is the first of the new
-    ones.
+    """Leave the machine's namespaces; the process that is forked
+    next is the first of the new ones.
     """
     others = (
         CLONE_NEWNS | CLONE_NEWUTS | CLONE_NEWIPC | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWCGROUP
@@ -265,15 +265,15 @@ def unshare_all() -> None:
 
 
 def unshare_processes() -> None:
-    """Have the process that is forked next be the first of a namespace in which only those below it
-    are seen.
+    """Have the process that is forked next be the first of a namespace in
+    which only those below it are seen.
     """
     _call("unshare", _library.unshare(CLONE_NEWPID))
 
 
 def enter_own_root(readable: Iterable[str]) -> None:
-    """Change to a root folder that holds `readable`, a few devices and a scratch folder, and is
-    read only.
+    """Change to a root folder that holds `readable`, a few devices and a
+    scratch folder, and is read only.
     """
     _call("mount", _library.mount(None, b"/", None, MS_REC | MS_PRIVATE, None))
     trees = []
@@ -402,8 +402,8 @@ def limit_resources(limits: LimitsOfChild, memory_in_use: int, threads_in_use: i
         (resource.RLIMIT_FSIZE, limits["file_bytes"]),
         (resource.RLIMIT_NOFILE, limits["open_files"]),
         (resource.RLIMIT_NPROC, threads_in_use + limits["threads"]),
-        # Not 0: a program that handles crashes is started for that all the same, and for 1 it is
-        # not (core(5)).
+        # Not 0: a program that handles crashes is started for that all the same,
+        # and for 1 it is not (core(5)).
         (resource.RLIMIT_CORE, 1),
         (resource.RLIMIT_MEMLOCK, 0),
         (resource.RLIMIT_MSGQUEUE, 0),
@@ -450,10 +450,9 @@ def user_for_students(preferred: int, uid_map: str) -> int:
             return user
     raise RuntimeError(
         "Here is no other user than root, as in a container or namespace of one user, so that "
-        "student code could not "
-        "be run as anybody else. Start the grading as an ordinary user, or in a container that has "
-        "more users "
-        "(unshare --map-auto, podman --userns=auto)."
+        "student code could not be run as anybody else. "
+        "Start the grading as an ordinary user, or in a container that has more users (unshare "
+        "--map-auto, podman --userns=auto)."
     )
 
 

@@ -194,8 +194,8 @@ def warm_up() -> None:
     import sympy
 
     to_plain(sympy.Matrix([[sympy.cos(sympy.Symbol("a")), 0.5]]))
-    # A child that looked through all modules itself would get a copy of every page that one of
-    # their names is on.
+    # A child that looked through all modules itself would get a copy of every
+    # page that one of their names is on.
     OURS[:] = [name for name in sys.modules if name.partition(".")[0] == "coursework"]
 
 
@@ -213,9 +213,8 @@ def run(job: int, records: int, secret: int, limits: LimitsOfChild, folder: str)
     with open(job, "rb") as file:
         given: Job = json.load(file)
     random.seed(given["seed"])
-    gc.set_threshold(
-        20_000, 20, 50
-    )  # a short life: what goes round in circles is seldom worth looking for
+    # A short life: what goes round in circles is seldom worth looking for.
+    gc.set_threshold(20_000, 20, 50)
     sys.modules["numpy"].random.seed(given["seed"])
     _Notebook(given, records, secret, limits, folder).run()
 
@@ -252,8 +251,8 @@ class _Notebook:
         for index in self.job["order"]:
             if ("cell", index) not in self.skipped:
                 self.cell = index
-                # As Jupyter numbered it when it was run last; a cell that never ran follows the one
-                # before.
+                # As Jupyter numbered it when it was run last; a cell that
+                # never ran follows the one before.
                 self.number = self.job["numbers"][index] or (self.number or 0) + 1
                 if isinstance(self.names.get("In"), dict):
                     self.names["In"][self.number] = self.job["cells"][index]
@@ -282,8 +281,8 @@ class _Notebook:
             if question not in self.functions or ("answer", question) in self.skipped:
                 continue
             function, names = self.functions[question]
-            # As it was when it was checked, though a later cell may have used its names for
-            # something else.
+            # As it was when it was checked, though a later cell may have used
+            # its names for something else.
             self.names.clear()
             self.names.update(names)
             record: Record = {"secret": question}
@@ -327,8 +326,8 @@ class _Notebook:
         warnings.simplefilter("ignore")
 
     def execute(self, source: str) -> None:
-        """Run source as a notebook's cell is run; the value of its last line becomes ``_`` and
-        ``Out[number]``.
+        """Run source as a notebook's cell is run; the value of its last line
+        becomes ``_`` and ``Out[number]``.
         """
         name = f"<cell {self.cell}>"
         tree = self.parsed(source, name)
@@ -345,8 +344,8 @@ class _Notebook:
                 self.keep(value)
 
     def parsed(self, source: str, name: str) -> ast.Module:
-        """The syntax tree of a cell. What is Python as it stands has no magics, and is not searched
-        for them.
+        """The syntax tree of a cell. What is Python as it stands has no
+        magics, and is not searched for them.
         """
         if PROMPT not in source:
             with contextlib.suppress(SyntaxError, ValueError):
@@ -490,8 +489,8 @@ class _Notebook:
 
     @staticmethod
     def moment() -> tuple[float, float, int]:
-        """The time by the clock and of the processor, and how often this process gave it away by
-        itself.
+        """The time by the clock and of the processor, and how often this
+        process gave it away by itself.
         """
         return (
             time.monotonic(),
@@ -540,8 +539,8 @@ class _Notebook:
             self.writing = False
 
     def described(self, error: BaseException) -> Record:
-        """An error as text: its type, its message, and the line of the cell. May run student
-        code.
+        """An error as text: its type, its message, and the line of
+        the cell. May run student code.
         """
         try:
             self.start_timers(0.2, 0.4)

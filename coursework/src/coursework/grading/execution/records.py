@@ -1,5 +1,5 @@
-"""The records of a notebook's process, read as what they are: bytes that a student may have
-written.
+"""The records of a notebook's process, read as what they are:
+bytes that a student may have written.
 
 What does not have exactly the form of a record is counted and dropped. Nothing is repaired.
 """

@@ -83,8 +83,8 @@ Message = TypedDict(
 
 
 class WeakIsolation(RuntimeError):
-    """This machine cannot keep student code apart well enough; says what is missing and how to get
-    it.
+    """This machine cannot keep student code apart well enough; says
+    what is missing and how to get it.
     """
 
 
@@ -267,8 +267,8 @@ class Sandbox:
         return True
 
     def target(self, stack: contextlib.ExitStack) -> Target:
-        """What the isolation is tried on: two ports and a local socket of our own, and later a
-        file.
+        """What the isolation is tried on: two ports and a local
+        socket of our own, and later a file.
         """
         tcp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_STREAM))
         udp = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
@@ -300,8 +300,8 @@ class Sandbox:
                 handles = (other.fileno(), processes)
                 self.process = subprocess.Popen(
                     [
-                        # First a process that removes the folder at the end, also if this one is
-                        # killed.
+                        # First a process that removes the folder at the end,
+                        # also if this one is killed.
                         sys.executable,
                         "-I",
                         "-S",
@@ -342,8 +342,8 @@ class Sandbox:
             os.close(processes)
         start = {
             "without": sorted(self.without),
-            # Not before there is somebody to tidy up: a folder that is open to all is not left
-            # behind.
+            # Not before there is somebody to tidy up: a folder that is
+            # open to all is not left behind.
             "target": target | {"files": [file_outside(self.base)]},
             "base": self.base,
             "namespaces made by": made_by,
@@ -414,17 +414,16 @@ class Sandbox:
 
     def remove_base(self) -> None:
         if self.base is not None:
-            with contextlib.suppress(
-                FileNotFoundError
-            ):  # the process that waits for the end removes it too
+            # The process that waits for the end removes it too.
+            with contextlib.suppress(FileNotFoundError):
                 scratch.remove_folder(self.base)
             self.base = None
 
     # -- one notebook
 
     def run(self, job: Job) -> Result:
-        """Run one notebook; give its result. A worker that dies is replaced, and the job tried
-        again.
+        """Run one notebook; give its result. A worker that dies is
+        replaced, and the job tried again.
         """
         for _ in range(ATTEMPTS_OF_A_JOB):
             try:
@@ -490,8 +489,8 @@ class _Run:
         }
 
     def try_order_of_execution(self, answers: dict[str, Answer]) -> None:
-        """Fill in the answers that the notebook gives only in the order in which its cells once
-        ran.
+        """Fill in the answers that the notebook gives only in the
+        order in which its cells once ran.
         """
         cells = self.job["cells"]
         moments: list[int] = []
@@ -614,17 +613,16 @@ class _Once:
     def watch(self) -> None:
         """Start the child, take its records, keep its time; return when all of it is gone."""
         with contextlib.ExitStack() as stack:
-            # What it gets and what it gives; the secret calls are written when it has nothing more
-            # to give.
+            # What it gets and what it gives; the secret calls are written
+            # when it has nothing more to give.
             ends = [os.memfd_create("job"), *os.pipe(), *os.pipe()]
             handles: list[IO[bytes]] = [
                 stack.enter_context(open(end, mode, 0))
                 for end, mode in zip(ends, ("rb+", "rb", "wb", "rb", "wb"), strict=True)
             ]
             job, reading, writing, secret, self.secret = handles
-            os.set_blocking(
-                secret.fileno(), False
-            )  # to a notebook that reads it too early it is empty
+            # To a notebook that reads it too early it is empty.
+            os.set_blocking(secret.fileno(), False)
             job.write(self.job)
             job.seek(0)
             self.sandbox.send(
@@ -637,8 +635,8 @@ class _Once:
         self.conclude(ended)
 
     def tell_the_secret(self) -> None:
-        """Give the secret calls; what does not fit into the pipe at once is not given, and nobody
-        waits.
+        """Give the secret calls; what does not fit into the pipe at once
+        is not given, and nobody waits.
         """
         data = json.dumps(self.secret_calls).encode() if self.secret_calls else b""
         with contextlib.suppress(OSError):
@@ -693,8 +691,8 @@ class _Once:
         return bool(data)
 
     def give_back(self) -> bool:
-        """Put all deadlines off by the time in which the machine was busy with others; whether
-        there was any.
+        """Put all deadlines off by the time in which the machine was busy
+        with others; whether there was any.
         """
         if self.process is None:
             self.process = running_below(self.sandbox.warm_parent)
@@ -835,8 +833,8 @@ def given_up(job: Job, why: str) -> Result:
 
 
 def copies_are_apart() -> bool:
-    """Whether copies of a warm parent are as much apart as warm parents that are started one by
-    one.
+    """Whether copies of a warm parent are as much apart as warm
+    parents that are started one by one.
 
     They share its user namespace. There the threads of an ordinary user are counted together, and
     one notebook could take another's; root gives each copy a user of its own.
@@ -845,15 +843,15 @@ def copies_are_apart() -> bool:
 
 
 def new_user() -> int:
-    """A user that nobody else is: root gives the code to it, and its limit of threads counts only
-    these.
+    """A user that nobody else is: root gives the code to it, and its
+    limit of threads counts only these.
     """
     return 1_900_000_000 + random.SystemRandom().randrange(10**8)
 
 
 def end_copy(process: int) -> None:
-    """Wait until the copy of a warm parent has ended, of which the other end of its control is
-    closed.
+    """Wait until the copy of a warm parent has ended, of which the
+    other end of its control is closed.
     """
     with contextlib.suppress(OSError):  # it has ended
         handle = os.pidfd_open(process)
@@ -863,8 +861,8 @@ def end_copy(process: int) -> None:
 
 
 def running_below(process: int | None) -> int | None:
-    """The number of the last process below another: a notebook's, which has none below itself;
-    ``None`` if hidden.
+    """The number of the last process below another: a notebook's, which has none
+    below itself; ``None`` if hidden.
     """
     with contextlib.suppress(OSError, ValueError, IndexError):
         while children := Path(f"/proc/{process}/task/{process}/children").read_text().split():
@@ -874,8 +872,8 @@ def running_below(process: int | None) -> int | None:
 
 
 def kept_waiting(process: int | None) -> float:
-    """The seconds for which a process could have run and others did; 0 where the system does not
-    tell.
+    """The seconds for which a process could have run and others did;
+    0 where the system does not tell.
     """
     try:
         return int(Path(f"/proc/{process}/schedstat").read_text().split()[1]) / 1e9

@@ -1,5 +1,5 @@
-"""Runs a command at the same addresses each time: some of what a notebook works out depends on
-them.
+"""Runs a command at the same addresses each time: some of what a
+notebook works out depends on them.
 
 The system forgets the wish where a program gains rights, and counts root's as gained wherever root
 could have more of them than it has: within bubblewrap. So what is not there is given up first, and

@@ -1,8 +1,8 @@
 """The system calls that student code may make: a seccomp filter, written for x86-64 and ARM64.
 
 What is not on the list is refused. The list is what computing needs: memory, threads, time,
-files (which files is decided elsewhere). It holds no socket, no new process, no other program, no
-other process's memory or signals, no namespaces, no change of modes, owners or limits, and no
+files (which files is decided elsewhere). It holds no socket, no new process, no other program,
+no other process's memory or signals, no namespaces, no change of modes, owners or limits, and no
 memory outside the process (shared segments, anonymous files), so that the resource limits of one
 process are the limits of the notebook.
 

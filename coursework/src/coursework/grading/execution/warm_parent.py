@@ -101,8 +101,8 @@ class Message(TypedDict, total=False):
 
 
 def into_namespaces(control: socket.socket, readable: Iterable[str]) -> str | None:
-    """Continue in namespaces of our own. Returns None, in the process inside, or why it cannot
-    be.
+    """Continue in namespaces of our own. Returns None, in the
+    process inside, or why it cannot be.
     """
     reading, writing = os.pipe()
     outer = os.getpid()
@@ -160,25 +160,24 @@ def load_libraries() -> None:
     sympy.simplify(sympy.trigsimp(target.dcm(source) * target.dcm(source).T))
     third = sympy.Rational(1, 3)
     for inverse in (sympy.asin, sympy.acos, sympy.atan, sympy.acot, sympy.asec, sympy.acsc):
-        inverse(
-            third
-        )  # looks it up in a table of known values, which takes ten milliseconds to make
+        # Looks it up in a table of known values, which takes ten milliseconds to make.
+        inverse(third)
     sympy.atan2(third, 1), sympy.cos(sympy.pi / 5)
     sympy.lambdify(angle, sympy.sin(angle), "numpy")(numpy.zeros(1))
     notebook.warm_up()
 
 
 def about_itself(processes: int, name: str) -> str:
-    """A file of this process's own in /proc, which is a handle here: the folder may be out of
-    sight.
+    """A file of this process's own in /proc, which is a handle
+    here: the folder may be out of sight.
     """
     with open(os.open(f"self/{name}", os.O_RDONLY, dir_fd=processes)) as file:
         return file.read()
 
 
 def into_large_pages(maps: str) -> None:
-    """Have the kernel gather this process's memory in large pages, of which it copies one entry for
-    each to a child.
+    """Have the kernel gather this process's memory in large pages, of which it
+    copies one entry for each to a child.
 
     Of small ones there are 500 times as many, and a child would take milliseconds longer to be made
     and to end. ``maps`` is what the system says of the memory. Where it cannot be done, everything
@@ -237,8 +236,8 @@ class WarmParent:
     # -- one child
 
     def new_scratch(self, layers: Collection[str]) -> str:
-        """The next child's scratch folder: memory that it mounts over the base, or a folder in
-        it.
+        """The next child's scratch folder: memory that it mounts
+        over the base, or a folder in it.
         """
         if self.own_scratch and NAMESPACES in layers:
             return self.base
@@ -334,12 +333,10 @@ class WarmParent:
                 Path(file).read_bytes()
         except OSError as error:
             problems.append(
-                f"the isolated process cannot read Python's own libraries ({error}). Root runs it "
-                "as another user, and "
-                "a umask such as 077 has kept them from all others: let them be read, with `chmod "
-                "-R o+rX` on their "
-                "folder and `chmod o+x` on those above it, or grade as an ordinary user whose own "
-                "they are"
+                f"the isolated process cannot read Python's own libraries ({error}). "
+                "Root runs it as another user, and a umask such as 077 has kept them from all "
+                "others: let them be read, with `chmod -R o+rX` on their folder and `chmod o+x` on "
+                "those above it, or grade as an ordinary user whose own they are"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)
@@ -371,8 +368,8 @@ class WarmParent:
 
     @contextlib.contextmanager
     def file_within(self) -> Iterator[str]:
-        """A file that everybody may change. Namespaces hide the other one that it is tried on from
-        all layers.
+        """A file that everybody may change. Namespaces hide the other one that
+        it is tried on from all layers.
         """
         outside = os.path.join(self.base, f"inside namespaces, {self.user}")
         os.mkdir(outside, 0o777)
@@ -426,8 +423,8 @@ class WarmParent:
             send(self.control, self.run(message["run"], handles))
 
     def copy(self, about: Copy, handle: int) -> None:
-        """Have a copy of this process serve at another handle, as the first process of a namespace
-        of its own.
+        """Have a copy of this process serve at another handle, as the first
+        process of a namespace of its own.
         """
         with contextlib.suppress(ChildProcessError):
             while os.waitpid(-1, os.WNOHANG)[0]:  # copies that have ended
@@ -480,8 +477,8 @@ class WarmParent:
         return {"ended": how, "scratch full": full}
 
     def wait(self, child: int, folder: str | None, most_bytes: int) -> bool:
-        """Wait until the child has ended, must be killed, or has filled its folder on disk (then:
-        True).
+        """Wait until the child has ended, must be killed, or has filled
+        its folder on disk (then: True).
         """
         handle = os.pidfd_open(child)
         watched = [handle, self.control.fileno()]

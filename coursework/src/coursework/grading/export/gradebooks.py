@@ -1,5 +1,5 @@
-"""Hands marks on: into the gradebook that the teacher exported, or as nbgrader and Gradescope want
-them.
+"""Hands marks on: into the gradebook that the teacher exported, or as
+nbgrader and Gradescope want them.
 
 A gradebook is filled in place: only the cells of one column change, and every other byte, with its
 order, quotation marks and line ends, stays as the system wrote it, so that the system takes it
@@ -49,8 +49,8 @@ class CannotExport(ValueError):
 
 
 class Marks:
-    """The points of each student, over one assignment or all, with all decisions, and by the rules
-    of the term.
+    """The points of each student, over one assignment or all, with all
+    decisions, and by the rules of the term.
 
     Parameters
     ----------
@@ -246,8 +246,8 @@ def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
 # --- the systems --------------------------------------------------------------------------------
 
 
-#: What was written into each column of a gradebook, by student: what stands there of these is ours
-#: to change.
+#: What was written into each column of a gradebook, by student: what stands
+#: there of these is ours to change.
 WRITTEN = "exported.json"
 
 
@@ -348,8 +348,8 @@ def fill(
     if dry_run:
         said.append(f"{filled_in} would be filled in: nothing was written.")
     else:
-        # First what is ours: of a crash in between, the next run knows more than it wrote, and
-        # nothing is overlooked.
+        # First what is ours: of a crash in between, the next run knows more than it
+        # wrote, and nothing is overlooked.
         write(marks.store.folder / WRITTEN, as_text(known))
         write(target, bytes(book))
         said.append(f"{filled_in} filled in: {target}")
@@ -425,10 +425,10 @@ def _system(book: Gradebook) -> str:
         return "Canvas"
     raise CannotExport(
         "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or "
-        "Brightspace "
-        "(OrgDefinedId, End-of-Line Indicator), nor one of Moodle in a language that is known here "
-        f"({', '.join(LANGUAGES)}). Say which column is which: --name 'identifier=...' --name "
-        "'grade=...'. "
+        "Brightspace (OrgDefinedId, End-of-Line Indicator), nor one of Moodle in a language that "
+        f"is known here ({', '.join(LANGUAGES)}). "
+        "Say which column is which: --name 'identifier=...' "
+        "--name 'grade=...'. "
         f"Its columns: {', '.join(book.header)[:300]}"
     )
 
@@ -564,8 +564,8 @@ def _keys_of_student(system: str, student: str, identity: Identity) -> Iterator[
 
 
 def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
-    """Write an archive of the pages of feedback, named so that the system which handed the work out
-    takes them back.
+    """Write an archive of the pages of feedback, named so that the system which
+    handed the work out takes them back.
 
     A name begins with what the system wrote of the name of the work. Canvas reads the first two
     numbers between underscores, of the student and of the file, takes no page whose last part
@@ -603,9 +603,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     try:
         with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, page in sorted(pages.items()):
-                entry = zipfile.ZipInfo(
-                    name
-                )  # with a fixed date: the same pages give the same bytes
+                # With a fixed date: the same pages give the same bytes.
+                entry = zipfile.ZipInfo(name)
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 archive.writestr(entry, page.read_bytes())
         os.replace(half, path)

@@ -5,8 +5,8 @@ For each submission it runs ``run_autograder`` in a fresh machine, which finds t
 ``/autograder/submission`` and who handed it in in ``/autograder/submission_metadata.json``, and
 writes ``/autograder/results/results.json``.
 
-The solutions and the secret are in the zip, so students' code is isolated there as everywhere, or
-not run at all.
+The solutions and the secret are in the zip, so students' code is isolated
+there as everywhere, or not run at all.
 """
 
 import io
@@ -61,8 +61,8 @@ def write_autograder(
     solutions: str | Path | None = None,
     roster: str | Path | None = None,
 ) -> Sequence[str]:
-    """Write the zip that Gradescope takes, for one assignment; give the names of the notebooks that
-    make it up.
+    """Write the zip that Gradescope takes, for one assignment; give the names
+    of the notebooks that make it up.
 
     Parameters
     ----------
@@ -113,9 +113,8 @@ def write_autograder(
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for place, content in sorted(files.items()):
-            entry = zipfile.ZipInfo(
-                place
-            )  # with a fixed date: the same autograder is the same bytes
+            # With a fixed date: the same autograder is the same bytes.
+            entry = zipfile.ZipInfo(place)
             entry.compress_type = zipfile.ZIP_DEFLATED
             entry.external_attr = (
                 0o755 if place in ("setup.sh", "run_autograder") else 0o644
@@ -126,8 +125,8 @@ def write_autograder(
 
 
 def requirements() -> list[str]:
-    """All that grading needs beside these packages, in the versions that are installed here: marks
-    follow from them.
+    """All that grading needs beside these packages, in the versions that are
+    installed here: marks follow from them.
     """
     from packaging.requirements import Requirement
 

@@ -21,8 +21,8 @@ from .ledger import Decision, digest_of_answer
 
 
 def answered(case: Case, asked: Asked) -> Case:
-    """The same case, once a notebook was run and asked for this: what was mended by then is its
-    contract.
+    """The same case, once a notebook was run and asked for this: what
+    was mended by then is its contract.
     """
     versions = {name: contract.version for name, contract in asked.second_chances.items()}
     siblings = {
@@ -83,8 +83,8 @@ class Contracts:
         self._kept: set[str] = set()
 
     def keep(self, contract: Contract) -> None:
-        """Keep a question; it holds right answers, so that nobody else on this machine may read
-        it.
+        """Keep a question; it holds right answers, so that nobody
+        else on this machine may read it.
         """
         path = self._path(contract.version)
         if contract.version not in self._kept and not path.exists():
@@ -105,8 +105,8 @@ class Contracts:
 
     @property
     def older(self) -> dict[str, tuple[Contract, Case]]:
-        """What was worked out before there were contracts, by version: each edition of a notebook
-        lies here still.
+        """What was worked out before there were contracts, by version: each
+        edition of a notebook lies here still.
         """
         if self._older is None:
             self._older = {}
@@ -167,8 +167,8 @@ def case_of(
 ) -> Case | None:
     """The case of an answer that was graded; ``None`` if the question was not asked then.
 
-    A record that was made before there were cases says by which version an answer was judged: that
-    is one variant.
+    A record that was made before there were cases says by which version an answer
+    was judged: that is one variant.
     """
     if record.cases is not None:
         return record.cases.get(name)
@@ -183,8 +183,8 @@ def case_of(
 def asked_of(
     name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None
 ) -> Asked:
-    """The question of a case as it is judged now: mended if its variant is still there, or else as
-    it stood.
+    """The question of a case as it is judged now: mended if its variant is
+    still there, or else as it stood.
     """
     by_their_names = variants_of(variants)
 
@@ -193,8 +193,8 @@ def asked_of(
         if not found:
             raise ValueError(
                 f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is "
-                "no contract "
-                f"{place.contract}. Put the variant back into the source, and judge again."
+                f"no contract {place.contract}. "
+                "Put the variant back into the source, and judge again."
             )
         return found
 

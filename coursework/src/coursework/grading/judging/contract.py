@@ -1,5 +1,5 @@
-"""All that marks need of a question: its contract, and what belongs to it where one student is
-asked it.
+"""All that marks need of a question: its contract, and what belongs
+to it where one student is asked it.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ class Elsewhere:
 
     @property
     def digest(self) -> str:
-        """A short text that follows from the calls: answers to other calls are not compared with
-        these.
+        """A short text that follows from the calls: answers to other
+        calls are not compared with these.
         """
         return hashlib.sha256(json.dumps(self.calls).encode()).hexdigest()[:16]
 
@@ -193,8 +193,8 @@ class Contract:
 
     @property
     def judging(self) -> Contract:
-        """What of it decides on answers: a word of the text may be another, or what a line is
-        worth.
+        """What of it decides on answers: a word of the text may be
+        another, or what a line is worth.
         """
         variant = self.question.variant and replace(
             self.question.variant, text="", shown={}, picture=None

@@ -1,5 +1,5 @@
-"""The judge, in a process of its own: an answer that takes it too long, or too much memory, costs
-nobody else a mark.
+"""The judge, in a process of its own: an answer that takes it too long, or too
+much memory, costs nobody else a mark.
 
 What is judged is plain data, and working it out is bounded (:mod:`coursework.checking.evaluate`).
 This is for what nobody thought of: an answer under which the process ends is undecided and named,
@@ -79,10 +79,8 @@ class Judge:
             What was asked is kept nowhere.
         """
         if self.of != os.getpid():
-            self.process, self.of = (
-                None,
-                os.getpid(),
-            )  # a copy of the process has a judge of its own
+            # A copy of the process has a judge of its own.
+            self.process, self.of = (None, os.getpid())
         found: dict[str, Mark] = {}
         while True:
             if self.process is None:

@@ -105,8 +105,8 @@ class Decision(NamedTuple):
 
 
 class Appeal(NamedTuple):
-    """A step of an appeal against a mark: it is raised, taken up, or rejected. A :class:`Decision`
-    accepts it.
+    """A step of an appeal against a mark: it is raised, taken up, or
+    rejected. A :class:`Decision` accepts it.
 
     Attributes
     ----------
@@ -274,8 +274,8 @@ class Standing:
     worths: Mapping[tuple[str, str], Worth] = field(default_factory=dict)
 
     def decision(self, record: Record, question: str) -> Decision | None:
-        """The decision on an answer that counts; one on an answer that was handed in before does
-        not.
+        """The decision on an answer that counts; one on an answer
+        that was handed in before does not.
         """
         found = self.decisions.get((record.student, record.assignment, question))
         return found if found and found.answer == digest_of_answer(record, question) else None
@@ -286,8 +286,8 @@ class Standing:
         return said.points if said is not None and said.source == source else source
 
     def points(self, decision: Decision, mark: Mark) -> float:
-        """The points of a decision: a share of all, or what the lines of the rubric are worth
-        now.
+        """The points of a decision: a share of all, or what the
+        lines of the rubric are worth now.
         """
         worth = float(mark.worth)
         if decision.points is None:
@@ -295,15 +295,14 @@ class Standing:
         source, found = (mark.rubric or {}), 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
             now = self.worth(decision.question, line, source.get(line))
-            found += (
-                then if now is None else now
-            ) or 0  # a line that nobody knows any more stays what it was
+            # A line that nobody knows any more stays what it was.
+            found += (then if now is None else now) or 0
         return round(min(worth, max(0.0, found)), 4)
 
 
 def with_decisions(record: Record, standing: Standing) -> Record:
-    """A record with what people decided on its answers, in place of what the machine said; nothing
-    is judged.
+    """A record with what people decided on its answers, in place of what the
+    machine said; nothing is judged.
     """
     marks = {}
     for name, mark in record.marks.items():
@@ -396,8 +395,8 @@ class Ledger:
         return Standing(decisions, appeals, worths)
 
     def current(self, until: datetime.datetime | None = None) -> Mapping[Key, Decision]:
-        """The decision that counts for each answer, or counted at a time, by student, assignment
-        and question.
+        """The decision that counts for each answer, or counted at a time, by
+        student, assignment and question.
         """
         return self.standing(until).decisions
 
@@ -412,8 +411,8 @@ class Ledger:
     # -- what is entered
 
     def hand_on(self, student: str, assignment: str, name: str) -> None:
-        """Enter all events once more, for another name of the same student: who decided, and when,
-        stays.
+        """Enter all events once more, for another name of the same
+        student: who decided, and when, stays.
         """
         old = [
             one
@@ -557,8 +556,8 @@ class Ledger:
         ]
 
     def take_back(self, records: Iterable[Record], question: str, who: str, why: str = "") -> None:
-        """Take back the last decision of a person on each of these answers; what stood before it
-        counts again.
+        """Take back the last decision of a person on each of these answers;
+        what stood before it counts again.
 
         Raises
         ------
@@ -634,8 +633,8 @@ class Ledger:
     @contextlib.contextmanager
     def _alone(self) -> Iterator[io.FileIO]:
         """Keep other writers away, and know what they have written."""
-        # Without a buffer: what a full disk refused is not written once more when the file is
-        # closed.
+        # Without a buffer: what a full disk refused is not written
+        # once more when the file is closed.
         with open(self.path, "ab+", buffering=0) as file:
             lock(file)
             file.seek(0)
@@ -644,8 +643,8 @@ class Ledger:
             if cut and not _is_cut(cut):
                 file.write(b"\n")  # an editor took it away
             elif cut:
-                # A line that was being written when the machine stopped: nobody was told that it
-                # counts.
+                # A line that was being written when the machine stopped:
+                # nobody was told that it counts.
                 with open(self.path.with_name(CUT), "ab") as aside:
                     aside.write(cut + b"\n")
                     aside.flush()
@@ -666,8 +665,8 @@ class Ledger:
         self.events += events
 
     def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
-        """Take in the events of another grader's ledger; give those that are new, and those that
-        differ.
+        """Take in the events of another grader's ledger; give those that
+        are new, and those that differ.
 
         Returns
         -------
@@ -767,8 +766,8 @@ def _now() -> str:
 
 
 def _in_order(events: Iterable[Event]) -> list[Event]:
-    """Events by time, since ledgers of several graders may have been put together; but none before
-    what it came after.
+    """Events by time, since ledgers of several graders may have been put together;
+    but none before what it came after.
 
     A clock may be wrong, or be set back: who saw another decision decided later all the same.
     """
@@ -810,8 +809,8 @@ def _not_taken_back(made: Sequence[Event]) -> dict[Key, list[Decision]]:
 
 
 def events_in(path: Path) -> Iterator[Event]:
-    """The events of a ledger, but for a last line that was not written to its end: nobody was told
-    that it counts.
+    """The events of a ledger, but for a last line that was not written to its
+    end: nobody was told that it counts.
 
     Raises
     ------
@@ -829,9 +828,9 @@ def events_in(path: Path) -> Iterator[Event]:
                     return
                 why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
-                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. Somebody "
-                    "changed the file: move "
-                    "the line into a file of its own, and look at that answer again."
+                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. "
+                    "Somebody changed the file: move the line into a file of its own, and look at "
+                    "that answer again."
                 ) from None
 
 
@@ -953,8 +952,8 @@ READERS: dict[type[Event], Callable[[Fields], Event]] = {
 def _fitting_rows(
     path: Path, records: Iterable[Record], column: str
 ) -> Iterator[tuple[int, dict[str, str], tuple[Record, str] | str]]:
-    """The lines of a table, each with the record and the question that it means, or why there is
-    none.
+    """The lines of a table, each with the record and the question
+    that it means, or why there is none.
     """
     if not path.exists():
         return
@@ -979,8 +978,8 @@ def _fitting_rows(
 def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose some of the words, and would
-    # begin a line of theirs.
+    # Not at every sign that ends a line somewhere: students choose some of the words,
+    # and would begin a line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     if column not in header or not ("id" in header or {"student", "question"} <= set(header)):

@@ -63,8 +63,8 @@ UNJUDGED = Mark(
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 #: How a cell ends that a limit ended: what is missing then may have been lost to it.
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
-#: How the sandbox says that reading an answer was cut short, by a limit and not by the answer's
-#: form.
+#: How the sandbox says that reading an answer was cut short, by a
+#: limit and not by the answer's form.
 CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 
 
@@ -74,8 +74,8 @@ CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
 def questions_of(
     path: str | Path, secret: bytes, edition: str = ""
 ) -> dict[str, tuple[Contract, ...]]:
-    """All that marks need of the questions of a notebook with solutions: the contracts of all
-    variants, by name.
+    """All that marks need of the questions of a notebook with solutions: the
+    contracts of all variants, by name.
     """
     with contextlib.redirect_stdout(io.StringIO()):  # what a solution prints is for its author
         return _questions_of(path, secret, edition)
@@ -139,8 +139,8 @@ def of_student(
 def with_second_chances(
     questions: Mapping[str, Asked], named: Collection[str] | None = None
 ) -> dict[str, Contract]:
-    """The questions of a student, and their siblings beside them: those that are ``named``, or
-    all.
+    """The questions of a student, and their siblings beside them:
+    those that are ``named``, or all.
     """
     chances = {
         sibling: contract
@@ -232,8 +232,8 @@ def load_questions(
 
 
 def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
-    """What the sandbox is told of each question: the answer's name and the calls of a function, no
-    more.
+    """What the sandbox is told of each question: the answer's name and
+    the calls of a function, no more.
 
     Of the secret calls a notebook learns when it has handed in everything else.
     """
@@ -288,8 +288,8 @@ def mark(
     -------
     Mark
     """
-    # Many hand in the same. What is judged follows from the version of the question and from these
-    # texts alone.
+    # Many hand in the same. What is judged follows from the version of the
+    # question and from these texts alone.
     before = (question.before or question.contract).version
     of_question = (
         name,
@@ -357,8 +357,8 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
 
 
 def _is_right(name: str, question: Asked, answer: Answer) -> bool:
-    """Whether an answer is right for a question. Of most it takes one look to see that they are
-    not.
+    """Whether an answer is right for a question. Of most it takes
+    one look to see that they are not.
     """
     with contextlib.suppress(
         ArithmeticError, ValueError, LookupError, TypeError, Blank, Fault, Undecidable
@@ -373,8 +373,8 @@ def _is_right(name: str, question: Asked, answer: Answer) -> bool:
 
 
 def parts_right(contract: Contract, text: str) -> tuple[int, int, float]:
-    """How many parts of an answer in words are right, of how many, and the share of credit that
-    this earns.
+    """How many parts of an answer in words are right, of how many, and the
+    share of credit that this earns.
 
     The parts of an order are its pairs: which of the two comes first. Of the share, what a guess
     has right on average is taken off, so that guessing earns nothing on average: with m words to
@@ -406,8 +406,8 @@ def mark_with_siblings(
     finished: bool = True,
     limited: bool = False,
 ) -> Mark:
-    """The mark of a question, with regard to the help that a student had and to the siblings that
-    were solved.
+    """The mark of a question, with regard to the help that a student had and
+    to the siblings that were solved.
 
     Parameters
     ----------
@@ -460,8 +460,8 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
 def judge(
     name: str, question: Asked, answer: Answer, finished: bool = True, limited: bool = False
 ) -> tuple[Reply, str]:
-    """Give the :class:`coursework.checking.reply.Reply` to an answer, and its fingerprint if it has
-    one.
+    """Give the :class:`coursework.checking.reply.Reply` to an answer,
+    and its fingerprint if it has one.
     """
     state, contract = answer.outcome, question.contract
     if state == "missing":
@@ -510,8 +510,8 @@ def judge(
             reply = _undecided(
                 name,
                 "nearly right",
-                "The value agrees with the right one to about three digits: it "
-                "may have been rounded where an exact answer is asked for.",
+                "The value agrees with the right one to about three digits: it may have been "
+                "rounded where an exact answer is asked for.",
             )
         if reply.outcome == "not attempted":
             reply.messages = ["Nothing was answered."]  # there is no "yet" any more
@@ -530,8 +530,8 @@ def judge(
 
 
 def in_calls_of(question: Asked, plain: Plain) -> Plain | None:
-    """What a function returned, in the order of the calls that a question has now; ``None`` if it
-    was not called so.
+    """What a function returned, in the order of the calls that a question has now;
+    ``None`` if it was not called so.
 
     What was recorded are the results of the calls of the contract, one after another.
     """

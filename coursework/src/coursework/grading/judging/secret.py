@@ -29,8 +29,8 @@ from .contract import Elsewhere
 
 FILE = ".grading-secret"
 CALLS = 3
-#: Farther apart than this share of the value, two answers are not the same: no rounding reaches it,
-#: and no guess.
+#: Farther apart than this share of the value, two answers are not the same: no
+#: rounding reaches it, and no guess.
 APART = MP.mpf("1e-6")
 #: What is within its tolerance where a student looked may be off by so many tolerances elsewhere.
 SLACK = 4
@@ -38,8 +38,8 @@ ATTEMPTS = 60
 
 
 def secret_beside(folder: str | Path) -> bytes:
-    """The secret of a course, from the file beside its notebooks with solutions; made at the first
-    run.
+    """The secret of a course, from the file beside its notebooks with
+    solutions; made at the first run.
 
     Raises
     ------
@@ -57,9 +57,9 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"The secret of this course cannot be kept in {path} ({error}). It belongs beside the "
-            "solutions: marks are "
-            "decided at points that follow from it, too."
+            f"The secret of this course cannot be kept in {path} ({error}). "
+            "It belongs beside the solutions: marks are decided at points that follow from it, "
+            "too."
         ) from None
 
 
@@ -87,10 +87,8 @@ def secret_of(question: AuthoredQuestion, secret: bytes) -> Elsewhere | None:
         else:
             found = _of_expression(question, seed)
         if found is not None and is_function and all(call in public.calls for call in found.calls):
-            known, found = (
-                known or found,
-                None,
-            )  # rather calls that no check has made; of a few words there are none
+            # Rather calls that no check has made; of a few words there are none.
+            known, found = (known or found, None)
         if found is not None:
             return found
     return known
@@ -169,8 +167,8 @@ def _another(values: list[Any], dice: random.Random) -> Any:
     ):
         return _another_list(values, dice)
     if all(isinstance(value, list) for value in values) and any(values):
-        # Of several lengths: as long as one of them, and each part like those of its form in all of
-        # them.
+        # Of several lengths: as long as one of them, and each part like
+        # those of its form in all of them.
         parts = [part for value in values for part in value]
         chosen = dice.choice([value for value in values if value])
         return [

@@ -1,5 +1,5 @@
-"""A whole course: due dates, extensions, what lateness costs, what is dropped, and what it all
-comes to.
+"""A whole course: due dates, extensions, what lateness costs, what is
+dropped, and what it all comes to.
 
 The rules stand in one file that people read, such as::
 
@@ -279,8 +279,8 @@ def _moment(path: Path, where: str, value: object, zone: ZoneInfo) -> datetime.d
 
 
 def in_zone(moment: datetime.datetime, zone: ZoneInfo, later: bool = True) -> datetime.datetime:
-    """A moment with its time zone; of an hour that a clock shows twice, or leaves out, the later or
-    the earlier one.
+    """A moment with its time zone; of an hour that a clock shows twice, or leaves
+    out, the later or the earlier one.
     """
     if moment.tzinfo:
         return moment
@@ -326,9 +326,9 @@ def _times(path: Path, zone: ZoneInfo) -> Times:
         when = as_time(row[column])
         if when is None:
             raise BadRules(
-                f"{path}: {student!r}: {row[column]!r} is no time that can be read. Write such as "
-                "2026-10-06 20:01, or "
-                "download the table with your system in English."
+                f"{path}: {student!r}: {row[column]!r} is no time that can be read. "
+                "Write such as 2026-10-06 20:01, or download the table with your system in "
+                "English."
             )
         found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
     return Times(roster, found)
@@ -383,8 +383,8 @@ def results_of(
     worth: Mapping[str, float],
     now: datetime.datetime,
 ) -> tuple[list[Result], float | None]:
-    """What each assignment of the rules comes to for a student, and the share of everything that
-    counts.
+    """What each assignment of the rules comes to for a student, and the
+    share of everything that counts.
 
     Parameters
     ----------
@@ -444,15 +444,14 @@ def _result(
 
 
 def say_what_marked_costs(assignments: Sequence[str]) -> str:
-    """What is to be decided where a system marked work as late, and rules do not say what that
-    costs.
+    """What is to be decided where a system marked work as late, and
+    rules do not say what that costs.
     """
     names = ", ".join(sorted(set(assignments)))
     return (
         f"Of {names}, {len(assignments)} are marked as late by the system, which does not say when "
-        "they came, and so "
-        "far that costs nothing. Say what it costs: marked = 0.1 in [late], or 0; or name a table "
-        "of times."
+        "they came, and so far that costs nothing. "
+        "Say what it costs: marked = 0.1 in [late], or 0; or name a table of times."
     )
 
 

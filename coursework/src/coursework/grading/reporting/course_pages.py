@@ -1,5 +1,5 @@
-"""What is written about a whole course: a table of all marks, a page for each student, and pages on
-the questions.
+"""What is written about a whole course: a table of all marks, a page for each
+student, and pages on the questions.
 """
 
 import datetime
@@ -21,8 +21,8 @@ from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
 ROSTER = "roster.json"
-#: How the state of an assignment is told to a student; where it simply counts there is nothing to
-#: tell.
+#: How the state of an assignment is told to a student; where it
+#: simply counts there is nothing to tell.
 STATES = {
     "counted": "",
     "dropped": "dropped: it does not count",
@@ -43,8 +43,8 @@ ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %
 
 
 class Then(NamedTuple):
-    """What was kept of a question in an earlier year: the mean share of the credit, and the
-    version.
+    """What was kept of a question in an earlier year: the mean
+    share of the credit, and the version.
     """
 
     share: float | None
@@ -226,8 +226,8 @@ def _write_questions(
 
 
 def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
-    """The answers of a question, by what the machine or a person said of them, the most frequent
-    first.
+    """The answers of a question, by what the machine or a person said
+    of them, the most frequent first.
     """
     groups: dict[tuple[str, str], list[Same]] = {}
     anchors: dict[str, str] = {}

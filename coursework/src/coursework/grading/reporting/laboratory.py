@@ -1,5 +1,5 @@
-"""What a regrade would do, before a mark moves: who gains, who loses, and what cannot be judged
-from what is stored.
+"""What a regrade would do, before a mark moves: who gains, who loses, and what
+cannot be judged from what is stored.
 
 The questions as they are now are tried on all stored cases. What a mended question may do to marks
 is for its author to choose, as a policy: nobody loses by it, all who had a faulty variant have its
@@ -19,8 +19,8 @@ from ..tables import number, table
 FILE, TABLE, PAGE = "policies.json", "regrade.csv", "regrade.html"
 #: Instead of the name of a variant: all that the source has no more.
 TAKEN_OUT = "taken-out"
-#: The note of an answer that is to be run again, since it was not asked for what the question asks
-#: for now.
+#: The note of an answer that is to be run again, since it was not asked
+#: for what the question asks for now.
 RUN_AGAIN = "not called"
 
 
@@ -144,8 +144,8 @@ class Change(NamedTuple):
 
 @dataclass
 class Laboratory:
-    """What a regrade would do to a class: the changes by questions, and the points that move
-    ``by_people``.
+    """What a regrade would do to a class: the changes by questions, and
+    the points that move ``by_people``.
     """
 
     changes: list[Change] = field(default_factory=list)

@@ -24,8 +24,8 @@ from .pages import formula
 LONGEST = 4_000  # of the TeX of one answer
 GREEK = (
     "alpha beta gamma delta epsilon varepsilon zeta eta theta vartheta iota kappa lambda mu nu xi "
-    "pi rho sigma tau "
-    "upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega"
+    "pi rho sigma tau upsilon phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi "
+    "Psi Omega"
 ).split()
 CONSTANTS = {"Pi": r"\pi", "Exp1": "e", "ImaginaryUnit": "i", "GoldenRatio": r"\phi"}
 FUNCTIONS = {
@@ -99,8 +99,8 @@ def _name(name: str) -> str:
 
 
 def _in_brackets(text: str) -> str:
-    """Brackets that grow with what is in them, where it is high: in a table others would grow with
-    its line.
+    """Brackets that grow with what is in them, where it is high: in a table
+    others would grow with its line.
     """
     return rf"\left({text}\right)" if r"\frac" in text or "^" in text else f"({text})"
 
@@ -111,8 +111,8 @@ class _Writer:
         self.left = LONGEST
 
     def node(self, order: int, around: int, depth: int = 0) -> str:
-        """One node; `around` is how tightly what stands round it binds: 0 nothing, 1 a sum, 2 a
-        product, 3 a power.
+        """One node; `around` is how tightly what stands round it binds: 0 nothing,
+        1 a sum, 2 a product, 3 a power.
         """
         self.left -= 1
         if self.left <= 0 or depth > 30:

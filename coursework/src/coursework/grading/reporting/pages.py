@@ -127,8 +127,8 @@ def formula(source: str, longest: int = 300) -> str:
         if len(source) > longest:
             raise ValueError
         found = convert(source)
-        # A student's words may have come into a message: only what draws mathematics is let
-        # through.
+        # A student's words may have come into a message: only what
+        # draws mathematics is let through.
         for element in ElementTree.fromstring(found).iter():
             name = element.tag.rpartition("}")[2]
             if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
@@ -150,8 +150,8 @@ def answer_as_text(plain: Plain | None, most: int = 300) -> str:
 
 
 class _Printer:
-    """Writes no more than asked for: what is shared in the nodes would fill a disk if it were
-    written out.
+    """Writes no more than asked for: what is shared in the nodes would
+    fill a disk if it were written out.
     """
 
     def __init__(self, nodes: Sequence[Any], most: int) -> None:

@@ -32,16 +32,15 @@ STRENGTHS = "strengths.json"
 GUESSED = "guessed.json"
 GUESSING = (
     "What lies before is earned without an idea by whoever lets a script try answers in `check`, "
-    "at some 12 ms a try; what "
-    "lies behind was not found by the author's attack, and somebody may have a better one. An "
-    "exam, a function, or a word "
-    "with the student tells more."
+    "at some 12 ms a try; what lies behind was not found by the author's attack, and somebody may "
+    "have a better one. "
+    "An exam, a function, or a word with the student tells more."
 )
 ENVIRONMENT.globals["GUESSING"] = GUESSING
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
-#: What the class did, to follow "31 % of the class ...", by the note of a mistake or of a fault of
-#: the form.
+#: What the class did, to follow "31 % of the class ...", by the note of a
+#: mistake or of a fault of the form.
 DEEDS = {
     "transposed": "gave the transpose",
     "in degrees": "answered in degrees",
@@ -79,13 +78,11 @@ MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which f
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
     "works only out of order": "It works only if its cells are run in another order than they "
-    "stand in. The "
-    "answers "
-    "count; before you hand in, choose *Restart the kernel and run all cells*.",
-    "wrote into the records": "Its code wrote where answers are recorded. What it wrote "
-    "was not taken "
-    "for more than "
-    "an answer.",
+    "stand in. "
+    "The answers count; before you hand in, choose *Restart the kernel "
+    "and run all cells*.",
+    "wrote into the records": "Its code wrote where answers are recorded. "
+    "What it wrote was not taken for more than an answer.",
     "could not be run": "It could not be run here. Your instructor will look at it.",
 }
 
@@ -269,8 +266,8 @@ def _addresses(question: str, links: Mapping[str, str]) -> list[tuple[str, str]]
 
 
 def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
-    """An answer as it was read, as mathematics and as text; nothing where there is nothing to
-    show.
+    """An answer as it was read, as mathematics and as text; nothing
+    where there is nothing to show.
     """
     plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
@@ -410,8 +407,8 @@ def _success(
 
 
 def _tries(counts: Counter[int] | None) -> str:
-    """How many different answers were tried, as the notebooks of those remember that show it; or
-    nothing.
+    """How many different answers were tried, as the notebooks of those
+    remember that show it; or nothing.
     """
     if not counts:
         return ""

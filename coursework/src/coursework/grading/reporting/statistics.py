@@ -1,5 +1,5 @@
-"""What the class says of each question: how hard it is, whether it tells students apart, and what
-was mixed up.
+"""What the class says of each question: how hard it is, whether it tells
+students apart, and what was mixed up.
 
 One record after another is taken in, and what is kept grows with the number of different answers,
 not with the class. The counts of a year hold nobody's name and nobody's answer; they can be kept,
@@ -141,8 +141,8 @@ class Statistics:
                 question.discrimination.add(share, (earned - mark.points) / (worth - mark.worth))
 
     def counts(self, name: str) -> dict[str, Json]:
-        """What can be kept for other years: numbers only, and none of so few that it points at
-        somebody.
+        """What can be kept for other years: numbers only, and none of so
+        few that it points at somebody.
         """
         return {
             "format": FORMAT,

@@ -1,5 +1,5 @@
-"""The templates of pages, in which everything is text unless it is said to be mathematics or a
-message of ours.
+"""The templates of pages, in which everything is text unless it is said to
+be mathematics or a message of ours.
 """
 
 from jinja2 import Environment, PackageLoader, StrictUndefined

@@ -1,5 +1,5 @@
-"""Who handed a file in: what the systems' archives say, and the roster, which alone decides where
-there is one.
+"""Who handed a file in: what the systems' archives say, and the roster,
+which alone decides where there is one.
 
 The name of a file or folder is a claim. What a system wrote stands at its beginning; what follows
 was chosen by the student and claims nothing, whatever it looks like. Where two submissions claim to
@@ -22,8 +22,8 @@ CANVAS = re.compile(r"(?P<name>.+?)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission
 CANVAS_ANONYMOUS = re.compile(
     r"(?P<late>LATE_)?anon_(?P<user>[A-Za-z0-9]{5})_(?P<submission>\d+)_(?P<file>.+)"
 )
-#: A name that ends in a number may be told from a file whose name begins with one only by who is in
-#: the course.
+#: A name that ends in a number may be told from a file whose name begins with
+#: one only by who is in the course.
 CANVAS_NUMBERED = re.compile(
     r"(?P<name>.+?_\d+)_(?P<late>LATE_)?(?P<user>\d+)_(?P<submission>\d+)_(?P<file>.+)"
 )
@@ -88,8 +88,8 @@ class Claim(NamedTuple):
 
 
 class Layout:
-    """Tells from the names of all files how the submissions are laid out, and what each file's
-    place claims.
+    """Tells from the names of all files how the submissions are laid out,
+    and what each file's place claims.
 
     One layout holds for all: a student cannot choose another by a name inside the own folder.
 
@@ -231,8 +231,8 @@ class Layout:
         )
 
     def _read_as_canvas(self, name: str) -> tuple[str, re.Match[str] | None]:
-        """What Canvas wrote of a name; ``None`` where it may be read in two ways and the roster
-        does not tell which.
+        """What Canvas wrote of a name; ``None`` where it may be read in two ways and
+        the roster does not tell which.
         """
         anonymous = CANVAS_ANONYMOUS.fullmatch(name)
         if anonymous:
@@ -320,8 +320,8 @@ class Layout:
         )
 
     def _blackboard_user(self, who: str) -> str:
-        """The user's name, which stands behind the assignment's; both may hold the sign that joins
-        them.
+        """The user's name, which stands behind the assignment's; both
+        may hold the sign that joins them.
 
         Where several of the roster could be meant it is no name, so that a person is asked.
         """
@@ -361,8 +361,8 @@ class Layout:
 
 
 def _as_time(numbers: tuple[int, ...]) -> str:
-    """Year, month, day and so on as ISO 8601 has them, without a time zone; empty where they are no
-    time.
+    """Year, month, day and so on as ISO 8601 has them, without a time
+    zone; empty where they are no time.
     """
     year, month, day, *clock = numbers
     hour, minute, second, *_ = (*clock, 0, 0, 0)
@@ -406,8 +406,8 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
 
 
 def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
-    """The name, the number or address, and the time of each of Gradescope's submissions that one
-    person handed in.
+    """The name, the number or address, and the time of each of Gradescope's
+    submissions that one person handed in.
     """
     import yaml
 
@@ -505,8 +505,8 @@ def looks_like(name: str) -> str:
 
 
 def _when(text: str) -> tuple[int, ...]:
-    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are the same in every language
-    setting.
+    """Brightspace's ``Nov 21, 2026 801 PM`` as numbers; the words are
+    the same in every language setting.
     """
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0

@@ -1,5 +1,5 @@
-"""What was handed in: notebooks found in a folder or an archive, read strictly, and never written
-to.
+"""What was handed in: notebooks found in a folder or an archive,
+read strictly, and never written to.
 
 Understood are a folder of notebooks, a folder for each student, nbgrader's
 ``submitted/student/assignment``, repositories of GitHub Classroom, and the archives (packed or
@@ -67,11 +67,8 @@ LITTER = (
     ".coursework",
     "__pycache__",
 )
-INDEXES = (
-    "index.html",
-    "timestamp.txt",
-    GRADESCOPE_TABLE,
-)  # what Brightspace, nbgrader and Gradescope put there
+# What Brightspace, nbgrader and Gradescope put there.
+INDEXES = ("index.html", "timestamp.txt", GRADESCOPE_TABLE)
 TEXT = re.compile(rb'"(?:[^"\\]|\\.)*+"', re.S)
 REPLY = re.compile(r'<div class="coursework-reply"([^>]{0,2000})>')
 ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
@@ -117,8 +114,8 @@ class Beside(NamedTuple):
 
 
 class Notebook(NamedTuple):
-    """A notebook that was handed in; its cells are read when they are needed, so that a class needs
-    no memory.
+    """A notebook that was handed in; its cells are read when they are needed,
+    so that a class needs no memory.
 
     Attributes
     ----------
@@ -280,8 +277,8 @@ def take_in(
 
 
 def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused:
-    """A file that was refused, with whose it is where a roster says so: its student did not hand in
-    nothing.
+    """A file that was refused, with whose it is where a roster says so: its
+    student did not hand in nothing.
     """
     claim = layout.claim(refused.file)
     known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
@@ -293,8 +290,8 @@ TIMESTAMP = "timestamp.txt"
 
 
 def _when(one: Notebook, others: Others, layout: Layout) -> str:
-    """When a notebook was handed in, as the system says and never a student's file; empty if it
-    says nothing.
+    """When a notebook was handed in, as the system says and never a
+    student's file; empty if it says nothing.
     """
     if one.claim.handed_in or not layout.is_nbgraders:
         return one.claim.handed_in
@@ -345,8 +342,8 @@ def _take(
     read: Read,
     outer: str,
 ) -> None:
-    """Look at one file; `outer` is its name, or that of the archive it was packed in, which says
-    whose it is.
+    """Look at one file; `outer` is its name, or that of the archive it was
+    packed in, which says whose it is.
     """
     claim = layout.claim(outer)
     if name != outer and claim:
@@ -399,8 +396,8 @@ def _says(cells: Iterable[CodeCell]) -> str:
 
 @functools.lru_cache(1_000)
 def _shared_names(names: tuple[str, ...]) -> list[str]:
-    """The same list for all that name the same questions: of a hundred thousand notebooks nearly
-    all do.
+    """The same list for all that name the same questions: of a hundred
+    thousand notebooks nearly all do.
     """
     return list(names)
 
@@ -485,8 +482,8 @@ def _numbers(claim: Claim) -> list[tuple[str, str]]:
 
 
 def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
-    """The files that lie where the notebook lies, or below, by the names that its code would
-    use.
+    """The files that lie where the notebook lies, or below, by
+    the names that its code would use.
     """
     found: list[Beside] = []
     folder, total = PurePosixPath(one.claim.file).parent, 0
@@ -508,8 +505,8 @@ def _beside(one: Notebook, others: Others) -> tuple[Beside, ...]:
 
 
 def _as_named_before(found: Sequence[Beside]) -> list[Beside]:
-    """What Canvas numbered because it was handed in again, also by the name that the notebook's
-    code uses.
+    """What Canvas numbered because it was handed in again, also by the
+    name that the notebook's code uses.
     """
     numbered: dict[str, list[tuple[int, Beside]]] = {}
     names = {one.name for one in found}
@@ -564,8 +561,8 @@ def _files_of_folder(
     results = os.stat(out) if out and os.path.isdir(out) else None
     if results and os.path.samestat(results, os.stat(root)):
         raise Unfit(
-            f"{root} holds what was handed in, and cannot hold the results, too: name "
-            "another folder."
+            f"{root} holds what was handed in, and cannot hold the results, too: name another "
+            "folder."
         )
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
     top = _Folder(root)
@@ -653,8 +650,8 @@ def _no_more_than(data: bytes) -> bytes:
 
 
 class _OwnPlace(io.RawIOBase):
-    """A file that is read from a place of its own: a copy of this process reads it too, and does
-    not move this one.
+    """A file that is read from a place of its own: a copy of this process reads it
+    too, and does not move this one.
     """
 
     def __init__(self, path: str) -> None:
@@ -695,8 +692,8 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
     repeated = {
         one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename
     }
-    # What the archive knows of each is let go one by one: of a hundred thousand it would be half of
-    # the memory.
+    # What the archive knows of each is let go one by one: of a hundred
+    # thousand it would be half of the memory.
     archive.filelist.clear()
     archive.NameToInfo.clear()
     unpacked = 0
@@ -714,8 +711,8 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
         unpacked += min(entry.file_size, MOST_BYTES)
         if not why and unpacked > MOST_UNPACKED:
             why = (
-                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not "
-                "read any more."
+                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any "
+                "more."
             )
         if why:
             refused.append(Refused(shown, "", why))
@@ -823,8 +820,8 @@ def _read_packed(read: Read, entry: zipfile.ZipInfo) -> bytes:
 
 
 def _is_by_the_way(name: str) -> bool:
-    """Whether a file is none that a student handed in for marks: an index, a picture beside a
-    notebook.
+    """Whether a file is none that a student handed in for marks: an
+    index, a picture beside a notebook.
     """
     path = PurePosixPath(name)
     return (
@@ -934,11 +931,11 @@ def remembered_in(data: bytes) -> dict[str, Remembered]:
 
 
 def pictures_in(data: bytes) -> dict[str, list[str]]:
-    """The pictures under each code cell of a notebook, as it was handed in: texts in base64, by the
-    cell's number.
+    """The pictures under each code cell of a notebook, as it was handed in: texts
+    in base64, by the cell's number.
 
-    They are the student's to change, and are for people to look at; what is no picture from end to
-    end is left out.
+    They are the student's to change, and are for people to look at; what is no
+    picture from end to end is left out.
     """
     found: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES

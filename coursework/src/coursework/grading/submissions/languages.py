@@ -22,8 +22,8 @@ MOODLE = (
     "maximum grade",
     "grade can be changed",
 )
-#: The same in other languages, and the word for "no"; what was called otherwise earlier stands
-#: behind a stroke.
+#: The same in other languages, and the word for "no"; what was called
+#: otherwise earlier stands behind a stroke.
 LANGUAGES = {
     "German": (
         "ID",
@@ -249,8 +249,8 @@ LANGUAGES = {
 
 
 def in_english(header: Iterable[str]) -> tuple[dict[str, str], str]:
-    """What the columns of a worksheet of Moodle in another language are called in English, and how
-    "no" is said there.
+    """What the columns of a worksheet of Moodle in another language are called in
+    English, and how "no" is said there.
 
     Told from the two columns that no worksheet lacks: who it is, and the grade.
 

@@ -1,7 +1,7 @@
 """Whether bytes are a picture from the first to the last of them, and nothing else.
 
-Nothing is decoded here; the parts of the file are walked through, and each says of itself what it
-is and how long.
+Nothing is decoded here; the parts of the file are walked through, and each says
+of itself what it is and how long.
 """
 
 import struct
@@ -50,8 +50,8 @@ def _is_png(data: bytes) -> bool:
 
 #: Parts of a JPEG file that say nothing but their own name.
 ALONE = {0x01, *range(0xD0, 0xD8)}
-#: Those that say the size: baseline, extended, progressive, and the rarer ones; not tables and
-#: arithmetic conditions.
+#: Those that say the size: baseline, extended, progressive, and the rarer ones; not
+#: tables and arithmetic conditions.
 SIZES = {*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC}
 END, SCAN = 0xD9, 0xDA
 
@@ -80,7 +80,7 @@ def _is_jpeg(data: bytes) -> bool:
         place += length
         if part == SCAN:
             scanned = True
-            # What follows are numbers, in which 0xFF is followed by 0 or by the name of a place to
-            # begin anew.
+            # What follows are numbers, in which 0xFF is followed by 0 or by the
+            # name of a place to begin anew.
             while not (data[place] == 0xFF and data[place + 1] not in (0x00, *range(0xD0, 0xD8))):
                 place += 1

@@ -1,5 +1,5 @@
-"""The roster: who is in the course, from a table of the instructor's or the gradebook that a system
-exports.
+"""The roster: who is in the course, from a table of the instructor's or
+the gradebook that a system exports.
 """
 
 import csv
@@ -76,8 +76,8 @@ class Person:
 
     @property
     def student(self) -> str | None:
-        """The name that they have here, and that their variants follow from; ``None`` if there is
-        none.
+        """The name that they have here, and that their variants follow
+        from; ``None`` if there is none.
         """
         return next(
             (value for kind in ("own", "email", "name") for value in self.called.get(kind, ())),
@@ -142,11 +142,11 @@ class Roster:
         self.kinds = {kind for kind, _ in self.index}
 
     def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
-        """The student that a claim's keys mean and the kind that told, or ``None`` and why nobody
-        is meant.
+        """The student that a claim's keys mean and the kind that told, or
+        ``None`` and why nobody is meant.
 
-        ``place`` is the name of the folder or file, for which the roster may have a word of its
-        own.
+        ``place`` is the name of the folder or file, for which the
+        roster may have a word of its own.
         """
         names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
         keys = (*(("handed in as", name) for name in names), *keys)
@@ -184,8 +184,8 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     except OSError as error:
         raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
     first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose their names, and would begin a
-    # line of theirs.
+    # Not at every sign that ends a line somewhere: students choose their names,
+    # and would begin a line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
@@ -224,9 +224,8 @@ def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
         if "," in row["name"]:
             row["name"] = turned(row["name"])
     elif "identifier" in row and ("full name" in row or "grade" in row):
-        row["moodle"] = re.sub(
-            r"\D", "", row.pop("identifier")
-        )  # Moodle's worksheet: "Participant 17"
+        # Moodle's worksheet: "Participant 17".
+        row["moodle"] = re.sub(r"\D", "", row.pop("identifier"))
     elif "id" in row:
         row.setdefault("student id", row.pop("id"))  # nbgrader's list
     known = {

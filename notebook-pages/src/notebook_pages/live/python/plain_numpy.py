@@ -21,13 +21,8 @@ MOST_WORK = 4_000_000  # entries that one cell may make: some seconds in a brows
 work = 0  # entries made since the page last asked
 nan = math.nan
 KINDS = {"b": bool, "i": int, "f": float}  # of entries: truth values, whole numbers, floats
-OFFERED = {
-    "pi": math.pi,
-    "e": math.e,
-    "inf": math.inf,
-    "nan": nan,
-    "newaxis": None,
-}  # by the names that NumPy has
+# By the names that NumPy has.
+OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": None}
 
 
 # --- the real one -------------------------------------------------------------------------------
@@ -57,14 +52,14 @@ def handed_on(value):
 
 
 class Told(Exception):
-    """Wraps an error in the reader's own use of an array, in NumPy's words: it is theirs, and needs
-    no real NumPy.
+    """Wraps an error in the reader's own use of an array, in NumPy's words: it is
+    theirs, and needs no real NumPy.
     """
 
 
 def or_the_real_one(function, find):
-    """``function``; where it cannot answer, what the real NumPy has in its place, by ``find(real,
-    arguments)``.
+    """``function``; where it cannot answer, what the real NumPy has in its
+    place, by ``find(real, arguments)``.
     """
 
     @functools.wraps(function)
@@ -104,17 +99,16 @@ def within(part):
 
 
 class Part(types.ModuleType):
-    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it does not offer,
-    the real one has.
+    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it
+    does not offer, the real one has.
     """
 
     __path__ = ()
 
     def __init__(self, name, offered):
         super().__init__(name)
-        self.__spec__ = importlib.machinery.ModuleSpec(
-            name, None
-        )  # for those who look whether there is a NumPy
+        # For those who look whether there is a NumPy.
+        self.__spec__ = importlib.machinery.ModuleSpec(name, None)
         self.offered = offered
 
     def __getattr__(self, name):
@@ -139,8 +133,8 @@ def stand_in():
 
 
 def step_aside(names):
-    """Let the real NumPy take the place: in all modules that have imported this one, and among the
-    reader's names.
+    """Let the real NumPy take the place: in all modules that have imported this
+    one, and among the reader's names.
     """
     if sys.modules.get("numpy") is not STAND_IN:
         return
@@ -184,8 +178,8 @@ def is_fetched():
 
 
 def is_at_fault(error):
-    """Whether an error speaks of what stands in for NumPy: with the real one there may be none, or
-    another.
+    """Whether an error speaks of what stands in for NumPy: with the real
+    one there may be none, or another.
     """
     return any(
         f"'{kind.__name__}'" in str(error)
@@ -373,8 +367,8 @@ def scalar(kind, value):
 
 
 class Array:
-    """Entries in a list, which views share; where in it the entries stand, in order; the shape; and
-    their kind.
+    """Entries in a list, which views share; where in it the entries stand, in
+    order; the shape; and their kind.
     """
 
     __array_priority__ = -1  # where it meets the real one, that decides
@@ -759,13 +753,11 @@ def as_array(value, dtype=None):
         if dtype is None:
             raise TypeError(type(value))
         found = as_array(value.tolist(), dtype)
-    elif hasattr(value, "shape") and not type(value).__module__.startswith(
-        "numpy"
-    ):  # an array of orientation's own
+    elif hasattr(value, "shape") and not type(value).__module__.startswith("numpy"):
+        # An array of orientation's own.
         found = as_array(value.tolist(), dtype)
-    elif (
-        dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number")
-    ):  # a number of SymPy
+    elif dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number"):
+        # A number of SymPy.
         found = Array([float(value)], (), "f")
     else:
         raise TypeError(type(value))
@@ -812,8 +804,8 @@ def all_finite(values):
 
 
 def arithmetic(name, function, kind=None):
-    """An operator, both ways round, for arrays and for numbers, and the function of NumPy's that
-    does the same.
+    """An operator, both ways round, for arrays and for numbers, and the
+    function of NumPy's that does the same.
     """
 
     def there(self, other):
@@ -1626,8 +1618,8 @@ def product(one, two):
         raise Told(
             ValueError(
                 "matmul: Input operand 1 has a mismatch in its core dimension 0, with gufunc "
-                "signature "
-                f"(n?,k),(k,m?)->(n?,m?) ({said})"
+                "signature (n?,k),(k,m?)->(n?,m?) "
+                f"({said})"
             )
         )
     kind = max(one.kind, two.kind, key="bif".index)
@@ -1858,8 +1850,8 @@ def eigvalsh(matrix):
 
 
 def singular(rows):
-    """Columns of the left factor, singular values, and rows of the right factor, by turning columns
-    (Hestenes).
+    """Columns of the left factor, singular values, and rows of the right
+    factor, by turning columns (Hestenes).
     """
     n = len(rows)
     columns, right = [list(column) for column in zip(*rows)], eye(n).tolist()
@@ -1890,8 +1882,8 @@ def singular(rows):
 
 
 def orthonormal(columns, sizes):
-    """Columns that are at right angles, of unit length; where one has shrunk to nothing, another at
-    right angles.
+    """Columns that are at right angles, of unit length; where one has shrunk to
+    nothing, another at right angles.
     """
     found = []
     for column, size in zip(columns, sizes):
@@ -2015,8 +2007,8 @@ def seeded(seed):
     return first << 64 | second, third << 64 | fourth
 
 
-#: NumPy's table of widths was made with rounded numbers: so far it is from the exact ones, in units
-#: in the last place.
+#: NumPy's table of widths was made with rounded numbers: so far it is from the exact
+#: ones, in units in the last place.
 ROUNDED = """
     -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7
     -8 -8 -8 -7 -8 -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4
@@ -2031,8 +2023,8 @@ ROUNDED = """
 
 @functools.cache
 def ziggurat():
-    """The 256 layers of equal area under the bell curve: their bounds as whole numbers, widths and
-    heights.
+    """The 256 layers of equal area under the bell curve: their bounds as
+    whole numbers, widths and heights.
     """
     import mpmath
 
@@ -2045,10 +2037,8 @@ def ziggurat():
         edges = [start]
         for _ in range(254):
             edges.append(mpmath.sqrt(-2 * mpmath.log(area / edges[-1] + height(edges[-1]))))
-        edges = [
-            area / height(start),
-            *edges,
-        ]  # from the widest, which stands for the tail, to the narrowest
+        # From the widest, which stands for the tail, to the narrowest.
+        edges = [area / height(start), *edges]
         scale = mpmath.mpf(2) ** 52
         widths = [edges[0], *reversed(edges[1:])]
         bounds = [edges[1] / edges[0], 0, *(widths[k - 1] / widths[k] for k in range(2, 256))]
@@ -2169,8 +2159,8 @@ def places_after(value, form):
 
 
 def writer(values, kind):
-    """The function that writes each entry, all in one width, as NumPy's default settings have
-    it.
+    """The function that writes each entry, all in one width, as
+    NumPy's default settings have it.
     """
     if kind == "b":
         return lambda value: f"{value!s:>5}"

@@ -214,8 +214,8 @@ class Shell:
             def publish_msg(line, msg_type, data=None, metadata=None, buffers=None, **more):
                 if buffers:
                     raise TypeError(
-                        "a widget on this page can send numbers, text, lists and "
-                        "dictionaries, not bytes"
+                        "a widget on this page can send numbers, text, lists and dictionaries, not "
+                        "bytes"
                     )
                 self.send({"type": msg_type, "id": line.comm_id, "data": data})
 
@@ -225,8 +225,8 @@ class Shell:
         comm.create_comm = Line
 
     def hear(self, name, data):
-        """Take what the page says to the widget ``name``: JSON, in the form of Jupyter's own
-        messages.
+        """Take what the page says to the widget ``name``: JSON, in the
+        form of Jupyter's own messages.
         """
         import comm
 
@@ -367,8 +367,8 @@ def ends_in_semicolon(code):
 
 
 def shorten(told):
-    """Keep of a traceback the cells' own lines: what a package says helps, and not the line of it
-    that says so.
+    """Keep of a traceback the cells' own lines: what a package says helps, and
+    not the line of it that says so.
     """
     while told is not None:
         frames = [frame for frame in told.stack if frame.filename != __file__]
