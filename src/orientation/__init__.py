@@ -25,7 +25,7 @@ from .euler_angles import (
     gimbal_lock_margin,
     space_fixed_from_dcm,
 )
-from .filters import MultiplicativeKalmanFilter
+from .filters import MultiplicativeKalmanFilter, smooth
 from .frames import Frames
 from .integration import dcms_after_turns, turns_from_angular_velocity
 from .metrics import angle_between, mean_orientation, random_orientations
@@ -95,6 +95,7 @@ __all__ = [
     "scipy_rotation_from_dcm",
     "shadow_of_modified_rodrigues",
     "simple_dcm",
+    "smooth",
     "space_fixed_from_dcm",
     "turns_from_angular_velocity",
 ]

@@ -10,7 +10,9 @@ from orientation import (
     MultiplicativeKalmanFilter,
     dcm_from_rotation_vector,
     rotation_vector_from_dcm,
+    smooth,
 )
+from orientation.filters import FilterState
 
 GYROSCOPE_NOISE, BIAS_NOISE, STEP = 0.01, 0.002, 0.02
 REFERENCES = {"up": ((0, 0, 1.0), 0.03), "north": ((0.6, 0, -0.8), 0.08)}
@@ -161,15 +163,27 @@ def test_each_step_is_kalmans_for_the_model_of_its_docstring(shape):
         difference = seen - dcm[k] @ known
         change = after @ information @ difference
         S = H @ P[k] @ H.T + deviation[k] ** 2 * eye
+        reset = np.eye(6)
+        reset[:3, :3] = by_differences(
+            # The error that is left after a correction, if the whole error was a little larger.
+            lambda turn: rotation_vector_from_dcm(
+                dcm_from_rotation_vector(change[:3] + rotation_vector_from_dcm(turn))
+                @ dcm_from_rotation_vector(-change[:3])
+            )
+        )
+        reached = estimate.covariance[k]
         for found, right in (
             (innovation.difference[k], difference),
             (innovation.covariance[k], S),
             (innovation.normalised_square[k], difference @ np.linalg.inv(S) @ difference),
-            (estimate.covariance[k], after),
             (estimate.dcm[k], dcm_from_rotation_vector(change[:3]) @ dcm[k]),
             (estimate.bias[k], bias[k] + change[3:]),
         ):
             np.testing.assert_allclose(found, right, rtol=1e-8, atol=1e-9)
+        # The filter resets to first order in the correction.
+        second_order = (change[:3] @ change[:3]) * np.abs(after).max()
+        assert np.abs(reached - reset @ after @ reset.T).max() < second_order
+        assert np.abs(reached - after).max() > 0
 
 
 def test_a_filter_keeps_its_own_numbers_and_refuses_what_is_no_orientation():
@@ -182,3 +196,110 @@ def test_a_filter_keeps_its_own_numbers_and_refuses_what_is_no_orientation():
         MultiplicativeKalmanFilter(2 * np.eye(3), covariance, 0.1, 0.1)
     with pytest.raises(ValueError, match="observed holds a direction of length zero"):
         estimate.observe(np.zeros((3, 3)), (0, 0, 1.0), 0.1)
+
+
+def test_a_gate_leaves_alone_what_it_rejects_and_says_so():
+    batch = np.broadcast_to(np.eye(3), (3, 3, 3))
+    gated, open_to_all = (
+        MultiplicativeKalmanFilter(batch, 1e-4 * np.eye(6), 0.01, 0.001) for _ in range(2)
+    )
+    seen = np.array([[0, 0, 1.0], [0, 0.02, 1.0], [0, 0.5, 1.0]])
+    innovation = gated.observe(seen, (0, 0, 1.0), 0.01, gate=9.21)
+    others = open_to_all.observe(seen, (0, 0, 1.0), 0.01)
+    assert innovation.accepted.tolist() == [True, True, False] and others.accepted.all()
+    assert (innovation.normalised_square == others.normalised_square).all()
+    assert (gated.dcm[2] == np.eye(3)).all() and not gated.bias[2].any()
+    np.testing.assert_allclose(gated.covariance[2], 1e-4 * np.eye(6), atol=1e-18)
+    assert (gated.dcm[:2] == open_to_all.dcm[:2]).all()
+    assert np.abs(open_to_all.dcm[2] - np.eye(3)).max() > 0.1
+
+
+@pytest.mark.parametrize(("freedom", "gate"), [(2, 9.21034), (3, 11.34487)])
+def test_an_honest_filter_rejects_one_in_a_hundred(freedom, gate):
+    """Directions and whole orientations, twenty thousand of each."""
+    count, random = 20_000, np.random.default_rng(9)
+    P = np.diag([4e-4, 1e-4, 2e-4])
+    truth = random_dcms(count, 4)
+    wrong = dcm_from_rotation_vector(-random.multivariate_normal(np.zeros(3), P, count))
+    whole = np.zeros((6, 6))
+    whole[:3, :3], whole[3:, 3:] = P, 1e-6 * np.eye(3)
+    estimate = MultiplicativeKalmanFilter(wrong @ truth, whole, 0.01, 0.001)
+    if freedom == 2:
+        seen = truth @ [0, 0.6, 0.8] + 0.01 * random.normal(size=(count, 3))
+        innovation = estimate.observe(seen, (0, 0.6, 0.8), 0.01, gate)
+    else:
+        noise = random.multivariate_normal(np.zeros(3), 2 * P, count)
+        innovation = estimate.observe_dcm(dcm_from_rotation_vector(-noise) @ truth, 2 * P, gate)
+    assert abs(innovation.normalised_square.mean() / freedom - 1) < 0.02
+    assert 0.007 < 1 - innovation.accepted.mean() < 0.013
+
+
+def test_a_whole_orientation_counts_as_three_directions_would():
+    """Three equal directions at right angles have the information 2 / variance about each axis."""
+    source = np.random.default_rng(7)
+    P = np.diag([1e-6] * 3 + [1e-7] * 3)
+    start, measured = np.eye(3), dcm_from_rotation_vector(1e-3 * source.normal(size=3))
+    by_directions, at_once = (MultiplicativeKalmanFilter(start, P, 0.001, 0.001) for _ in range(2))
+    for axis in np.eye(3):
+        by_directions.observe(measured @ axis, axis, 0.001)
+    at_once.observe_dcm(measured, 0.5e-6 * np.eye(3))
+    assert np.abs(by_directions.dcm - at_once.dcm).max() < 2e-6
+    np.testing.assert_allclose(by_directions.covariance, at_once.covariance, atol=5e-9)
+
+
+def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
+    """Small errors about one axis: the same numbers as one linear problem for all moments."""
+    random, steps, h, q, s = np.random.default_rng(2), 12, 0.1, 1e-4, 2e-4
+    p, b = 1e-3, 1e-3
+    estimate = MultiplicativeKalmanFilter(
+        np.eye(3), np.diag([1e-12, 1e-12, p**2, 1e-18, 1e-18, b**2]), q, s
+    )
+    rates, seen = 1e-4 * random.normal(size=steps), 1e-4 * random.normal(size=steps)
+    predictions = []
+    rows, values = [np.eye(2 * steps + 2)[0] / p, np.eye(2 * steps + 2)[1] / b], [0, 0]
+    for k in range(steps):
+        predictions.append(estimate.turn((0, 0, rates[k]), h))
+        now, later = (
+            np.eye(2 * steps + 2)[2 * k : 2 * k + 2],
+            np.eye(2 * steps + 2)[2 * k + 2 :][:2],
+        )
+        # The angle is behind by what the bias adds to the gyroscope.
+        rows += [(later[0] - now[0] + h * now[1]) / q / h**0.5, (later[1] - now[1]) / s / h**0.5]
+        values += [rates[k] * h / q / h**0.5, 0]
+        # Measured along the body: a body turned by an angle about z sees x at minus that angle.
+        estimate.observe((1, -seen[k], 0), (1, 0, 0), 1e-4)
+        rows.append(later[0] / 1e-4)
+        values.append(seen[k] / 1e-4)
+    smoothed = smooth(predictions, estimate.state)
+    A = np.array(rows)
+    covariance = np.linalg.inv(A.T @ A)
+    best = covariance @ A.T @ np.array(values)
+    angles = rotation_vector_from_dcm(smoothed.dcm)[:, 2]
+    np.testing.assert_allclose(angles, best[::2], atol=1e-9)
+    np.testing.assert_allclose(smoothed.bias[:, 2], best[1::2], atol=1e-8)
+    for k, place in ((2, 0), (5, 1)):
+        variances = np.diag(covariance)[place::2]
+        np.testing.assert_allclose(smoothed.covariance[:, k, k], variances, rtol=1e-3)
+
+
+def test_a_smoother_is_nearer_to_the_truth_and_as_honest():
+    """Of two hundred flights, at their middle."""
+    flights = list(flight(200, 8, 5))
+    estimate, predictions, middle = first_estimate(flights[0][0], 6), [], 200
+    for k, (_, _, measured, directions) in enumerate(flights[1:], 1):
+        predictions.append(estimate.turn(measured, STEP))
+        for name, direction in directions.items():
+            reference, deviation = REFERENCES[name]
+            estimate.observe(direction, reference, deviation)
+        if k == middle:
+            by_filter = estimate.state
+    smoothed = smooth(predictions, estimate.state)
+    dcm, bias = flights[middle][:2]
+    off = [
+        np.sqrt(np.mean(np.square(rotation_vector_from_dcm(dcm @ each.swapaxes(-1, -2)))))
+        for each in (by_filter.dcm, smoothed.dcm[middle])
+    ]
+    assert off[1] < 0.85 * off[0]
+    at_the_middle = FilterState(*(each[middle] for each in smoothed))
+    squares = normalised_errors(at_the_middle, dcm, bias)
+    assert 5 < squares.mean() < 7.5

@@ -440,6 +440,10 @@ def kalman_filter():
             ),
             (AXES, RATES, ANGLE),
         ),
+        (
+            lambda observed, covariance: kalman_filter().observe_dcm(observed, covariance),
+            (DCMS, np.eye(3) + np.zeros((COUNT, 1, 1))),
+        ),
     ],
 )
 def test_whoever_takes_numbers_says_which_are_none(function, arguments):
