@@ -19,7 +19,7 @@ from notebook_pages.paths import PACKAGES
 MAY_IMPORT = {
     "orientation": (),
     "orientation_figures": ("orientation", "orientation_workbench"),
-    "orientation_recordings": (),
+    "orientation_recordings": ("orientation",),
     "orientation_workbench": ("orientation",),
     "coursework.checking": (),
     "coursework.authoring": ("coursework.checking",),
