@@ -47,7 +47,7 @@ from .rodrigues_parameters import (
 from .rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
 from .scipy_border import dcm_from_scipy_rotation, scipy_rotation_from_dcm
 
-__version__ = "1.2.0"
+__version__ = "1.0.0"
 
 __all__ = [
     "Diagnosis",

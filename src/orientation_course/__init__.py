@@ -2,7 +2,6 @@
 orientation, and the sealed questions.
 """
 
-from .format_3 import FORMAT_3
 from .kinds import KINDS
 from .mistakes import DEEDS
 
@@ -17,4 +16,4 @@ WORDS = {
 #: How many numbers an answer of each kind is compared by.
 SIZES = {"direction cosine matrix": 9, "quaternion": 4, "Euler angles": 9, "axis and angle": 9}
 
-__all__ = ["DEEDS", "FORMAT_3", "KINDS", "PACKAGES", "SIZES", "WORDS"]
+__all__ = ["DEEDS", "KINDS", "PACKAGES", "SIZES", "WORDS"]

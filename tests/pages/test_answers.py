@@ -563,24 +563,6 @@ def test_copies_of_one_minute_stand_beside_each_other(context, site):
         assert any(mine in content for _, content in copies), [path for path, _ in copies]
 
 
-def test_copy_of_the_first_edition_has_no_stamp(context, site):
-    """It is the same notebook: its answers count. Or it is another one: the reader is asked."""
-    served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
-    del served["metadata"]["book"]
-    tab = Tab(context, site)
-    for wording, expected in (
-        (None, "mine = 1"),
-        ("# Another title", "A_C_N = ...  # your answer"),
-    ):
-        copy = json.loads(json.dumps(served))
-        for cell in copy["cells"]:
-            if cell["metadata"].get("nbgrader", {}).get("grade_id") == CRANK:
-                cell["source"] = "mine = 1" if wording is None else expected
-        copy["cells"][0]["source"] = wording or copy["cells"][0]["source"]
-        tab.page.evaluate(WRITE_COPY, [f"{EXERCISE}.ipynb", copy])
-        assert visit_notebook(tab.page, site, EXERCISE)[CRANK] == expected
-
-
 def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
     """Tabs hear of each other late: the other one, played here, changes what it does not know."""
     tab, other = Tab(context, site).edit(), context.new_page()

@@ -3,15 +3,12 @@ and without a word that leads to one.
 """
 
 import io
-import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-import threading
 import zipfile
-from importlib import import_module
 
 import nbformat
 import pytest
@@ -24,10 +21,8 @@ from test_website import build, chapter
 
 import coursework
 import orientation
-from coursework.checking.questions import NoSuchQuestion, find_question
 from notebook_pages import exam, paths
 from notebook_pages.finish import pages_of
-from notebook_pages.serve import server
 
 SETTINGS = yaml.safe_load((REPOSITORY / "_config.yml").read_text("utf8"))
 CITATION = yaml.safe_load((REPOSITORY / "CITATION.cff").read_text("utf8"))
@@ -38,8 +33,6 @@ def test_the_edition_is_said_in_one_place():
     which = paths.edition(REPOSITORY)
     assert (which.name, which.date) == (stated["edition"], stated["date-released"])
     assert which.words == f"{which.name}, {which.day}"
-    news = (REPOSITORY / "appendix" / "changes.md").read_text("utf8")
-    assert which.name == re.search(r"^## The (\w+ edition)$", news, re.MULTILINE)[1].capitalize()
     assert {CITATION["title"], stated["title"]} == {SETTINGS["title"]}
     assert {one["name"] for one in CITATION["authors"] + stated["authors"]} == {SETTINGS["author"]}
     sources = [
@@ -67,116 +60,6 @@ def test_the_front_page_says_how_the_book_is_cited():
         re.search(rf"@book{{[a-z-]+, title = {{{SETTINGS['title']}}},", words)
         and f"{{{which.name}}}" in words
     )
-    assert front.select_one('a[href^="appendix/changes.html"]')
-
-
-def test_what_is_new_is_told_of_chapters_that_are_there():
-    """Each chapter that readers of the last edition do not know is
-    named among those that are new.
-    """
-    page = BeautifulSoup((HTML / "appendix" / "changes.html").read_text("utf8"), "lxml").article
-    new = {link["href"] for link in page.select("#chapters-that-are-new dt a[href]")}
-    assert new == {
-        f"../chapters/{name}.html#chapter-{name}"
-        for name in ("angular-velocity", "map-of-descriptions", "orientation-from-sensors")
-    }
-    grown = {link["href"] for link in page.select("#chapters-that-have-grown dt a[href]")}
-    chapters = [name for name in paths.pages() if name.startswith("chapters/")]
-    assert {
-        address.partition("#")[0].removeprefix("../").removesuffix(".html")
-        for address in new | grown
-    } <= set(chapters)
-
-
-# ---- what an earlier edition had an address for -------------------------------
-
-
-SECOND = json.loads(
-    (
-        REPOSITORY / "tests" / "orientation_course" / "editions" / "second" / "addresses.json"
-    ).read_text("utf8")
-)
-
-
-def test_every_page_and_label_of_the_second_edition_leads_somewhere():
-    """What moved is named under `moved` in _config.yml."""
-    lost = [page for page in SECOND["pages"] if not (HTML / f"{page}.html").is_file()]
-    for page in sorted(set(SECOND["pages"]) - set(lost)):
-        text = (HTML / f"{page}.html").read_text("utf8")
-        if 'http-equiv="refresh"' not in text:
-            there = set(re.findall(r'\bid="([^"]+)"', text))
-            lost += [f"{page}#{label}" for label in SECOND["pages"][page] if label not in there]
-    assert lost == []
-
-
-def test_every_question_of_the_second_edition_is_there_or_has_left_word():
-    """What has another name is named under [moved] in course.toml."""
-    for notebook, names in SECOND["questions"].items():
-        for name in names:
-            try:
-                assert find_question(f"{notebook}/{name}", "")
-            except NoSuchQuestion as error:
-                assert "is called" in str(error), error
-
-
-def test_every_name_of_the_second_edition_is_there():
-    """CHANGELOG.md promises a warning, in a version before, of each that goes."""
-    for module, names in SECOND["names"].items():
-        assert [name for name in names if not hasattr(import_module(module), name)] == []
-
-
-@pytest.mark.long
-def test_who_kept_an_address_gets_to_where_it_is_now(tmp_path, browser):
-    cells = chapter()
-    moved = {
-        "chapters/gone": "chapter",
-        "gone-too": "chapter#fig-line",
-        "chapter#fig-first-line": "chapter#fig-line",
-        "index#fig-old": "chapter#fig-line",
-    }
-    code, words = build(tmp_path, {"chapter": cells}, moved=moved)
-    assert code == 0, words
-    book = server(folder=tmp_path / "_build" / "html")
-    threading.Thread(target=book.serve_forever, daemon=True).start()
-    address = f"http://127.0.0.1:{book.server_port}"
-    page = browser.new_context(bypass_csp=False).new_page()
-    for old, new in (
-        ("chapters/gone.html", "chapter.html"),
-        ("chapters/gone.html#fig-line", "chapter.html#fig-line"),
-        ("gone-too.html", "chapter.html#fig-line"),
-    ):
-        page.goto(f"{address}/{old}")
-        page.wait_for_url(f"{address}/{new}")
-    page.goto(f"{address}/chapter.html#fig-first-line")
-    at = "document.getElementById('{}').getBoundingClientRect().top"
-    assert (
-        abs(page.evaluate(at.format("fig-first-line")) - page.evaluate(at.format("fig-line"))) < 60
-    )
-    page.goto(f"{address}/index.html")
-    note = page.locator("#fig-old")
-    assert not note.is_visible()
-    page.goto(f"{address}/index.html#fig-old")
-    assert note.is_visible()
-    assert note.inner_text() == "What stood here has moved: A chapter"
-    assert note.locator("a").get_attribute("href") == "chapter.html#fig-line"
-    page.context.close()
-    book.shutdown()
-    book.server_close()
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "moved",
-    [
-        {"gone": "nowhere"},
-        {"gone": "chapter#no-such-label"},
-        {"chapter": "index"},  # it is there
-        {"gone#label": "chapter"},  # of a page that is gone, the page is named
-    ],
-)
-def test_what_leads_nowhere_is_refused(tmp_path, moved):
-    code, words = build(tmp_path, {"chapter": chapter()}, moved=moved)
-    assert code != 0 and "moved, in _config.yml" in words and next(iter(moved)) in words
 
 
 def test_the_newest_version_is_the_same_everywhere():

@@ -156,36 +156,6 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
         assert shown(engine, address) == 2
 
 
-def test_copy_of_the_format_before_is_read_until_a_new_edition_is_whole(engine, editions):
-    """Format 1 kept each file under its path alone, and no word of the format in its list."""
-    with network(editions(1)) as (net, address):
-        engine.go(f"{address}index.html")
-        engine.run("""async () => {
-          await caches.delete("book /");
-          const cache = await caches.open("book /"), offer = await (await fetch("/offline.json")).json(), files = {};
-          for (const [path, [print]] of Object.entries(offer.book)) {
-            const answer = await fetch(`/${path}`), headers = { "Content-Type": answer.headers.get("Content-Type") };
-            await cache.put(new URL(`/${path}`, location.href), new Response(await answer.arrayBuffer(), { headers }));
-            files[path] = print;
-          }
-          const list = { edition: offer.edition, parts: ["book"], files };
-          await cache.put(new URL("/kept.json", location.href), new Response(JSON.stringify(list)));
-          await navigator.serviceWorker.register("/service-worker.js");
-          await navigator.serviceWorker.ready;
-        }""")
-        engine.wait(IS_CONTROLLED)
-        net.left = 0
-        assert shown(engine, address) == 1
-        net.folder, net.left = str(editions(2)), None
-        renew(engine, address, editions(2))
-        net.left = 0
-        assert shown(engine, address) == 2
-        keys = engine.run(
-            "async () => (await (await caches.open('book /')).keys()).map(({ url }) => url)"
-        )
-        assert all("?kept=" in url or url.endswith("/kept.json") for url in keys)
-
-
 def test_neighbours_of_a_book_at_the_root_are_left_alone(engine, editions):
     with network(editions(1)) as (_, address):
         keep(engine, address, editions(1))

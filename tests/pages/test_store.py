@@ -1,11 +1,10 @@
-"""What a browser keeps of the book is one store with one version: older forms are
-taken over, newer ones left alone.
+"""What a browser keeps of the book is one store with one version: what
+a newer one has kept is left alone.
 """
 
 import json
 import re
 import time
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -15,10 +14,6 @@ from test_answers import ANSWER, BLANK, EMPTY, EXERCISE, OTHER, Tab, fill
 from test_answers import context as context  # noqa: PLC0414 -- a fixture
 from test_questions import CHAPTER, opened
 
-SECOND = json.loads(
-    Path(__file__).with_name("kept").joinpath("second-edition.json").read_text("utf8")
-)
-RECORD = "progress of /"
 NEWER_LIST = {"format": 99, "edition": "x"}
 PUT = (
     "(kept) => { for (const [key, text] of Object.entries(kept)) localStorage.setItem(key, text); }"
@@ -37,86 +32,6 @@ def kept_before(page, site, kept):
     page.evaluate(PUT, kept)
 
 
-# --- older forms ----------------------------------------------------------------------------------
-
-
-def test_what_the_second_edition_kept_is_all_there(context, site):
-    page = context.new_page()
-    kept_before(page, site, SECOND)
-    page.goto(f"{site}{CHAPTER}.html")
-    record, old = page.evaluate(HERE), json.loads(SECOND[RECORD])["pages"]
-    assert {name: {**here, "read": sorted(here["read"])} for name, here in record.items()} == old
-    assert page.locator("#exercise-right-handed label.done input").is_checked()
-    assert page.locator("p.predictions select").input_value() == SECOND["book predictions"]
-    assert page.evaluate("bookStore.read('setting fetched')") == SECOND["book / fetched"]
-    tries = json.loads(json.loads(SECOND["book / coursework progress.json"])["text"])
-    assert json.loads(page.evaluate("bookStore.tries().text")) == tries
-    tab = Tab(context, site)
-    tab.wait(ANSWER, "A_C_N = 'the second edition'")
-    assert "A_C_N = sm.diag(1, -1, -1)  # my own" in tab.shown() and "mine = 2" in tab.shown()
-    assert "tried this one before" in tab.page.locator("p.live-known").first.inner_text()
-    # The edition before this one would still find all that it kept.
-    now = page.evaluate(ALL)
-    assert {key: now[key] for key in now if key in SECOND} == {
-        key: SECOND[key] for key in SECOND if key != "mode"
-    }
-
-
-def test_older_form_is_taken_over_again_only_where_it_has_changed(context, site):
-    """What the reader takes back stays away, and what a tab of the
-    second edition still writes comes.
-    """
-    page = context.new_page()
-    kept_before(page, site, SECOND)
-    page.goto(f"{site}{CHAPTER}.html")
-    page.locator("#exercise-right-handed label.done input").uncheck()
-    page.reload()
-    assert page.evaluate(HERE)[CHAPTER]["done"] == []
-    later = json.loads(SECOND[RECORD])
-    later["pages"][CHAPTER]["read"].append("vectors")
-    later["pages"][CHAPTER]["answers"]["recap-frame"].update(last="B", right=True)
-    page.evaluate(PUT, {RECORD: json.dumps(later)})
-    page.reload()
-    here = page.evaluate(HERE)[CHAPTER]
-    assert "vectors" in here["read"]
-    assert here["answers"]["recap-frame"] == {
-        "first": "A",
-        "last": "B",
-        "right": True,
-        "rightAtFirst": False,
-    }
-
-
-@pytest.mark.parametrize(
-    "damaged", ['{"pages": 3}', "not JSON", '{"pages": {"x": {"read": 1, "answers": {"y": 2}}}}']
-)
-def test_damaged_record_of_the_second_edition_stops_nothing(context, site, damaged):
-    page = context.new_page()
-    faults = []
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    kept_before(
-        page,
-        site,
-        {RECORD: damaged, "book / coursework progress.json": damaged, "book / version": "x"},
-    )
-    page.goto(f"{site}{CHAPTER}.html")
-    page.locator(".exercise label.done input").first.check()
-    assert page.evaluate(HERE)[CHAPTER]["done"] and faults == []
-
-
-def test_edits_of_the_first_edition_are_taken_over_once(context, site):
-    page = context.new_page()
-    old = json.dumps([{"number": ANSWER, "original": "of another book", "code": "first = 1"}])
-    kept_before(page, site, {f"code of {EXERCISE}": old})
-    tab = Tab(context, site)
-    offer = tab.page.get_by_role("group", name="An older edit")
-    offer.locator("pre", has_text="first = 1").wait_for()
-    tab.page.get_by_role("button", name="Keep the book’s").click()
-    tab.reload()
-    tab.page.locator(".live-earlier").first.wait_for(state="attached")
-    assert offer.count() == 0 and "first = 1" in tab.shown()
-
-
 @pytest.mark.parametrize(
     "kind",
     [
@@ -125,15 +40,10 @@ def test_edits_of_the_first_edition_are_taken_over_once(context, site):
         "Chromium",
     ],
 )
-def test_older_and_newer_forms_in_each_engine(request, site, kind):
+def test_newer_form_in_each_engine(request, site, kind):
     engine = Chromium(request.getfixturevalue("browser")) if kind == "Chromium" else ENGINES[kind]()
     try:
-        engine.go(f"{site}search.html")
-        engine.run(PUT, SECOND)
         engine.go(f"{site}{CHAPTER}.html")
-        assert engine.wait("() => globalThis.bookStore?.record()")[CHAPTER]["done"] == [
-            "exercise-right-handed"
-        ]
         engine.run(PUT, {"book / version": "99"})
         engine.go(f"{site}{CHAPTER}.html")
         assert engine.wait("() => globalThis.progress?.whyNotKept()").startswith("A newer edition")
@@ -223,27 +133,18 @@ def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
 # --- full, and newer ------------------------------------------------------------------------------
 
 
-def test_full_storage_stops_nothing_and_the_older_form_waits(context, site):
+def test_full_storage_stops_nothing(context, site):
     page = context.new_page()
     faults = []
     page.on("pageerror", lambda error: faults.append(str(error)))
-    kept_before(page, site, SECOND)
-    fill(SimpleNamespace(page=page))
     page.goto(f"{site}{CHAPTER}.html")
-    assert page.evaluate(HERE)[CHAPTER]["done"] == ["exercise-right-handed"], (
-        "as long as the page lasts"
-    )
+    fill(SimpleNamespace(page=page))
     page.locator(".exercise label.done input").last.check()
-    assert len(page.evaluate(HERE)[CHAPTER]["done"]) == 2
-    page.goto(f"{site}appendix/my-progress.html")
-    assert (
-        page.locator(f'tr[data-page="{CHAPTER}"] td[data-kind="done"]')
-        .inner_text()
-        .startswith("1 of ")
-    )
+    assert len(page.evaluate(HERE)[CHAPTER]["done"]) == 1, "as long as the page lasts"
     page.evaluate(EMPTY)
+    page.locator(".exercise label.done input").first.check()
     page.reload()
-    assert page.evaluate(ALL)[f"book / record {CHAPTER} done exercise-right-handed"] == "true"
+    assert len(page.evaluate(HERE)[CHAPTER]["done"]) >= 1
     assert faults == []
 
 
@@ -255,7 +156,7 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
         "book / question x": "7",
     }
     page = context.new_page()
-    kept_before(page, site, newer | SECOND)
+    kept_before(page, site, newer)
     before = page.evaluate(ALL)
     page.evaluate(
         "async (list) => (await caches.open('book /')).put('/kept.json', new Response(list))",

@@ -4,9 +4,9 @@ A student needs ``from coursework import check`` and no more.
 """
 
 from .checking.check import check, hint, progress, worked_solution
-from .checking.identity import me, student
+from .checking.identity import student
 from .checking.questions import variant
 
-__version__ = "1.2.0"
+__version__ = "1.0.0"
 
-__all__ = ["check", "hint", "me", "progress", "student", "variant", "worked_solution"]
+__all__ = ["check", "hint", "progress", "student", "variant", "worked_solution"]

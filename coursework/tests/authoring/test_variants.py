@@ -693,7 +693,7 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
             release(made, run=False)
             for number in range(6):
                 questions.notebook_questions.cache_clear()
-                coursework.me(student_with(number) if number else "")
+                coursework.student(student_with(number) if number else "")
                 lever = coursework.variant("levers/see-saw")
                 assert (
                     coursework.check("levers/see-saw", lever.force * lever.arm + moved).outcome
@@ -704,7 +704,7 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
                     in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
                 )
     finally:
-        coursework.me("")
+        coursework.student("")
         questions.notebook_questions.cache_clear()
 
 

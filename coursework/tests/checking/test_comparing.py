@@ -388,10 +388,6 @@ def test_lockers_and_pages_of_a_question_are_opened():
         page = Sealed(EXACT, pages=(sealing.seal({"solution": 7}, bytes(8)),))
         with pytest.raises(Misread, match=words):
             questions.solution_on(page, Place(0, "00" * 8, short))
-    key, third = sealing.slow_key("s", text_of(EXACT, SLIP)), bytes([0, 0, 0, 3, *[0] * 4])
-    old = Sealed(EXACT, sealing.pack([sealing.locker(key, 1, [third])]), format=3)
-    notes = (Note("transposed", {}), Note("sign of a symbol", {"symbol": "x"}))
-    assert questions.opened(old, text_of(EXACT, SLIP)) == Locker((KnownAnswer("mistake", notes),))
     strange = sealing.locker(sealing.slow_key("s", text_of(EXACT, SLIP)), 1, [b"\1\2\3\4"])
     reply = judge("a/b", Sealed(EXACT, sealing.pack([strange])), to_plain(SLIP))
     assert reply.messages == [questions.NOT_IN_THIS_CATALOGUE] and reply.note == "authored"
@@ -439,8 +435,7 @@ def folder(tmp_path, monkeypatch):
         own = {"levers/arm": questions.beside(other, first)}
         write(f"variants/levers-{number}.json", own)
     write("later.json", {}, 5)
-    write("third.json", {"third/a": plain}, 3)
-    (sealed / "moved.json").write_text(json.dumps({"moved": {"levers/old": "levers/plain"}}))
+    write("third.json", {"third/a": plain})
     (sealed / "notes.txt").write_text("")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(questions, "sealed_folders", list)
@@ -456,7 +451,7 @@ def student_with(number):
 
 def test_questions_are_found_in_the_variant_of_a_student(folder):
     first = find_question("levers/arm", "")
-    assert first.question.variant.number == 0 and first.format == 4 and first.pages == ("p0", "p1")
+    assert first.question.variant.number == 0 and first.pages == ("p0", "p1")
     for number in (1, 2):
         student = student_with(number)
         found = find_question("levers/arm", student)
@@ -530,15 +525,11 @@ LONG = "levers/" + "a" * 90
         (type("T" * 50, (), {})(), f"of type `{'T' * 40}`"),
         ("levers/arm/sibling-3", "-3': of 'levers/arm', its siblings are levers/arm/sibling and "),
         ("levers/plain/sibling", "of 'levers/plain', it has no other numbers"),
-        ("levers/old", r"^'levers/old' is called 'levers/plain' in this edition: .*`check\(...\)`"),
-        ("levers/old/sibling", "'levers/old' is called 'levers/plain'"),
         ("levers", "^'levers' is a notebook. Its questions are 'levers/arm', 'levers/plain'"),
         ("levers/plan", r"^There is no question 'levers/plan'\. Did you mean 'levers/plain'\?$"),
         ("Levers/Arm", r"Did you mean 'levers/arm'\?"),
         ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers'\?"),
         ("third/zzzzzzzz", r"Did you mean 'third/a'\?"),
-        ("movd", r"^There is no question 'movd'\.$"),
-        ("moved/levers", r"^There is no question 'moved/levers'\. Did you mean 'levers'\?$"),
         ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\.$"),
         ("../levers/arm", "There is no question"),
         (LONG, f"^There is no question '{LONG[:80]}'"),
@@ -552,18 +543,11 @@ def test_a_name_that_is_none_is_explained(folder, name, words):
 
 def test_files_that_are_not_there_or_too_new_are_explained(folder, tmp_path, monkeypatch):
     for name in ("later/a", "later"):
-        with pytest.raises(RuntimeError, match="of later are of format 5, .* formats 3 and 4"):
+        with pytest.raises(RuntimeError, match="of later are of format 5, .* reads format 4"):
             find_question(name, "")
     (folder / "bad.json").write_text('{"format": "4", "questions": {}}')
     with pytest.raises(RuntimeError, match="^The sealed questions of bad: 'format' should be"):
         find_question("bad/a", "")
-    (tmp_path / "moved.json").write_text('{"moved": {"levers/gone": "levers/arm"}}')
-    with monkeypatch.context() as patch:
-        patch.setattr(questions, "sealed_folders", lambda: [tmp_path])
-        assert questions._moved() == {"levers/old": "levers/plain", "levers/gone": "levers/arm"}
-    (folder / "moved.json").write_text('{"moved": 7}')
-    with pytest.raises(Misread, match="^moved.json: 'moved' should be"):
-        find_question("levers/nothing", "")
     monkeypatch.chdir(folder)
     with pytest.raises(NoSuchQuestion, match="^There is no .*, and no other: ") as error:
         find_question(LONG, "")
@@ -571,7 +555,7 @@ def test_files_that_are_not_there_or_too_new_are_explained(folder, tmp_path, mon
     assert questions.places() == []
     monkeypatch.setattr(questions, "sealed_folders", lambda: [folder])
     assert questions.places() == [folder]
-    assert find_question("third/a", "").format == 3
+    assert find_question("third/a", "").question.kind == EXACT.kind
 
 
 def test_files_that_are_elsewhere_are_fetched(folder, monkeypatch):

@@ -1,15 +1,13 @@
 """What each typical mistake does to an answer, and by which name a locker knows it."""
 
-import itertools
-
 import pytest
 import sympy as sm
 from sympy.physics.mechanics import ReferenceFrame, dynamicsymbols
 
-from coursework.checking import catalogue, format_3
+from coursework.checking import catalogue
 from coursework.checking.catalogue import by_short_name, message, mistakes
 from coursework.checking.mistakes import NUMBERS, as_matrix, short_name
-from coursework.checking.question import Note, Question
+from coursework.checking.question import Question
 
 x, y = sm.symbols("x y")
 q = dynamicsymbols("q")
@@ -256,33 +254,3 @@ def test_a_kind_whose_values_are_those_of_another_has_its_mistakes():
     asked = Question("function", result="measurement", symbols={"x": (1, 2)})
     assert by_short_name(asked) == by_short_name(Question("measurement", symbols={"x": (1, 2)}))
     assert message(asked, "power of ten", {"power": 3}).startswith("This is $10^{3}$ times")
-
-
-@pytest.mark.parametrize("kind", ["expression", "measurement", "order", "function"])
-def test_the_numbers_of_format_3_are_what_they_were(kind, monkeypatch):
-    """Whatever the catalogue of today says."""
-    monkeypatch.setattr(format_3, "catalogue_of_format_3", lambda kind: {"expression": ()}[kind])
-    question = Question(kind, symbols={"b": (1, 2), "a": (1, 2)}, result="order")
-    own = {
-        "measurement": [("power of ten", {"power": power}) for power in POWERS],
-        "expression": [],
-    }.get(kind, [("turned round", {}), ("two interchanged", {})])
-    one_by_one = ("opposite", "reciprocal"), ("half", "double", "supplement", "complement")
-    expected = [
-        *((note, {}) for note in ("transposed", "in degrees", "in radians")),
-        *(("sign of a symbol", {"symbol": name}) for name in "ab"),
-        *(
-            ("symbols interchanged", {"first": first, "second": second})
-            for first, second in itertools.product("ab", repeat=2)
-        ),
-        *((note, {}) for note in one_by_one[0]),
-        *(("factor", {"factor": name}) for name in FACTORS),
-        *(("one wrong", {"number": number}) for number in range(21)),
-        *((note, {}) for note in (*one_by_one[1], "not turned", "turned the wrong way")),
-        *own,
-    ]
-    assert format_3.numbered(question) == [Note(*one) for one in expected]
-    for places in ([2, 0xFFFF], [0xFFFF, len(expected) - 1], [0, 3], [0xFFFF, 0xFFFF]):
-        inside = b"".join(place.to_bytes(2, "big") for place in places)
-        found = [expected[place] for place in places if place != 0xFFFF]
-        assert format_3.mistakes_in(inside, question) == found

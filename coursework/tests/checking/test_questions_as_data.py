@@ -6,7 +6,6 @@ import pytest
 
 from coursework.checking.fields import Misread
 from coursework.checking.question import (
-    FORMAT,
     KnownAnswer,
     Locker,
     Note,
@@ -44,18 +43,18 @@ QUESTION = Question(
 
 
 def test_every_field_is_read_and_written():
-    sealed = Sealed(QUESTION, "packed", 2.5, "moment", ("p", "q"), ("l",), ("salt", "names"), 3)
-    assert Sealed.from_json(WHOLE, "here", 3) == sealed and sealed.as_json() == WHOLE
+    sealed = Sealed(QUESTION, "packed", 2.5, "moment", ("p", "q"), ("l",), ("salt", "names"))
+    assert Sealed.from_json(WHOLE, "here") == sealed and sealed.as_json() == WHOLE
     assert Question.from_json(WHOLE) == QUESTION
     assert QUESTION.as_json() == OF_QUESTION | OF_VARIANT | OWN
     about = {one.name.replace("_", " ") for kind in (Question, Sealed) for one in fields(kind)}
-    inner = {"question", "variant", "arguments", "format"}
+    inner = {"question", "variant", "arguments"}
     assert about - inner == OF_QUESTION.keys() | OF_SEALED.keys()  # a new field stands here, too
 
 
 def test_what_is_empty_is_left_out():
     sealed = Sealed.from_json({"kind": "vector"}, "here")
-    assert sealed == Sealed(Question("vector")) and sealed.format == FORMAT
+    assert sealed == Sealed(Question("vector"))
     assert sealed.as_json() == {"kind": "vector", "salt": "", "lockers": "", "worth": 1}
     assert Question.from_json({"kind": "function", "takes": "lists"}).takes == "lists"
     one = Question.from_json({"kind": "vector", "variants": 2})

@@ -182,21 +182,12 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
 # ---- plug-ins ----------------------------------------------------------------------------------
 
 
-def test_plug_ins_bring_packages_folders_and_what_they_handed_out(monkeypatch, tmp_path):
-    def words(question, sign, axis): ...
-
-    old = SimpleNamespace(
-        __name__="old.course", PACKAGES=("numpy", "old"), FORMAT_3={"k": [("n", {})]}
-    )
+def test_plug_ins_bring_packages_folders(monkeypatch, tmp_path):
+    old = SimpleNamespace(__name__="old.course", PACKAGES=("numpy", "old"))
     new = SimpleNamespace(__name__="new", PACKAGES=("sympy", "numpy"))
     bare = SimpleNamespace(__name__="bare")
-    kind = SimpleNamespace(messages={"flipped": words}, details={"sign": ("+", "-")})
     monkeypatch.setattr(plugins, "plugins", lambda: [old, new, bare])
-    monkeypatch.setattr(plugins, "kinds", lambda: {"own": kind})
     assert plugins.packages() == ["old", "numpy", "new", "sympy", "bare"]
-    assert plugins.catalogue_of_format_3("k") == [("n", {})]
-    flipped = [("flipped", {"sign": ("+", "-"), "axis": ()})]
-    assert plugins.catalogue_of_format_3("own") == flipped
     monkeypatch.setattr(plugins.resources, "files", lambda module: tmp_path / module.__name__)
     (tmp_path / "new" / "sealed").mkdir(parents=True)
     (tmp_path / "old.course").mkdir()

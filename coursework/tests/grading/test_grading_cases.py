@@ -59,7 +59,7 @@ def beams(weights, calls="[[1.5], [-2.0], [0.25]]"):
     """A notebook with solutions: a question with a variant for each weight, and a function."""
     return notebook(
         [
-            "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
+            "import sympy as sm\nfrom coursework import check, student, variant\nstudent('')",
             ("markdown", "## The load"),
             f"### BEGIN VARIANTS\nbeam = draw('{NAME}', count={len(weights)}, weight={weights})\n"
             "### END VARIANTS",
@@ -89,7 +89,7 @@ def write_beams(folder, *arguments, **more):
 def answered(load, says="", function="def twice(x):\n    return x + x"):
     return notebook(
         [
-            f"from coursework import check, me\nme({says!r})",
+            f"from coursework import check, student\nstudent({says!r})",
             f"load = {load}\ncheck('{NAME}', load)",
             function,
             "check('beams/twice', twice)",
@@ -410,7 +410,8 @@ def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, ou
             assert record.student in cells
             shown = graded.without_names(cells)
             assert (
-                record.student not in shown and f"me('{graded.aliases[record.student]}')" in shown
+                record.student not in shown
+                and f"student('{graded.aliases[record.student]}')" in shown
             )
     assert graded.without_names("student('Nobody Known')") == "student('somebody')"
     assert not re.search(

@@ -46,7 +46,7 @@ class Crash(BaseException):
 def source(name, weights, times):
     return notebook(
         [
-            "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
+            "import sympy as sm\nfrom coursework import check, student, variant\nstudent('')",
             f"### BEGIN VARIANTS\nbeam = draw('{name}/load', count={len(weights)}, "
             f"weight={weights})\n### END VARIANTS",
             ("markdown", "A beam carries {{weight}} N twice. Give the whole load."),
@@ -191,7 +191,11 @@ class Term:
                 if answer is not None
             ]
             made = notebook(
-                ["from coursework import check, me\nme('')", *cells, f"'{name}/load'; check"]
+                [
+                    "from coursework import check, student\nstudent('')",
+                    *cells,
+                    f"'{name}/load'; check",
+                ]
             )
             nbformat.write(made, folder / f"{name}.ipynb")
             (folder / "timestamp.txt").write_text(f"{work.when.isoformat(' ')}.000000 UTC")

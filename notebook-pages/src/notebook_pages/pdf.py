@@ -35,11 +35,11 @@ FACES = (
 )
 LONG = 14  # lines of code that need not stay on one page
 # What only a screen can do, or what stands in the way on paper: links to a place beside themselves,
-# the code that draws figures, controls, the list of links on the front page, words for those who
-# came for what has moved, and what a check says of a blank.
+# the code that draws figures, controls, the list of links on the front page, and what a check says
+# of a blank.
 ONLY_ON_SCREEN = (
     "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
-    ".whole-book, p.moved, .output:has([data-outcome='not attempted'])"
+    ".whole-book, .output:has([data-outcome='not attempted'])"
 )
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
 # Attributes that name other elements.

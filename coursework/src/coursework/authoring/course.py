@@ -35,8 +35,6 @@ class Course(NamedTuple):
         How variants are given to students: ``"by name"``, so that one that is taken out moves only
         those who had it, or by number if nothing is said. Say it before a term begins: students'
         numbers change with it.
-    moved : dict
-        Names that questions had in an earlier edition, and those that they have now.
     """
 
     root: Path
@@ -50,13 +48,11 @@ class Course(NamedTuple):
     chapter: str = ""
     solution: str = ""
     variants: str = ""
-    moved: dict[str, str] = {}
 
 
 #: What a course may say that is no path.
 TEXTS = ("package", "edition", "chapter", "solution", "variants")
 BY_NAME = "by name"
-MOVED = "moved"
 DEFAULTS = {
     "sources": "solutions",
     "exercises": "exercises",
@@ -117,12 +113,6 @@ def _read(path: Path) -> Course:
         said = tomllib.loads(path.read_text("utf8"))
     except ValueError as error:
         raise AuthorError(f"{path}: {error}") from None
-    moved = said.pop(MOVED, {})
-    if not isinstance(moved, dict) or not all(isinstance(name, str) for name in moved.values()):
-        raise AuthorError(
-            f'{path}: [{MOVED}] holds old and new names of questions: "levers/arm" = '
-            '"levers/moment"'
-        )
     if said.get("variants", BY_NAME) != BY_NAME:
         raise AuthorError(
             f'{path}: variants = "{BY_NAME}", or nothing; this is {said["variants"]!r}.'
@@ -130,10 +120,8 @@ def _read(path: Path) -> Course:
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, a "
-            f"table [{MOVED}], and "
-            + "nothing else"
-            + (f"; what is {unknown[0]!r}?" if unknown else ".")
+            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, and "
+            "nothing else" + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}
@@ -145,4 +133,4 @@ def _read(path: Path) -> Course:
                 f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and "
                 f"{others[name]!r} is none."
             )
-    return Course(path.parent, said.get("title", path.parent.name), **places, **others, moved=moved)
+    return Course(path.parent, said.get("title", path.parent.name), **places, **others)

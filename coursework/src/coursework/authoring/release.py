@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..checking import fields, sealing
 from ..checking.evaluate import MP
 from ..checking.question import FORMAT
-from ..checking.questions import MOVED, beside, salt_of_all
+from ..checking.questions import beside, salt_of_all
 from ..checking.reading import canonical, read
 from ..checking.variants import image
 from .author import AuthoredQuestion, AuthorError, Pages, solution_code
@@ -312,14 +312,13 @@ def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
 
 
 def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
-    """What a right answer opens hints for is asked somewhere; under its name of today."""
+    """What a right answer opens hints for is asked somewhere."""
     for question, later in after.items():
         for one in later:
             file = course.sources / f"{one.partition('/')[0]}.ipynb"
             if not file.is_file() or one not in names_asked(file):
-                now = f" It is called '{course.moved[one]}' now." if one in course.moved else ""
                 raise AuthorError(
-                    f"{question}: `after` names '{one}', and no notebook asks such a question.{now}"
+                    f"{question}: `after` names '{one}', and no notebook asks such a question."
                 )
 
 
@@ -473,9 +472,6 @@ def release(
     paths = notebooks_in(course.sources, only)
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
-    if course.moved:
-        moved = {"format": FORMAT, "moved": course.moved, "questions": {}}
-        (course.sealed / MOVED).write_text(_as_text(moved), "utf8")
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
         wanted = [
@@ -515,7 +511,7 @@ def _demand_sources(course: Course, known: Collection[str]) -> None:
         path
         for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
         for path in sorted(folder.glob(f"*{suffix}"))
-        if path.stem not in known and path.name != MOVED
+        if path.stem not in known
     ]
     if others:
         raise AuthorError(

@@ -384,7 +384,7 @@ def read_source(
     needed = set(range(len(notebook.cells)))
     if only is not None:
         needed = cells_needed(notebook, only, plots if pictures and not variant else ())
-    said = {"check": record_check, "student": record_identity, "me": record_identity}
+    said = {"check": record_check, "student": record_identity}
     with contextlib.ExitStack() as replaced:
         for name, record in said.items():
             replaced.enter_context(_replaced(coursework, name, record))

@@ -54,11 +54,6 @@ def student(identity: str = "") -> None:
         )
 
 
-#: The older name, which stands in notebooks that were handed out;
-#: elsewhere it is SymPy's mechanics.
-me = student
-
-
 def identity() -> str:
     """Who works here, or an empty text: what a student calls asks for it, and hands it on."""
     return _identity

@@ -16,20 +16,14 @@ in it are read, each if it is there:
     the conjugate"``.
 ``PACKAGES``
     Names of the packages that the course's notebooks import, so that grading has them at hand.
-``FORMAT_3``
-    Of a course that handed out sealed files of format 3 and has kinds of its own: by the name of
-    the kind, the notes of its mistakes of that time in their order, each with what its details
-    could be. Without it, the order of today counts.
 """
 
 import functools
 import importlib.util
-import inspect
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from importlib import metadata, resources
 from importlib.resources.abc import Traversable
 from types import ModuleType
-from typing import Any
 
 from .kind import Kind as Kind  # plug-ins take it from here
 from .kinds import KINDS
@@ -76,24 +70,6 @@ def kinds() -> dict[str, Kind]:
                 )
             found[name] = kind
     return found
-
-
-def catalogue_of_format_3(kind: str) -> Sequence[tuple[str, Mapping[str, Any]]]:
-    """The mistakes that a plug-in's kind had in sealed files of format 3, in
-    their order, with their details.
-    """
-    for plugin in plugins():
-        if kind in getattr(plugin, "FORMAT_3", {}):
-            frozen: Sequence[tuple[str, Mapping[str, Any]]] = plugin.FORMAT_3[kind]
-            return frozen
-    messages, details = kinds()[kind].messages, kinds()[kind].details
-    return [
-        (
-            note,
-            {name: details.get(name, ()) for name in list(inspect.signature(words).parameters)[1:]},
-        )
-        for note, words in messages.items()
-    ]
 
 
 def kind_of_values(question: Question) -> Kind:

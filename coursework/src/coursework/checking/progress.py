@@ -63,8 +63,7 @@ class Entry:
         What these numbers are called, whatever their place among the variants; empty where a
         question has no others.
     whose : str or None
-        Whose numbers they were, empty for everybody's; ``None`` where all have the same, and in
-        older records.
+        Whose numbers they were, empty for everybody's; ``None`` where all have the same.
     others : tuple of Entry
         What is known with other numbers.
     more : mapping
@@ -141,9 +140,7 @@ class Entry:
         return found | ({OTHERS: _by_variant(self.others)} if self.others else {})
 
     def has(self, variant: int, numbers: str) -> bool:
-        """Whether it is of these numbers. Older entries know their
-        place among the variants alone.
-        """
+        """Whether it is of these numbers; an entry without any knows its variant's number alone."""
         return self.numbers == numbers if self.numbers and numbers else self.variant == variant
 
     def with_numbers(self, variant: int, numbers: str) -> Entry:

@@ -350,8 +350,6 @@ class Sealed:
         The salt that all variants have in common, and the names under which it is known that an
         answer is right in one of them, as :func:`coursework.checking.sealing.pack_names` packs
         them; with the first variant.
-    format : int
-        Of the file.
     """
 
     question: Question
@@ -361,10 +359,9 @@ class Sealed:
     pages: tuple[str, ...] = ()
     ladder: tuple[str, ...] = ()
     others: tuple[str, str] | None = None
-    format: int = FORMAT
 
     @classmethod
-    def from_json(cls, found: object, where: str, format: int = FORMAT) -> Sealed:
+    def from_json(cls, found: object, where: str) -> Sealed:
         """Read a question of a file of sealed questions.
 
         Raises
@@ -381,7 +378,6 @@ class Sealed:
             about.maybe("pages", many(text)) or (),
             about.maybe("ladder", many(text)) or (),
             about.maybe("others", pair(text)),
-            format,
         )
 
     def as_json(self) -> dict[str, Json]:

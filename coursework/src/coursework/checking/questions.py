@@ -17,7 +17,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import cast
 
-from . import format_3, sealing
+from . import sealing
 from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
@@ -34,8 +34,6 @@ from .variants import Given, names_of_variants, own_variant, siblings_of, text_o
 #: In a folder of sealed questions: where in the web those are that it lacks. Only a
 #: browser's Python has such a file.
 ELSEWHERE = "elsewhere.txt"
-#: In a folder of sealed questions: the names that questions had in earlier editions.
-MOVED = "moved.json"
 #: Letters and digits of a code that opens worked solutions: none that looks like another.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 NOT_IN_THIS_CATALOGUE = (
@@ -89,13 +87,11 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
     """
     found = {}
     try:
-        format, questions = _file(notebook)
-        chosen = questions
-        if variant:
-            format, chosen = _file(notebook, variant)
+        questions = _file(notebook)
+        chosen = _file(notebook, variant) if variant else questions
         for name, about in chosen.items():
             about = _on_the_first(questions[name], about) if variant else about
-            found[name] = Sealed.from_json(about, f"The sealed question {name}", format)
+            found[name] = Sealed.from_json(about, f"The sealed question {name}")
     except ValueError as error:
         cut = f"The sealed questions of {notebook} are no whole file."
         raise RuntimeError(
@@ -105,10 +101,10 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
     return found
 
 
-def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Json]]]:
-    """The format of a file of sealed questions, and what it says of each, by name."""
-    if not re.fullmatch("[a-z0-9-]{1,60}", notebook) or f"{notebook}.json" == MOVED:
-        return FORMAT, {}
+def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
+    """Read what a file of sealed questions says of each of them, by name."""
+    if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
+        return {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
     content = next(
         (file.read_text("utf8") for folder in places() if (file := folder / name).is_file()), None
@@ -121,19 +117,18 @@ def _file(notebook: str, variant: int = 0) -> tuple[int, dict[str, dict[str, Jso
             None,
         )
     if content is None:
-        return FORMAT, {}
+        return {}
     about = Fields(json.loads(content), f"The sealed questions of {notebook}")
     format = about.get("format", whole)
-    if format not in (3, FORMAT):
+    if format != FORMAT:
         from .. import __version__
 
         raise RuntimeError(
             f"The sealed questions of {notebook} are of format {format}, and this is coursework "
-            f"{__version__}, which reads formats 3 and {FORMAT}. "
-            "Install the package that came with the notebook: `python -m coursework update "
-            "exercises.zip` says how."
+            f"{__version__}, which reads format {FORMAT}. Install the package that came with the "
+            "notebook: `python -m coursework update exercises.zip` says how."
         )
-    return format, about.get("questions", by_name(by_name(anything)))
+    return about.get("questions", by_name(by_name(anything)))
 
 
 def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[str, Json]:
@@ -203,13 +198,7 @@ def find_question(name: str, student: str) -> Sealed:
             f"this notebook is not beside it (in {Path.cwd()}), and no package with sealed "
             "questions is installed."
         )
-    if now := _moved().get(asked):
-        raise NoSuchQuestion(
-            f"'{asked}' is called '{now}' in this edition: write that name into `check(...)`."
-        )
-    notebooks = sorted(
-        file.removesuffix(".json") for file in found if file.endswith(".json") and file != MOVED
-    )
+    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
     if name in notebooks:
         raise NoSuchQuestion(
             f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}."
@@ -221,15 +210,6 @@ def find_question(name: str, student: str) -> Sealed:
     raise NoSuchQuestion(
         f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
     )
-
-
-def _moved() -> dict[str, str]:
-    """The names that questions have now, by those that they had in earlier editions."""
-    now: dict[str, str] = {}
-    for file in (folder / MOVED for folder in places()):
-        if file.is_file():
-            now |= Fields(json.loads(file.read_text("utf8")), MOVED).get("moved", by_name(text))
-    return now
 
 
 def variant(name: str) -> Given:
@@ -358,14 +338,9 @@ def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
     if page is not None:
         place = Place(page, inside.hex())
         return Locker.from_json(open_page(sealed, place), f"Page {page}", place)
-    if sealed.format == 3:
-        notes = format_3.mistakes_in(inside, sealed.question)
-    else:
-        known, unknown = (
-            by_short_name(sealed.question),
-            Note("authored", {"text": NOT_IN_THIS_CATALOGUE}),
-        )
-        notes = [known.get(name, unknown) for name in sealing.mistakes_in(inside)]
+    known = by_short_name(sealed.question)
+    unknown = Note("authored", {"text": NOT_IN_THIS_CATALOGUE})
+    notes = [known.get(name, unknown) for name in sealing.mistakes_in(inside)]
     return Locker((KnownAnswer(OUTCOMES[outcome], tuple(notes)),))
 
 

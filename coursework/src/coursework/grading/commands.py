@@ -50,9 +50,6 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="store_true",
         help="say whose each file is, how that is known, and how many would be run; run nothing",
     )
-    grade.add_argument(  # what that was called
-        "--only-list", dest="dry_run", action="store_true", help=argparse.SUPPRESS
-    )
     grade.add_argument(
         "--workers",
         type=int,

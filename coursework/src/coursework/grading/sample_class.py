@@ -340,7 +340,7 @@ class _Student:
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
             cell.source = re.sub(
-                r"(student|me)\(''\)", lambda found: f"{found[1]}({identity!r})", cell.source
+                r"student\(''\)", lambda found: f"student({identity!r})", cell.source
             )
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did: list[str] = []

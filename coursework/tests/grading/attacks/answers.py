@@ -497,7 +497,7 @@ A_C_N = Small([[1, 0], [0, 1]])
         "sum",
         """
 import coursework
-coursework.me('right')
+coursework.student('right')
 __name__, student, identity = 'right', 'right', 'right'
 sine = alpha
 """,

@@ -308,7 +308,7 @@ class _Notebook:
             sys.modules.pop(name, None)
         package = self.package = types.ModuleType("coursework")
         vars(package).update(
-            dict.fromkeys(("hint", "progress", "student", "me", "worked_solution"), nothing),
+            dict.fromkeys(("hint", "progress", "student", "worked_solution"), nothing),
             check=self.check,
             variant=lambda question: Given("", self.job.get("given", {}).get(question, {})),
         )

@@ -105,24 +105,4 @@ export class Answers {
   forgetAgreement() {
     store.drop(this.agreed);
   }
-
-  // The first edition kept all edits of a page in one list, under a name that other books may share; the second one
-  // noted when it had read it.
-  bringOld(names, originals) {
-    if (store.read(`old ${this.page}`)) return;
-    store.bring(`code of ${this.page}`, (text) => {
-      let old = [], kept = true;
-      try {
-        old = JSON.parse(text);
-      } catch {} // somebody else's
-      for (const { number, original, code } of Array.isArray(old) ? old : []) {
-        const places = [number - 1, ...originals.keys()];
-        const place = places.find((k) => originals[k] !== undefined && fingerprint(originals[k]) === original
-          && !this.read(names[k]));
-        const name = place === undefined ? `old-${fingerprint(code)}` : names[place];
-        kept = this.write(name, { code, number, original, at: 0 }) && kept;
-      }
-      return kept;
-    });
-  }
 }

@@ -1,11 +1,9 @@
 // The editions of the book that this browser keeps, whole or not at all: for the service worker, and for the page's menu.
 // A file lies under its path and its content, so that no edition puts anything in the place of another's; an edition is a
 // list of such files, and the one entry that names the newest is written when all of them are there. What the edition
-// before it had stays for the tabs that still show it. The list names the version of the store since which it has its
-// form; version 1 had one file for each path, and named none.
+// before it had stays for the tabs that still show it. The list names the version of the store.
 import { cacheOf, NEWER, VERSION } from "./store.js";
 
-const SINCE = 2;
 const SILENCE = 20_000; // milliseconds without a byte, after which a file is given up
 const AT_ONCE = 6; // files that are fetched side by side
 
@@ -21,8 +19,8 @@ export class Editions {
   }
 
   // Where a file lies: also what it is fetched by, which no cache on the way takes for another edition's.
-  key(path, print, format = SINCE) {
-    return this.address(path) + (format >= SINCE ? `?kept=${print}` : "");
+  key(path, print) {
+    return `${this.address(path)}?kept=${print}`;
   }
 
   // {format, edition, parts, files, before}: the newest whole edition, or null. Files are fingerprints by their paths.
@@ -41,11 +39,11 @@ export class Editions {
     const path = decodeURI(url.pathname.slice(this.site.length)).replace(/(^|\/)$/, "$1index.html");
     const version = url.searchParams.get("v") ?? "";
     const print = [list.files[path], list.before?.[path]].find((known) => known?.startsWith(version));
-    return print && this.file(path, print, list.format ?? 1);
+    return print && this.file(path, print);
   }
 
-  async file(path, print, format) {
-    return (await caches.open(this.name)).match(this.key(path, print, format));
+  async file(path, print) {
+    return (await caches.open(this.name)).match(this.key(path, print));
   }
 
   // What there is to keep: the server's list, in two parts, of [fingerprint, bytes] by path.
@@ -84,8 +82,8 @@ export class Editions {
       const prints = (of) => Object.fromEntries(Object.entries(of).map(([path, [print]]) => [path, print]));
       const files = prints(Object.assign({}, ...parts.map((part) => offer[part])));
       const same = there?.edition === offer.edition;
-      const before = same ? there.before : there?.format >= SINCE ? there.files : undefined;
-      const list = { format: SINCE, edition: offer.edition, parts, files, before };
+      const before = same ? there.before : there?.files;
+      const list = { format: VERSION, edition: offer.edition, parts, files, before };
       await cache.put(this.list, new Response(JSON.stringify(list), { headers: { "Content-Type": "application/json" } }));
       const used = new Set([files, before ?? {}].flatMap((of) => Object.entries(of)).map(([path, print]) => this.key(path, print)));
       for (const { url } of await cache.keys()) if (url !== this.list && !used.has(url)) await cache.delete(url);

@@ -111,7 +111,6 @@ class Page {
 
   // Put what is kept back where the book's code is still the same; elsewhere ask.
   async bring() {
-    this.answers.bringOld(this.cells.map(({ id }) => id), this.cells.map(({ original }) => original));
     this.showGiven();
     await this.lookAtNotebook();
     if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
@@ -167,7 +166,7 @@ class Page {
   // for no other cell. Names that are made of the code say it themselves (see nameCells).
   offer(name, entry) {
     const own = this.cells.find(({ id }) => id === name);
-    const gone = !own && !name.startsWith(`${entry.original}-`) && !name.startsWith("old-");
+    const gone = !own && !name.startsWith(`${entry.original}-`);
     const cell = own ?? this.cells[gone ? this.cells.length - 1 : Math.min(Math.max(entry.number, 1), this.cells.length) - 1];
     const choose = (text, action) => {
       const button = element("button", "", text);

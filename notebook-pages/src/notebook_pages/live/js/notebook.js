@@ -2,27 +2,11 @@
 import { Answers, SITE, store } from "./answers.js";
 import { agreeOnRecords, bookCells, bringTogether, edition, newFile, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 
-const plain = (source) => (Array.isArray(source) ? source.join("") : source).trimEnd();
 const element = (tag, properties, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
   made.append(...children);
   return made;
 };
-
-// Copies of the first edition say nothing of where they come from: name their cells as the book's notebook does.
-// Returns whether such a copy is that notebook, but for answers.
-function stamp(copy, book) {
-  const cells = {}, ours = book.metadata.book.cells;
-  const graded = (cell) => cell.metadata?.nbgrader?.grade_id;
-  let same = copy.cells.length === book.cells.length;
-  for (const mine of book.cells) {
-    const found = copy.cells.find((cell) => (graded(mine) ? graded(cell) === graded(mine) : cell.id === mine.id));
-    if (found && mine.id in ours && found.cell_type === "code") cells[found.id] = ours[mine.id];
-    same &&= found && (mine.metadata?.nbgrader?.solution || plain(found.source) === plain(mine.source));
-  }
-  copy.metadata.book = { ...book.metadata.book, cells };
-  return same;
-}
 
 // Ask before the interface is there. Resolves to the place of the button that was pressed.
 function ask(title, words, ...choices) {
@@ -49,17 +33,16 @@ async function open(path) {
   const page = path.replace(/\.ipynb$/, "");
   await agreeOnRecords(page, true);
   const copy = await readCopy(path);
-  let used = copy, changed = false;
+  let used = copy;
   if (copy) {
-    changed = !copy.content.metadata.book;
-    const same = changed ? stamp(copy.content, book) : edition(copy.content) === edition(book);
-    if (!same) used = await choose(path, copy, book);
+    if (!copy.content.metadata.book) return; // the reader put it there
+    if (edition(copy.content) !== edition(book)) used = await choose(path, copy, book);
   } else {
     used = newFile(path, book);
     new Answers(page).forgetAgreement();
   }
   const { went } = bringTogether(page, used, originals);
-  if (changed || went.length || (copy && used !== copy)) {
+  if (went.length || (copy && used !== copy)) {
     await writeCopy(path, { ...used, last_modified: new Date().toISOString() });
   }
   new Answers(page).agree({}); // the page knows by this that there is something to look after

@@ -256,6 +256,6 @@
     });
   }
   else if (store.isNewer) tools.say(globalThis.progress.whyNotKept());
-  else if (store.keys().some(isOwn) || store.waits(`code of ${data.page}`)) ask();
+  else if (store.keys().some(isOwn)) ask();
   else store.listen((key) => page || (isOwn(key) && ask()));
 }

@@ -11,13 +11,11 @@
 //     record PAGE LIST NAME      one thing that was read, done or checked, or one question that was answered
 //     question NAME              what coursework knows of one question; coursework NAME: its other texts
 //     setting NAME               what the reader has chosen, or what the browser has fetched
-//     brought KEY                the fingerprint of what stood under an older key when it was taken over
 // - editions of the book, whole or not at all: files by their content in one cache, and the list that names the newest
 //   (editions.js); the service worker, which has no entries, finds the version in that list;
 // - notebooks, in the database that JupyterLite makes (notebooks.js).
 //
-// What older versions kept is taken over whenever it has changed, and stays where it is: an older edition may still be
-// open, or come back. What a newer version has kept is left alone, and said. What finds no room lasts as long as the page.
+// What a newer version has kept is left alone, and the reader is told. What finds no room lasts as long as the page.
 export const VERSION = 3;
 export const NEWER = "A newer edition of this book has kept things in this browser, in a form that this page does not know. They stay"
   + " as they are. What you do here lasts until you leave the page; a reload may bring the newer edition.";
@@ -65,11 +63,6 @@ export class Store {
   constructor(site) {
     this.prefix = `book ${site} `;
     this.database = `JupyterLite Storage - ${site}lite/`;
-    // Versions 1 and 2 kept these; what they kept of a page's cells, only the page can bring (see answers.js).
-    this.bring(`progress of ${site}`, (text) => this.takeRecord(parsed(text)?.pages));
-    this.bring(`${this.prefix}coursework progress.json`, (text) => this.keepTries(parsed(text)?.text, parsed(text)?.at));
-    this.bring("book predictions", (text) => this.put("setting predictions", this.read("setting predictions") ?? text));
-    this.bring(`${this.prefix}fetched`, (text) => this.put("setting fetched", text));
   }
 
   // Whether a newer version has kept things.
@@ -139,19 +132,6 @@ export class Store {
     });
   }
 
-  // Whether something stands under an older key that is not what was taken over before.
-  waits(old) {
-    const text = this.isNewer ? null : found(old);
-    return text !== null && this.read(`brought ${old}`) !== fingerprint(text);
-  }
-
-  // Take that over: ``take`` says whether all of it is kept. Otherwise the next page tries again.
-  bring(old, take) {
-    if (!this.waits(old)) return;
-    const text = found(old);
-    if (take(text)) this.put(`brought ${old}`, fingerprint(text));
-  }
-
   // --- the reader's record, by pages ---------------------------------------------------------------
 
   record() {
@@ -217,18 +197,18 @@ export class Store {
   }
 
   // How a question stands: its outcome with the reader's own numbers; or, where nothing is known with these, what is known
-  // with others, and whose those were, "" for everybody's. Older entries do not say whose: a reader's own is taken to be
-  // the one that comes first, unless it is everybody's, of a question that ``varies``.
+  // with others, and whose those were, "" for everybody's. An entry without a name is of a question that had one set of
+  // numbers: it counts for every reader until the question ``varies``.
   standing(name, varies) {
     const tried = this.read(`question ${name}`)?.tried;
     if (!isObject(tried)) return null;
     const { student } = this;
     const all = [tried, ...Object.values(tried[OTHERS] ?? {})].filter((one) => isObject(one) && one.outcome);
-    const whose = (one) => one.whose ?? (one !== tried ? undefined : varies && !one.variant ? "" : student);
-    const own = all.find((one) => whose(one) !== undefined && plainName(whose(one)) === student);
+    const whose = (one) => one.whose ?? (varies ? "" : student);
+    const own = all.find((one) => plainName(whose(one)) === student);
     if (own) return { outcome: own.outcome };
     const other = all.find(({ outcome }) => outcome === "correct") ?? all[0];
-    return other ? { outcome: other.outcome, whose: whose(other) ?? "another name" } : null;
+    return other ? { outcome: other.outcome, whose: whose(other) } : null;
   }
 
   // Keep what a file says of the questions that it changes; ``base`` is the file that it was made from. What another
@@ -260,7 +240,7 @@ function sound(text) {
 // Names as coursework compares them: without spaces around them, and whatever their capitals.
 export const plainName = (name) => name.trim().split(/\s+/).join(" ").toUpperCase();
 
-// Whether two entries are of the same numbers; older ones know their place among the variants alone.
+// Whether two entries are of the same numbers; one of a question without variants knows its place among them alone.
 const ofSameNumbers = (one, other) =>
   one.numbers && other.numbers ? one.numbers === other.numbers : (one.variant ?? 0) === (other.variant ?? 0);
 

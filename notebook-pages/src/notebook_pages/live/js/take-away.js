@@ -1,5 +1,5 @@
 // What the reader takes away and brings back: the page's notebook with the answers in it, and all answers in one file.
-import { Answers, coursework, nameCells, store } from "./answers.js";
+import { Answers, nameCells, store } from "./answers.js";
 import { allCopies, bookCells, placeBeside, readCopy, writeCopy } from "./notebooks.js";
 import { fingerprint, NEWER, VERSION } from "./store.js";
 
@@ -140,9 +140,7 @@ export async function restore() {
       brought += 1;
     } else if (question) {
       kept = store.keepTries(JSON.stringify({ [question]: value.tried }), value.at) && kept;
-    } else if (key === "coursework progress.json") { // as version 2 kept it
-      kept = coursework.write("progress.json", value.text, value.at) && kept;
-    } else if (!/^(?:version$|brought )/.test(key) && store.read(key) === null) {
+    } else if (key !== "version" && store.read(key) === null) {
       kept = store.put(key, value) && kept;
       brought += Boolean(page);
     }
