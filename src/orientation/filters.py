@@ -275,9 +275,10 @@ class MultiplicativeKalmanFilter:
         # 13
         self.dcm = dcm_from_rotation_vector(x[..., :3]) @ self.dcm
         self.bias = self.bias + x[..., 3:]
-        # 14
+        # 14: to second order, since I - X/2 alone would enlarge P a little each time.
+        X = numpy.cross(x[..., None, :3], numpy.eye(3)).swapaxes(-1, -2)
         G = numpy.zeros_like(P) + identity
-        G[..., :3, :3] -= numpy.cross(x[..., None, :3], numpy.eye(3)).swapaxes(-1, -2) / 2
+        G[..., :3, :3] += X @ X / 6 - X / 2
         self.covariance = G @ P @ G.swapaxes(-1, -2)
         return Innovation(nu, S, square, accepted)
 

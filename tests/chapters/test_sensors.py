@@ -51,14 +51,46 @@ def test_what_is_called_still_is_white_and_what_is_held_is_called_so():
     held, still = x_imu.time < 1, (ngimu.time >= 8.9) & (ngimu.time < 9.9)
     assert neighbours(x_imu.angular_velocity[held]).min() > 0.8
     assert np.abs(neighbours(ngimu.angular_velocity[still])).max() < 3 / np.sqrt(still.sum())
-    _, text = found("def likeness")
-    of_held, of_still = re.findall(r"likeness of neighbours (.*)", text)
+    _, text = found("def autocorrelation")
+    of_held, of_still = re.findall(r"its autocorrelation (.*)", text)
     assert min(numbers(of_held)) > 0.8 and max(map(abs, numbers(of_still))) < 0.3
     words = (
         "".join("".join(cell["source"]) for cell in cells("orientation-from-sensors"))
         + recordings.x_imu.__doc__
     )
     assert "on a table" not in words.replace("lies still on a table", "")
+
+
+def test_a_low_pass_filter_makes_a_still_instrument_look_held_until_it_is_averaged():
+    """By SciPy's filters, of first and of second order, over five seeds."""
+    from scipy.signal import butter, lfilter
+
+    share = 1 - np.exp(-2 * np.pi * 42 / 200)
+    for b, a in (([share], [1, share - 1]), butter(2, 42, fs=200)):
+        for seed in range(5):
+            noise = np.random.default_rng(seed).normal(size=(200 * 101, 3))
+            seconds = np.split(lfilter(b, a, noise, axis=0)[200:], 100)
+            means = [second.reshape(40, 5, 3).mean(axis=1) for second in seconds]
+            as_it_is, averaged = (
+                np.mean([np.abs(neighbours(part)) > 1.96 / np.sqrt(len(part)) for part in parts])
+                for parts in (seconds, means)
+            )
+            assert as_it_is > 0.9 and averaged < 0.11
+    held, still = (numbers(line[20:]) for line in found("def low_pass")[1].splitlines()[2:])
+    assert held[1] == 100 and held[3] > 50 and still[1] > 90 and still[3] < 8
+
+
+def test_a_nearly_level_circle_gives_the_vertical_offset_with_a_bias():
+    """The same mean whatever the number of poses: errors in variables, by their formula."""
+    text = found("def offsets_left")[1].splitlines()
+    means = {int(numbers(line)[0]): numbers(line)[-1] for line in text[2:6]}
+    many = {int(numbers(line)[0]): numbers(line)[1:] for line in text[7:]}
+    for tip in (2, 10):
+        # The vertical component varies by the level field times the tip, which is uniform.
+        signal = 20**2 * np.radians(tip) ** 2 / 3
+        share = 0.5**2 / (0.5**2 + signal)
+        assert abs(means[tip] / (44 * share) - 1) < 0.15
+        assert all(abs(mean / (44 * share) - 1) < 0.1 for mean in many[tip])
 
 
 def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():

@@ -180,9 +180,9 @@ def test_each_step_is_kalmans_for_the_model_of_its_docstring(shape):
             (estimate.bias[k], bias[k] + change[3:]),
         ):
             np.testing.assert_allclose(found, right, rtol=1e-8, atol=1e-9)
-        # The filter resets to first order in the correction.
-        second_order = (change[:3] @ change[:3]) * np.abs(after).max()
-        assert np.abs(reached - reset @ after @ reset.T).max() < second_order
+        # The filter resets to second order in the correction.
+        third_order = np.linalg.norm(change[:3]) ** 3 * np.abs(after).max()
+        assert np.abs(reached - reset @ after @ reset.T).max() < third_order
         assert np.abs(reached - after).max() > 0
 
 
