@@ -5,7 +5,7 @@ PYTHON ?= python3
 PORT ?= 8000
 VENV := .venv
 RUN := $(VENV)/bin/python
-PAGES := notebook-pages/src/notebook_pages
+PAGES := packages/notebook-pages/src/notebook_pages
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-compile --constraint constraints.txt
 
 # Kernels see this book's settings and nobody's own.
@@ -39,11 +39,11 @@ help:
 
 # What each command installs: the projects of this repository, with some of their extras. The book itself needs neither
 # a browser nor the tests.
-PROJECTS_book := ./src/orientation ./coursework ./notebook-pages .
-PROJECTS_print := ./src/orientation ./coursework ./notebook-pages[print] .
-PROJECTS_release := ./src/orientation ./coursework[tools] ./notebook-pages .
-PROJECTS_test := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test]
-PROJECTS_mutants := ./src/orientation[test] ./coursework[tools,cluster,test] ./notebook-pages[print,test] .[test,mutants]
+PROJECTS_book := . ./packages/coursework ./packages/notebook-pages ./packages/orientation-lab
+PROJECTS_print := . ./packages/coursework ./packages/notebook-pages[print] ./packages/orientation-lab
+PROJECTS_release := . ./packages/coursework[tools] ./packages/notebook-pages ./packages/orientation-lab
+PROJECTS_test := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test]
+PROJECTS_mutants := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test,mutants]
 # What else each of these installations covers.
 COVERS_print := book
 COVERS_release := book
@@ -58,7 +58,7 @@ $(VENV)/bin/python:
 	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
 	@$(PYTHON) -m venv $(VENV)
 
-$(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml */pyproject.toml */*/pyproject.toml) | $(VENV)/bin/python
+$(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml packages/*/pyproject.toml) | $(VENV)/bin/python
 	@echo "Setting up Python in $(VENV) for: $(PROJECTS_$*) ..."
 	@$(PIP) setuptools
 	@$(PIP) $(addprefix --editable ,$(PROJECTS_$*))
@@ -134,7 +134,7 @@ renew-pins: setup
 	@$(RUN) -m notebook_pages.pins
 
 benchmark: $(VENV)/ready-test setup
-	@$(RUN) -m benchmarks
+	@$(RUN) -m tools.benchmarks
 
 clean:
 	rm -rf _build

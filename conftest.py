@@ -22,8 +22,8 @@ from notebook_pages.browser import FLAGS, MISSING, find
 APART = (
     "tests/pages/test_site.py::test_page_in_",
     "tests/pages/test_live.py::test_results_equal_the_stored_ones[",
-    "tests/orientation_course/test_release.py::test_what_is_committed_is_what_the_source_makes[",
-    "tests/orientation_course/test_selftest.py::test_every_question_passes_and_names_its_mistakes[",
+    "packages/orientation-lab/tests/course/test_release.py::test_what_is_committed_is_what_the_source_makes[",
+    "packages/orientation-lab/tests/course/test_selftest.py::test_every_question_passes_and_names_its_mistakes[",
     "tests/pages/test_takeaway.py::test_script_runs[",
 )
 

@@ -28,10 +28,10 @@ def make(tmp_path):
     for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
     for name in (
-        "notebook-pages/src/notebook_pages/package-lock.json",
-        "notebook-pages/src/notebook_pages/live/wheels.txt",
-        "notebook-pages/src/notebook_pages/lite/wheels.txt",
-        "notebook-pages/src/notebook_pages/ipython_kernel_config.py",
+        "packages/notebook-pages/src/notebook_pages/package-lock.json",
+        "packages/notebook-pages/src/notebook_pages/live/wheels.txt",
+        "packages/notebook-pages/src/notebook_pages/lite/wheels.txt",
+        "packages/notebook-pages/src/notebook_pages/ipython_kernel_config.py",
     ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(REPOSITORY / name, tmp_path / name)

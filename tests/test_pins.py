@@ -148,15 +148,10 @@ def test_every_command_that_is_named_exists():
 
 def test_every_program_that_is_named_exists():
     """`python -m benchmarks.grading` was named where it does not run."""
-    roots = [
-        REPOSITORY,
-        *(REPOSITORY / name for name in ("src", "coursework/src", "notebook-pages/src")),
-    ]
+    roots = [REPOSITORY, REPOSITORY / "src", *REPOSITORY.glob("packages/*/src")]
     documents = [*REPOSITORY.glob("*.md"), *REPOSITORY.glob("*/*.md"), REPOSITORY / "Makefile"]
-    scripts = [
-        path for name in ("tools", "benchmarks") for path in (REPOSITORY / name).rglob("*.py")
-    ]
-    for path in documents + scripts:
+    scripts = (REPOSITORY / "tools").rglob("*.py")
+    for path in [*documents, *scripts]:
         for name in re.findall(r"python -m\s+([a-z_]+(?:\.[a-z_]+)*)", path.read_text("utf8")):
             places = [root.joinpath(*name.split(".")) for root in roots]
             assert name in ("pip", "venv", "pytest") or any(

@@ -31,7 +31,7 @@ MAY_IMPORT = {
 #: and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
 BESIDE = ("locks", "record", "store", "tables", "versions", "workers")
-PAGES = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
+PAGES = REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages"
 OURS = {*PACKAGES, "notebook_pages"}
 
 
@@ -103,7 +103,7 @@ def test_checking_has_no_circles():
 def test_every_package_is_registered():
     """All folders of packages, but the one that makes the pages."""
     folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}
-    folders |= {path.parent for path in REPOSITORY.glob("*/src/*/__init__.py")}
+    folders |= {path.parent for path in REPOSITORY.glob("packages/*/src/*/__init__.py")}
     assert folders == {*PACKAGES.values(), PAGES}
 
 

@@ -58,9 +58,9 @@ CALLED = {"Prescott": "Katmai"}
 THREADS = {"one thread": "1", "four threads": "4"}
 DOCTESTS = (
     "src/orientation",
-    "src/orientation_figures",
-    "src/orientation_recordings",
-    "coursework/src/coursework",
+    "packages/orientation-lab/src/orientation_figures",
+    "packages/orientation-lab/src/orientation_recordings",
+    "packages/coursework/src/coursework",
 )
 BROWSERS = "WebAssembly"
 

@@ -47,14 +47,14 @@ from mutmut.mutation.file_mutation import create_mutations
 PARTS = {
     "orientation": ("src/orientation", ("tests/orientation",)),
     "coursework.checking": (
-        "coursework/src/coursework/checking",
+        "packages/coursework/src/coursework/checking",
         (
-            "coursework/src/coursework/checking",
-            "coursework/tests/checking",
-            "coursework/tests/authoring/test_further_kinds.py",
-            "coursework/tests/authoring/test_variants.py",
-            "tests/orientation_course/test_checks.py",
-            "tests/orientation_course/test_formats.py",
+            "packages/coursework/src/coursework/checking",
+            "packages/coursework/tests/checking",
+            "packages/coursework/tests/authoring/test_further_kinds.py",
+            "packages/coursework/tests/authoring/test_variants.py",
+            "packages/orientation-lab/tests/course/test_checks.py",
+            "packages/orientation-lab/tests/course/test_formats.py",
         ),
     ),
 }

@@ -134,6 +134,8 @@ import seed
 print(seed.SEED, seed.spread(range(100), 7))
 """
     told = subprocess.check_output(
-        [sys.executable, "-c", program], cwd=REPOSITORY / "coursework" / "tests", text=True
+        [sys.executable, "-c", program],
+        cwd=REPOSITORY / "packages" / "coursework" / "tests",
+        text=True,
     )
     assert told == "every day [7, 21, 35, 50, 64, 78, 92]\n"

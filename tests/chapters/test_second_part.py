@@ -191,7 +191,9 @@ def test_no_speed_is_clipped():
 
 
 def test_what_is_called_measured_could_have_been_measured():
-    code = (REPOSITORY / "src/orientation_figures/moving/js/nine_numbers.js").read_text("utf8")
+    code = (
+        REPOSITORY / "packages/orientation-lab/src/orientation_figures/moving/js/nine_numbers.js"
+    ).read_text("utf8")
     [rows] = re.findall(r"\['Measured', (\[\[.*?\]\])\]", code)
     rows = np.array(eval(rows))
     assert abs(np.linalg.norm(rows, axis=1) - 1).max() < 0.02 and nearest_dcm(rows).distance < 0.03

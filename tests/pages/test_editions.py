@@ -37,7 +37,7 @@ def test_the_edition_is_said_in_one_place():
     assert {one["name"] for one in CITATION["authors"] + stated["authors"]} == {SETTINGS["author"]}
     sources = [
         *REPOSITORY.glob("*.ipynb"),
-        *(REPOSITORY / "notebook-pages" / "src" / "notebook_pages").rglob("*.py"),
+        *(REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages").rglob("*.py"),
     ]
     assert [path.name for path in sources if which.words in path.read_text("utf8")] == []
 
@@ -182,7 +182,7 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
     assert set(there) >= {"solutions.html", "solutions-going-further.html"}, (
         "the passages are found where they are"
     )
-    for name in ("chapters", "exercises", "appendix", "src", "coursework", "notebook-pages"):
+    for name in ("chapters", "exercises", "appendix", "src", "packages"):
         shutil.copytree(
             REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__")
         )

@@ -116,14 +116,14 @@ def test_the_real_packages_are_followed():
         for path in used.files_used("from orientation_figures.moving import *")
     }
     assert (
-        "src/orientation_figures/moving/js/triad.js" in files
+        "packages/orientation-lab/src/orientation_figures/moving/js/triad.js" in files
         and "src/orientation/frames.py" in files
     )
     files = {
         str(path.relative_to(REPOSITORY))
         for path in used.files_used("from coursework import check")
     }
-    assert "coursework/src/coursework/checking/kinds.py" in files
+    assert "packages/coursework/src/coursework/checking/kinds.py" in files
     assert not any("grading" in name or "authoring" in name for name in files)
 
 

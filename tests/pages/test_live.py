@@ -365,7 +365,7 @@ def test_lock_names_what_is_there():
 def test_versions_are_those_of_the_book():
     constraints = (REPOSITORY / "constraints.txt").read_text("utf8").splitlines()
     lines = (
-        (REPOSITORY / "notebook-pages/src/notebook_pages/live/wheels.txt")
+        (REPOSITORY / "packages/notebook-pages/src/notebook_pages/live/wheels.txt")
         .read_text("utf8")
         .splitlines()
     )

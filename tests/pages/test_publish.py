@@ -102,7 +102,7 @@ def test_index_names_every_term_symbol_and_function():
 def test_title_is_said_once():
     """In the settings; what else names the book reads it there."""
     title = SETTINGS["title"]
-    sources = REPOSITORY / "notebook-pages" / "src" / "notebook_pages"
+    sources = REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages"
     programs = [path for kind in ("*.py", "*.js", "*.html") for path in sources.rglob(kind)]
     programs += [*(REPOSITORY / "tests").rglob("test_*.py")]
     assert [path.name for path in programs if title in path.read_text("utf8")] == []

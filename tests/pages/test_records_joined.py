@@ -11,7 +11,7 @@ NAME = "levers/see-saw"
 
 
 def test_page_and_notebook_join_no_records_of_different_variants(tmp_path):
-    script = REPOSITORY / "notebook-pages/src/notebook_pages/live/js/store.js"
+    script = REPOSITORY / "packages/notebook-pages/src/notebook_pages/live/js/store.js"
     said = "\nconsole.log(joinProgress(...process.argv.slice(2)));"
     (tmp_path / "join.mjs").write_text(script.read_text("utf8") + said, "utf8")
 

@@ -203,10 +203,10 @@ def test_no_other_script_asks_the_browser_to_keep_anything():
     asks = re.compile(r"\blocalStorage\b|\bindexedDB\b|\bcaches\.|document\.cookie")
     sources = [
         path
-        for path in (REPOSITORY / "notebook-pages" / "src").rglob("*.js")
+        for path in (REPOSITORY / "packages" / "notebook-pages" / "src").rglob("*.js")
         if "node_modules" not in path.parts
     ]
-    sources += (REPOSITORY / "src").rglob("*.js")
+    sources += (REPOSITORY / "packages" / "orientation-lab" / "src").rglob("*.js")
     found = {
         path.name for path in sources if asks.search(re.sub(r"//.*", "", path.read_text("utf8")))
     }

@@ -180,7 +180,7 @@ def test_the_wheels_hold_what_students_import_and_no_more(readers_python, reader
 
 
 def test_the_packages_come_in_one_archive_that_says_how(tmp_path):
-    (archive,) = FOLDER.glob("orientation-book-*.zip")
+    (archive,) = FOLDER.glob("orientation-lab-*.zip")
     zipfile.ZipFile(archive).extractall(tmp_path)
     lines = (tmp_path / "packages" / "requirements.txt").read_text().splitlines()
     assert {line.split()[0] for line in lines} == {f"./{wheel.name}" for wheel in wheels()}
@@ -222,7 +222,7 @@ def test_script_runs(name, tmp_path, readers_python, readers_variables):
 def installed_python(tmp_path_factory):
     """Python with what pip installs for the wheels, from the pins, and Jupyter's kernel."""
     folder = tmp_path_factory.mktemp("installed")
-    (archive,) = FOLDER.glob("orientation-book-*.zip")
+    (archive,) = FOLDER.glob("orientation-lab-*.zip")
     zipfile.ZipFile(archive).extractall(folder)
     venv.create(folder, symlinks=True)
     python = folder / "bin" / "python"

@@ -26,7 +26,7 @@ from .converter import converted, sides
 
 HERE = Path(__file__).parent
 PLACE = REPOSITORY / "_build" / "programs"
-STORED = REPOSITORY / "tests" / "orientation_workbench" / "answers.json"
+STORED = REPOSITORY / "packages" / "orientation-lab" / "tests" / "workbench" / "answers.json"
 #: Two orientations of which nothing special can be said: unit vector and radians.
 ORIENTATIONS = (((0.48, -0.6, 0.64), 1.1), ((-0.36, 0.48, 0.8), -2.0))
 #: Read by three.js, which npm brings.

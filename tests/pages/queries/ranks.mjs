@@ -2,7 +2,7 @@
 // of places on stdout (JSON).
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
-import { finder } from "../../../notebook-pages/src/notebook_pages/search/js/find.js";
+import { finder } from "../../../packages/notebook-pages/src/notebook_pages/search/js/find.js";
 
 const data = (name) => JSON.parse(/^self\.\w+=(.*);$/m.exec(readFileSync(`${process.argv[2]}/${name}`, "utf8"))[1]);
 const index = data("search.js");

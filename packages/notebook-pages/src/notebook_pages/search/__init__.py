@@ -1,0 +1,342 @@
+"""The search: an index of places, made from the built pages, and the palette that asks it (``js``).
+
+The places, with their numbers, first sentences and characteristic words, come from the pages. Two
+files are written for it: ``appendix/synonyms.yml`` holds the readers' words for what the book calls
+something else, and ``appendix/questions.txt`` what readers have asked.
+"""
+
+import json
+import re
+from collections import Counter
+from hashlib import sha256
+from pathlib import Path
+
+import yaml
+from bs4 import BeautifulSoup
+
+from ..finish import pages_of
+from ..paths import YAML, esbuild, is_solutions, parts
+
+HERE = Path(__file__).parent
+SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
+WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
+WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
+FIELDS = ("kind", "page", "anchor", "number", "title", "about", "asked")
+KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
+SYNONYMS, QUESTIONS = Path("appendix/synonyms.yml"), Path("appendix/questions.txt")
+LONG = 4  # phrases of more words come later: nobody types so many before the rest is there
+LONGEST_SENTENCE = 76
+LATER = ("equation", "figure")
+SAID_LATER = ("function", "exercise", "example")  # their first sentences
+LITTLE = 0.5  # what counts no more than this, is found by its title alone
+#: Sections of every chapter: nobody looks for them by their name.
+EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
+REST = "script, style, svg, pre, .eqno, table, .admonition-title"
+
+
+def text_of(element, left_out=()):
+    """The words of an element, without those of the elements ``left_out``."""
+    parts, waiting = [], [element]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, str):
+            parts.append(one)
+        elif id(one) not in left_out:
+            waiting += reversed(one.contents)
+    # The sign by which a function is applied.
+    words = " ".join(" ".join(parts).replace("\u2061", "").split())
+    return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
+
+
+def first_sentence(element, left_out=()):
+    """The first words that stand as text in ``element``: a sentence,
+    or as much of it as a line shows.
+    """
+    if element.name in ("dd", "p"):
+        paragraph = element
+    else:  # a line that is nothing but emphasis stands beside the text
+        asides = [
+            one
+            for one in element.select(":scope > p > em:only-child")
+            if text_of(one) == text_of(one.parent)
+        ]
+        beside = {id(one.parent) for one in asides}
+        paragraph = next(
+            (one for one in element.find_all("p", recursive=False) if id(one) not in beside), None
+        )
+    words = text_of(paragraph, left_out) if paragraph else ""
+    return first_words(re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0])
+
+
+def first_words(text):
+    """As much of a text as a line shows."""
+    return (
+        text if len(text) <= LONGEST_SENTENCE else text[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
+    )
+
+
+def title_of(heading):
+    """The number and the words of a heading."""
+    number = heading.select_one(".section-number")
+    words = number.extract().get_text().strip().rstrip(".") if number else ""
+    return words, text_of(heading)
+
+
+def captions():
+    """The part of the book in which a page stands."""
+    return {page: caption for caption, pages in parts() for page in pages}
+
+
+def entries_of_page(page, article):
+    """The places of one page, with the text of each in ``text``,
+    from which its words are chosen.
+    """
+    tex = {
+        box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
+        for box in article.select("div.math[id]")
+    }
+    numbers = {
+        box["id"]: text_of(box.select_one(".eqno")).strip("()# ")
+        for box in article.select("div.math[id]:has(.eqno)")
+    }
+    for rest in article.select(".headerlink, .katex > [aria-hidden]"):
+        rest.extract()
+    rest = {id(one) for one in article.select(REST)}
+    inner = rest | {id(one) for one in article.select("section")}
+    for section in article.select("section[id]"):
+        heading = section.find(["h1", "h2", "h3", "h4"], recursive=False)
+        if heading is None:
+            continue
+        number, title = title_of(BeautifulSoup(str(heading), "lxml").find(heading.name))
+        if title in EVERYWHERE and heading.name != "h1":
+            continue
+        kind = (
+            "page"
+            if heading.name == "h1"
+            else "example"
+            if title.startswith("Worked example")
+            else "section"
+        )
+        anchor = "" if kind == "page" else section["id"]
+        own = " ".join(
+            text_of(part, inner)
+            for part in section.contents
+            if id(part) not in inner and part is not heading
+        )
+        yield {
+            "kind": kind, "title": title, "number": number, "anchor": anchor,
+            "about": first_sentence(section, rest), "text": own,
+        }  # fmt: skip
+        for box in section.select("div.math[id]"):
+            if box.find_parent("section") is section and box["id"] in numbers:
+                number = numbers[box["id"]]
+                called = {
+                    "kind": "equation",
+                    "title": f"Equation {number}: {title}",
+                    "number": number,
+                }
+                yield called | {"anchor": box["id"], "tex": tex[box["id"]]}
+    for figure in article.select("figure[id]:has(> figcaption)"):
+        caption = figure.find("figcaption", recursive=False)
+        number = caption.select_one(".caption-number")
+        number = text_of(number.extract()) if number else ""
+        title, *rest = re.split(r"(?<=[.?!]) (?=[A-Z])", text_of(caption), maxsplit=1)
+        called = {
+            "kind": "figure",
+            "title": title.rstrip("."),
+            "number": number,
+            "anchor": figure["id"],
+        }
+        yield called | ({"about": first_words(rest[0])} if rest else {})
+    for exercise in article.select(".admonition.exercise[id]"):
+        number, _, title = text_of(exercise.select_one(".admonition-title")).partition("(")
+        body = exercise.select_one("section, div") or exercise
+        called = {
+            "kind": "exercise",
+            "title": title.rstrip(" )") or number,
+            "number": number.strip(),
+        }
+        yield called | {
+            "anchor": exercise["id"],
+            "about": first_sentence(body),
+            "text": text_of(body),
+        }
+    for name in article.select("dl.glossary > dt[id]"):
+        yield {
+            "kind": "term",
+            "title": text_of(name),
+            "anchor": name["id"],
+            "about": first_sentence(name.find_next("dd")),
+        }
+    for name in article.select("dl.py > dt.sig[id]"):
+        words = name["id"].partition(".")[2]
+        if name["id"].count(".") <= 2:  # no methods of classes within modules
+            yield {
+                "kind": "function",
+                "title": words,
+                "anchor": name["id"],
+                "about": first_sentence(name.find_next("dd")),
+            }
+
+
+def words_of(entry):
+    """The words of an entry's text that its title and first sentence do not have;
+    one that comes back counts twice.
+    """
+    count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
+    shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
+    return " ".join(
+        word for word, number in count.items() if word not in shown for _ in range(1 + (number > 2))
+    )
+
+
+def weight_of(page):
+    """What a page counts beside the others: chapters explain, and
+    others hold what belongs to them.
+    """
+    if is_solutions(page):
+        return 0.3
+    if page.startswith("exercises/"):
+        return LITTLE
+    return 0.9 if page.startswith("appendix/reference") else 1
+
+
+def questions(path):
+    """What has been asked, and the places that answer it, the best first."""
+    for line in path.read_text("utf8").splitlines() if path.exists() else []:
+        if not line.startswith("#"):
+            typed, places, *_ = line.split("|")
+            yield typed.strip(), [place.strip() for place in places.split(",")]
+
+
+def index(site):
+    """What the palette asks: pages, places and synonyms, as plain data; and, for
+    later, each place's words and TeX.
+    """
+    caption, pages, entries = captions(), [], []
+    synonyms = yaml.load(SYNONYMS.read_text("utf8"), YAML) if SYNONYMS.exists() else {}
+    asked = synonyms.pop("places", {})
+    for question, (place, *_) in questions(QUESTIONS):
+        page, _, anchor = place.partition("#")
+        asked.setdefault(page, {}).setdefault(anchor, []).append(question)
+    # Reading them takes most of the time, and few pages change between two builds.
+    memory = (
+        site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
+    )
+    kept, used = json.loads(memory.read_text("utf8")) if memory.exists() else {}, {}
+    for path in pages_of(site):
+        page = path.relative_to(site).with_suffix("").as_posix()
+        if page in ("search", "404", "appendix/subject-index"):
+            continue
+        # Drawings and programs are most of a page, and say nothing to the search.
+        text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
+        key = sha256(f"{page}\n{text[text.find('<article') :]}".encode()).hexdigest()
+        if key in kept:
+            found = kept[key]
+        else:
+            article = BeautifulSoup(text, "lxml").article
+            found = list(entries_of_page(page, article)) if article else []
+        used[key] = found
+        if not found:
+            continue
+        pages.append([page, found[0]["title"], caption.get(page, ""), weight_of(page)])
+        phrases = asked.pop(page, {})
+        entries += [
+            entry
+            | {
+                "page": len(pages) - 1,
+                "asked": phrases.pop(entry["anchor"], ""),
+                "weight": weight_of(page),
+            }
+            for entry in found
+        ]
+    for old in site.parent.glob("search-entries-*.json"):
+        old.unlink()
+    memory.write_text(json.dumps(used), "utf8")
+    # Equations are found by what stands in them, and figures are many and seldom
+    # what is looked for: they come later.
+    first = [one for one in entries if one["kind"] not in LATER]
+    last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
+    words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
+    for entry in first:
+        if entry["weight"] <= LITTLE and not entry["asked"]:
+            entry["about"] = ""
+    long = [[one for one in entry["asked"] if len(one.split()) > LONG] for entry in first]
+    for entry, some in zip(first, long, strict=True):
+        entry["asked"] = [one for one in entry["asked"] if one not in some] or ""
+    about = [
+        [k, entry.pop("about")]
+        for k, entry in enumerate(first)
+        if entry["kind"] in SAID_LATER and entry.get("about")
+    ]
+    later = {
+        "words": words,
+        "about": about,
+        "asked": [[k, some] for k, some in enumerate(long) if some],
+        "entries": [row(one) for one in last],
+        "tex": [[k, one["tex"]] for k, one in enumerate(last, len(first)) if "tex" in one],
+    }
+    found = {
+        "pages": pages,
+        "fields": FIELDS,
+        "kinds": KINDS,
+        "entries": [row(one) for one in first],
+        "synonyms": synonyms,
+    }
+    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), later
+
+
+def row(entry):
+    """An entry without the names of its fields, and without what is empty at its end."""
+    values = [KINDS.index(entry["kind"]), *(entry.get(field, "") for field in FIELDS[1:])]
+    while values[-1] == "":
+        values.pop()
+    return values
+
+
+def write(site):
+    """Write the palette with its index as one script: it answers from a disk,
+    too, where pages may fetch nothing.
+
+    The words of the text and the formulas, which weigh more than all the rest,
+    come after it, as another script.
+    """
+    flags = [
+        "--bundle",
+        "--minify",
+        "--format=iife",
+        "--legal-comments=none",
+        "--log-level=warning",
+    ]
+    palette = esbuild(HERE / "js" / "palette.js", *flags)
+    found, later = index(site)
+    text = f"self.searchWords={json.dumps(later, ensure_ascii=False, separators=(',', ':'))};"
+    (site / WORDS).write_text(text, "utf8")
+    found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
+    data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+    (site / SCRIPT).write_text(f"self.searchIndex={data};\n{palette}", "utf8")
+
+
+def begin(app):
+    app.builder.search = False  # Sphinx's own, which finds the words of a page and leads to its top
+
+
+def add_page(app):
+    yield "search", {"title": "Search"}, "search.html"
+
+
+def add_address(app, pagename, templatename, context, doctree):
+    context["search_script"] = context["pathto"](SCRIPT.as_posix(), 1)
+
+
+def finish(app, exception):
+    if not exception and app.builder.format == "html":
+        write(Path(app.outdir))
+
+
+def setup(app):
+    app.connect("builder-inited", begin)
+    app.connect("html-collect-pages", add_page)
+    app.connect("html-page-context", add_address)
+    # When all pages are written, before they name its version.
+    app.connect("build-finished", finish, priority=970)

@@ -1,0 +1,83 @@
+"""The instructors' page of the book shows what its sample class gives."""
+
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+from coursework.authoring.course import find_course
+from coursework.authoring.source import measured_questions, share_beyond
+from coursework.grading import sample_class
+from coursework.grading.export import gradebooks
+from coursework.grading.grade import grade, regrade
+from coursework.grading.judging import term
+from coursework.grading.judging.ledger import Ledger
+from coursework.grading.store import Store
+
+PAGE = Path(__file__).parents[4] / "appendix" / "instructors.md"
+
+
+@pytest.mark.long  # it is quick, but whoever adds a question is not held up by it
+def test_the_instructors_page_says_what_was_measured_of_the_questions():
+    """What is wrong here is to be put there: no other place of the book says these numbers."""
+    notebooks = {}
+    for name, one in measured_questions(find_course().sources).items():
+        notebooks.setdefault(name.partition("/")[0], {})[name] = one
+    whole = {name: one for some in notebooks.values() for name, one in some.items()}
+    rows = "".join(_row(f"of *{name}*", some) for name, some in notebooks.items())
+    heavy = {name: one for name, one in whole.items() if one["worth"] > 1}
+    rows = _row("all", whole) + _row("those worth more than a point", heavy) + rows
+    assert HEAD + rows in PAGE.read_text("utf8")
+
+
+HEAD = """| questions | points | sets of numbers | not found |
+|---|---:|---:|---:|
+"""
+
+
+def _row(name, measured):
+    tries = [count for one in measured.values() for count in one["tries"]]
+    assert None not in tries, f"{name} was not measured whole: coursework selftest"
+    points = sum(one["worth"] for one in measured.values())
+    return f"| {name} | {points:g} | {len(tries)} | {100 * share_beyond(measured):.0f} % |\n"
+
+
+@pytest.mark.long
+def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
+    said = io.StringIO()
+    notebooks = ["simple-orientations", "unit-quaternions"]
+    submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
+    grade(submissions, tmp_path / "out", assignments={"homework": notebooks}, show=said)
+    manual = PAGE.read_text("utf8")
+    report = (tmp_path / "out" / "report.html").read_text("utf8")
+    for line in said.getvalue().splitlines():
+        if line.startswith(("196 to grade", "Isolation:", "homework:")):
+            assert line.partition("(")[0] in manual
+    (figure,) = re.findall(r'aria-label="(Number of students by points[^"]*)"', report)
+    assert figure in manual
+    (about,) = re.findall(r"<p>(\d+ students)\. The (mean is .*?)\.</p>", report)
+    assert "; the ".join(about) in manual
+    rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
+    found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
+    assert len(rows) == 4 and rows == found[:4]
+    # Something is decided, and the gradebook filled, line for line as the page
+    # prints it; only places are others.
+    store, ledger = Store(tmp_path / "out"), Ledger(tmp_path / "out")
+    (record,) = [one for one in store.all() if one.student == "student-068"]
+    ledger.add(record, "unit-quaternions/two-ways", 0.5, who="Ann")
+    (one,) = regrade(tmp_path / "out", show=said)
+    moved = f"{one.student!r}, {one.assignment}: {one.before:g} -> {one.after:g}"
+    assert f"{moved}  ({', '.join(one.questions)})\n1 moved.\n" in manual
+    (printed,) = re.findall(
+        r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S
+    )
+    told = gradebooks.fill(tmp_path / "class" / "gradebook.csv", gradebooks.Marks(store))
+    feedback = gradebooks.write_feedback(tmp_path / "feedback.zip", gradebooks.Marks(store), store)
+    told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
+    assert told.replace(f"{tmp_path}/", "") == printed
+    rules = tmp_path / "term.toml"
+    rules.write_text(
+        re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', "")
+    )
+    assert list(term.read_rules(rules).assignments) == notebooks

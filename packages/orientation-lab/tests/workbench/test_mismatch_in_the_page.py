@@ -1,0 +1,240 @@
+"""The search of the page and that of Python say the same of the same text."""
+
+import itertools
+import json
+import random
+import subprocess
+
+import numpy as np
+import pytest
+from more_threads import PASTED
+from places import REPOSITORY
+from test_mismatch import (
+    BAD,
+    QUATERNIONS,
+    SPELLED,
+    SPELLINGS,
+    both_sides,
+    known,
+    printed,
+    random_chain,
+)
+
+from notebook_pages.paths import NODE
+from orientation import quaternion_from_dcm, random_orientations, simple_dcm
+from orientation_figures.moving.workbench import EXAMPLES
+from orientation_workbench import explain
+from orientation_workbench.mismatch import mend, table
+
+SCRIPTS = (
+    REPOSITORY / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "js"
+)
+PROGRAM = """
+import { readFileSync } from 'node:fs';
+import { eigenLine, explain, formulaOf, mendingLine } from '%s';
+const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
+console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
+  try {
+    const found = explain(first, second, table, {
+      firstDeclared: declared[0], secondDeclared: declared[1], noise,
+      firstProgram: programs[0], secondProgram: programs[1] });
+    return {
+      verdict: found.verdict, faults: found.faults, left: found.chains.length,
+      residual: found.residual,
+      further: found.furtherPose,
+      mended: found.verdict === 'named'
+        ? [mendingLine, eigenLine, formulaOf].map((write) => write(found.chains[0])) : [] };
+  } catch (error) { return { error: error.message }; }
+})));
+"""
+
+
+def in_the_page(cases):
+    program = PROGRAM % (SCRIPTS / "mismatch.js").as_uri()
+    given = json.dumps({"table": table.whole_table(), "cases": cases})
+    done = subprocess.run(
+        [NODE, "--input-type=module", "-e", program], input=given, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
+    return json.loads(done.stdout)
+
+
+def in_python(case):
+    try:
+        found = explain(
+            case["first"],
+            case["second"],
+            first_declared=case["declared"][0],
+            second_declared=case["declared"][1],
+            noise=case["noise"],
+            # fmt: skip
+            first_program=case["programs"][0],
+            second_program=case["programs"][1],
+        )
+    except ValueError as error:
+        return {"error": str(error)}
+    return {
+        "verdict": found.verdict,
+        "faults": list(found.faults),
+        "left": len(found.chains),
+        "residual": found.residual,
+        "further": found.further_pose,
+        "mended": [
+            write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)
+        ]
+        if found.verdict == "named"
+        else [],
+    }
+
+
+def case(first, second, declared=({}, {}), noise=0.0, programs=("", "")):
+    return {
+        "first": first,
+        "second": second,
+        "declared": list(declared),
+        "noise": noise,
+        "programs": programs,
+    }
+
+
+def mixtures(count, seed):
+    generator, orientations = random.Random(seed), np.random.default_rng(seed)
+    for _ in range(count):
+        declared = known(generator), known(generator)
+        chain = random_chain(generator, declared, generator.randint(1, 3))
+        yield case(*map(printed, both_sides(chain, random_orientations(2, orientations))), declared)
+
+
+TABLES = (
+    "qw,qx,qy,qz\n0.9205,0.3602,-0.0702,0.1343",
+    "# x y z w\n[0.3602, -0.0702, 0.1343, 0.9205]",
+    "t;p_x;p_y;p_z;q_z;q_y;q_x;q_w\n1.5;1;2;3;0.1343;-0.0702;0.3602;0.9205",
+    "| w | x | y | z |\n|---|---|---|---|\n| 0.9205 | 0.3602 | -0.0702 | 0.1343 |",
+    "time,roll_deg,pitch_deg,yaw_deg\n0.1,10.0,20.0,30.0",
+    "r11 r12 r13 r21 r22 r23 r31 r32 r33\n1 0 0 0 1 0 0 0 1",
+    "quaternion (x, y, z, w): 0.3602 -0.0702 0.1343 0.9205",
+    "x y z\n0.1 0.2 0.3",
+    "w x y z\n0.1 0.2 0.3",
+)
+
+
+def special():
+    dcm, poses = (
+        np.array(random_orientations(1, np.random.default_rng(2))[0]),
+        random_orientations(4, np.random.default_rng(3)),
+    )
+    constants = random_orientations(2, np.random.default_rng(4))
+    for spelling in SPELLINGS.values():
+        yield case(spelling.format(*(f"{entry:.6f}" for entry in dcm.ravel())), printed([dcm.T], 6))
+    for spelling in QUATERNIONS.values():
+        parts = dict(zip("wxyz", (f"{entry:.6f}" for entry in quaternion_from_dcm(dcm))))
+        yield case(spelling.format(**parts), printed([dcm], 6))
+    for one in PASTED:
+        yield case(one["first"], one["second"], one["known"])
+    for first, second, *_ in EXAMPLES.values():
+        yield case(first, second)
+    for text in SPELLED.values():
+        yield case(text, printed([dcm], 6))
+    for first, second in itertools.product(
+        ("ROS tf2 (C++)", "Unity", "COLMAP", "nerfstudio"), ("PX4", "Unreal", "COLMAP")
+    ):
+        yield case(
+            printed(quaternion_from_dcm(poses[:2])), printed(poses[:2]), programs=(first, second)
+        )
+    for text, _ in BAD.values():
+        yield case(text, "1 0 0 0")
+    for text in TABLES:
+        yield case(text, printed([dcm]))
+    yield case(printed([simple_dcm("z", 0.5)]), printed([simple_dcm("z", -0.5)]))
+    yield case("1 0 0 0", "1 0 0 0")
+    yield case(printed(poses[:3]), printed(constants[0] @ poses[:3]))
+    yield case(printed(poses), printed(constants[0] @ poses @ constants[1]))
+    yield case(printed(poses[:2]), printed(poses[2:]))
+    yield case(
+        printed(poses),
+        printed(np.array(simple_dcm("x", 0.02)) @ np.swapaxes(poses, 1, 2)),
+        noise=0.03,
+    )
+    yield case(printed([dcm]), printed([dcm @ np.diag([1, 1, -1])]))
+
+
+def angles_that_fit_in_many_ways():
+    """Each takes the search a second: for every night."""
+    yield case("roll: 0.1\npitch: 0.2\nyaw: 0.3", "0.3 0.2 0.1", ({}, {"sequence": "zyx"}))
+    yield case("0.3 0 0", "0.3 0 0", ({"sequence": "zyx"}, {"sequence": "zyx"}))
+
+
+@pytest.mark.parametrize("count", [10, pytest.param(2_000, marks=pytest.mark.long)])
+def test_both_say_the_same(count):
+    cases = [
+        *(special() if count > 10 else itertools.islice(special(), 0, None, 3)),
+        *(angles_that_fit_in_many_ways() if count > 10 else ()),
+        *mixtures(count, seed=8),
+    ]
+    for one, found in zip(cases, in_the_page(cases)):
+        wanted = in_python(one)
+        if "residual" in wanted and wanted["residual"] is not None:
+            assert found.pop("residual") == pytest.approx(
+                wanted.pop("residual"), rel=1e-6, abs=1e-9
+            ), one
+        assert found == wanted, one
+
+
+BITS = [
+    "\n",
+    *" []()*{}\"',;:=-+#/%|&<>xwijk1\t\u00a0\u2212\u00b0",
+    "0.5",
+    "e-3",
+    "nan",
+    "deg",
+    "rad",
+    "3x3",
+    "---",
+    "1e9",
+]
+
+
+def broken(generator, text):
+    """A text as it comes out of careless hands: something left out, put
+    in or exchanged in a few places.
+    """
+    for _ in range(generator.randint(1, 6)):
+        place, other = sorted(generator.randrange(len(text) + 1) for _ in range(2))
+        put = generator.choice([generator.choice(BITS), "", text[other : other + 5]])
+        text = text[:place] + put + text[place + generator.randint(0, 8) :]
+    return text
+
+
+@pytest.mark.parametrize("count", [80, pytest.param(3_000, marks=pytest.mark.long)])
+def test_both_say_the_same_of_broken_text(count):
+    """Whatever is pasted, there is an answer or a word on what was read,
+    and both languages say the same.
+    """
+    generator = random.Random(21)
+    texts = [
+        *TABLES,
+        *SPELLED.values(),
+        *SPELLINGS.values(),
+        *(one[side] for one in PASTED for side in ("first", "second")),
+    ]
+    cases = [
+        case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343")
+        for _ in range(count)
+    ]
+    for one, found in zip(cases, in_the_page(cases)):
+        wanted = in_python(one)
+        if wanted.get("residual") is not None:
+            assert found.pop("residual") == pytest.approx(
+                wanted.pop("residual"), rel=1e-6, abs=1e-9
+            ), one
+        assert found == wanted, one
+
+
+def test_every_example_of_the_page_shows_what_it_is_there_for():
+    verdicts = []
+    for first, second, *sides in EXAMPLES.values():
+        programs = [side.get("program") for side in sides] or [None, None]
+        verdicts.append(
+            explain(first, second, first_program=programs[0], second_program=programs[1]).verdict
+        )
+    assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

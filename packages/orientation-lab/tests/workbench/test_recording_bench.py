@@ -1,0 +1,498 @@
+"""The bench for recordings: what it must find, on simulated instruments
+with one thing wrong and on real ones.
+"""
+
+import gzip
+import warnings
+import zipfile
+
+import numpy as np
+import pytest
+from formats import DEG, FORMS, GRAVITY, core_motion, recording
+from places import REPOSITORY
+from scipy.spatial.transform import Rotation
+from simulated_recordings import FAULTS, NAMES, as_text, faulty, simulate
+
+from orientation import MultiplicativeKalmanFilter, dcm_from_rotation_vector
+from orientation_workbench.command import main
+from orientation_workbench.recording import RecordingError, examine
+from orientation_workbench.recording.allan import allan_deviation, noise_of
+from orientation_workbench.recording.content import read_content
+from orientation_workbench.recording.field import fit_ellipsoid
+from orientation_workbench.recording.judged import chi_square_bounds
+from orientation_workbench.recording.motion import ASSIGNMENTS, dcm_of_quaternions, readings
+from orientation_workbench.recording.report import as_code, as_csv
+from orientation_workbench.recording.table import read_tables
+
+DATA = REPOSITORY / "packages" / "orientation-lab" / "src" / "orientation_recordings" / "data"
+
+
+@pytest.mark.sampled(3)
+@pytest.mark.parametrize("kind", FAULTS)
+def test_one_wrong_thing_makes_its_light_red(kind):
+    text, light = faulty(kind, 3)
+    found = examine(text, kind, judged=False)
+    assert found.light(light) == "wrong", str(found)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", [200, 204, 208, 212, 216])
+def test_of_two_hundred_wrong_recordings_nearly_all_are_found(first):
+    """Of 240 recordings with one wrong thing in each, its light is red in 95
+    of 100, a fifth of them at a time.
+    """
+    seeds = range(first, first + 4)
+    missed = [
+        (kind, seed)
+        for kind in FAULTS
+        for seed in seeds
+        if examine(faulty(kind, seed)[0], judged=False).light(FAULTS[kind][0]) != "wrong"
+    ]
+    assert len(missed) <= 0.05 * len(FAULTS) * len(seeds), missed
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", [700, 725, 750, 775])
+def test_of_a_hundred_honest_recordings_hardly_one_is_blamed(first):
+    blamed = [
+        (seed, verdict.about)
+        for seed in range(first, first + 25)
+        for verdict in examine(as_text(simulate(seed), quaternion=True)).verdicts
+        if verdict.light == "wrong"
+    ]
+    assert len(blamed) <= 1, blamed
+
+
+def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
+    recording = simulate(11)
+    found = examine(as_text(recording, quaternion=True), "honest")
+    assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
+    assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.01)
+    assert sum(one.still for one in found.still) >= 4
+    [judgement] = found.judgements
+    true = recording["truth"].inv().as_matrix()[np.searchsorted(recording["time"], judgement.times)]
+    tilt = np.degrees(
+        np.arccos(np.clip(np.einsum("ni,ni->n", true[:, :, 2], judgement.dcms[:, :, 2]), -1, 1))
+    )
+    assert np.sqrt((tilt**2).mean()) < 3 * max(judgement.claimed, judgement.found) < 1
+
+
+def test_a_hand_is_told_from_a_table():
+    held = examine([DATA / "x_imu_sensors.csv"], rate=256, judged=False)
+    assert held.light("stillness") == "look" and not any(one.still for one in held.still)
+    lying = examine([DATA / "ngimu_sensors.csv"], judged=False)
+    assert lying.light("stillness") == "as it should be" and any(one.still for one in lying.still)
+
+
+REAL = {"x_imu": (256, True), "ngimu": (None, True), "x_imu3": (None, False), "xsens": (50, False)}
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_the_convention_of_real_instruments(name):
+    rate, conjugate = REAL[name]
+    files = (
+        [DATA / "xsens.csv"]
+        if name == "xsens"
+        else [DATA / f"{name}_{part}.csv" for part in ("sensors", "quaternion")]
+    )
+    reading = examine(files, rate=rate, judged=False).facts["convention of the quaternion"]
+    assert (reading.order, reading.conjugate) == ("scalar first", conjugate)
+    assert np.allclose(reading.mounting, np.eye(3))
+
+
+def scrambled(ways, seed):
+    """Whether each of so many scrambled versions of each real recording is put right again."""
+    random = np.random.default_rng(seed)
+    for name, (rate, conjugate) in REAL.items():
+        files = (
+            [DATA / "xsens.csv"]
+            if name == "xsens"
+            else [DATA / f"{name}_{part}.csv" for part in ("sensors", "quaternion")]
+        )
+        groups = read_content(files, rate=rate).groups
+        gyroscope, quaternion = groups["gyroscope"], groups["quaternion"]
+        rates = gyroscope.values * (1 if name == "xsens" else np.pi / 180)
+        ours = dcm_of_quaternions(quaternion.values, "scalar first")
+        ours = ours.swapaxes(-1, -2) if conjugate else ours
+        for _ in range(ways):
+            axes, mounting = ASSIGNMENTS[random.integers(48)], ASSIGNMENTS[random.integers(24)]
+            turned = mounting @ ours
+            flipped, order = (
+                bool(random.integers(2)),
+                ("scalar first", "scalar last")[random.integers(2)],
+            )
+            printed = quaternions(turned.swapaxes(-1, -2) if flipped else turned)
+            printed = np.roll(printed, -1, axis=1) if order == "scalar last" else printed
+            candidates = {
+                one: dcm_of_quaternions(printed, one) for one in ("scalar first", "scalar last")
+            }
+            found = readings(gyroscope.time, rates @ axes.T, quaternion.time, candidates)
+            best = [one for one in found if one.disagreement < found[0].disagreement + 1e-6]
+            yield (
+                any(
+                    (one.order, one.conjugate) == (order, flipped)
+                    and np.allclose(one.mounting, mounting @ axes.T)
+                    for one in best
+                ),
+                len(best),
+                next(one for one in found if one not in best).disagreement / found[0].disagreement,
+            )
+
+
+def quaternions(dcms):
+    """By SciPy, whose matrices turn components of the body into the ground's; scalar first."""
+    return np.roll(Rotation.from_matrix(dcms.swapaxes(-1, -2)).as_quat(), 1, axis=1)
+
+
+@pytest.mark.parametrize("ways", [25, pytest.param(1000, marks=pytest.mark.long)])
+def test_scrambled_conventions_are_found(ways):
+    """Axes, signs, order, conjugate and mounting: the right reading is among those that fit best.
+
+    There are two of these always: with the scalar moved to the other end, the conjugate and another
+    mounting give the same orientations, but for one turn of the ground. Only gravity tells them
+    apart.
+    """
+    found = list(scrambled(ways, ways))
+    assert all(right for right, _, _ in found)
+    assert max(equal for _, equal, _ in found) == 2
+    assert min(margin for _, _, margin in found) > 1.4
+
+
+# --- reading --------------------------------------------------------------------------------------
+
+
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("form", FORMS)
+def test_many_forms_hold_one_recording(form):
+    """Loaded without a word to help, each sensor is the one that it is, along
+    the right axes, sample by sample.
+    """
+    given, true = form(), recording()
+    found = read_content(given.content, "recording")
+    assert set(found.groups) == set(given.scales), {
+        kind: group.names for kind, group in found.groups.items()
+    }
+    assert found.counted == given.counted
+    if not given.counted:
+        steps = np.diff(found.groups["gyroscope"].time)
+        assert np.median(steps) == pytest.approx(0.01, rel=1e-3) and (steps > 0).all()
+    for kind, allowed in (("gyroscope", 0.02), ("accelerometer", 0.02), ("magnetometer", 0.06)):
+        if kind in given.scales:
+            off = found.groups[kind].values / given.scales[kind] - true[kind]
+            assert np.abs(off).max() < allowed, (kind, found.groups[kind].names)
+    if "quaternion" in given.scales:
+        values = found.groups["quaternion"].values
+        first, last = (
+            np.abs(np.roll(values, k, axis=1) - true["quaternion"]).max() for k in (0, 1)
+        )
+        assert min(first, last) < 1e-3
+
+
+UNITS = (
+    {DEG: "°/s", 1.0: "rad/s", 0.01: "rad a sample"},
+    {1: "m/s²", 1 / GRAVITY: "g", -1 / GRAVITY: "g", 1000 / GRAVITY: "mg", 0.01: "m/s a sample"},
+)
+
+
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("form", FORMS)
+def test_units_and_axes_of_many_forms_come_out_by_themselves(form):
+    given = form()
+    found = examine(given.content, "recording", None if not given.counted else 100, judged=False)
+    words = {verdict.about: verdict.words for verdict in found.verdicts}
+    of_rates, of_forces = (given.scales[kind] for kind in ("gyroscope", "accelerometer"))
+    assert words["unit of the gyroscope"].startswith(UNITS[0].get(of_rates, "counts"))
+    assert words["unit of the accelerometer"].startswith(UNITS[1].get(of_forces, "counts"))
+    assert words["axes of the gyroscope"] == "those of the accelerometer"
+    assert found.facts["scale of the gyroscope"] == pytest.approx(1, abs=0.03)
+    assert not [verdict for verdict in found.verdicts if verdict.light == "wrong"], str(found)
+
+
+def test_an_accelerometer_that_says_down_is_told():
+    """An iPhone's does. A ground with z down would look the same: both are said."""
+    found = examine(core_motion().content, "phone", judged=False)
+    assert found.light("level") == "look" and "-z axis" in str(found)
+
+
+def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
+    text = as_text(simulate(4)).splitlines()
+    broken = [*text[:400], text[400].replace(text[400].split(",")[4], "ERR"), *text[401:]]
+    [table] = read_tables("\n".join(broken))
+    assert (
+        "line 401, column 5 (acc_x): 'ERR'" in table.remarks[0]
+        and len(table.values) == len(text) - 2
+    )
+    bad = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(text)]
+    with pytest.raises(RecordingError, match="line 10, column 2"):
+        read_tables("\n".join(bad))
+    for content, words in (
+        (b"", "empty"),
+        (b"\0\1\2" * 99, "no text"),
+        (b"Dear all,\nI am here.\nBye\n", "no table"),
+        (b"[1, 2", "line 1"),
+    ):
+        with pytest.raises(RecordingError, match=words):
+            read_tables(content, "file")
+    for content, words in ((b"ULog\1", "ulog2csv"), (b"\xd0\xcf\x11\xe0\0\0", "save it as CSV")):
+        with pytest.raises(RecordingError, match=words):
+            read_tables(content, "file")
+    with pytest.raises(RecordingError, match="no instrument"):
+        read_content(
+            "\n".join(
+                ["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]
+            )
+        )
+    # As long as the Earth's field.
+    with pytest.raises(RecordingError, match="sought among right ascension"):
+        examine(DATA / "bright_stars.csv")
+    (tmp_path / "empty.csv").write_bytes(b"")
+    with pytest.raises(SystemExit) as ended:
+        main(["recording", str(tmp_path / "empty.csv")])
+    assert ended.value.code == 3 and "empty" in capsys.readouterr().err
+
+
+def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path):
+    """A zip in a folder, packed tables, settings beside them: what holds no
+    numbers is passed over, not the rest.
+    """
+    given = simulate(5, poses=2)
+    files = {}
+    for kind in ("gyroscope", "accelerometer", "magnetometer"):
+        rows = np.column_stack([given["time"], given[kind]])
+        files[f"{kind}.csv"] = "\n".join(
+            ["time,x,y,z", *(",".join(f"{one:.6f}" for one in row) for row in rows)]
+        )
+    (tmp_path / "deep").mkdir()
+    with zipfile.ZipFile(tmp_path / "deep" / "walk.zip", "w") as archive:
+        archive.writestr("today/gyroscope.csv", files["gyroscope.csv"])
+        archive.writestr("__MACOSX/today/._gyroscope.csv", b"\0\5\x16\7" * 9)
+        archive.writestr("device.json", '{"model": "phone"}')
+    (tmp_path / "accelerometer.csv.gz").write_bytes(
+        gzip.compress(files["accelerometer.csv"].encode())
+    )
+    lines = files["magnetometer.csv"].splitlines()
+    torn = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(lines)]
+    (tmp_path / "magnetometer.csv").write_text("\n".join(torn))
+    for source in (tmp_path, sorted(tmp_path.iterdir())):
+        found = read_content(source)
+        assert set(found.groups) == {"gyroscope", "accelerometer"}
+        assert "line 10, column 2" in " ".join(found.remarks) and len(found.remarks) == 1
+    with pytest.raises(RecordingError, match="no table of numbers; .*ulog2csv"):
+        (tmp_path / "only").mkdir()
+        (tmp_path / "only" / "flight.log").write_bytes(b"ULog\1\2")
+        read_tables(tmp_path / "only")
+
+
+def spoilt(kind, change):
+    given = simulate(3, poses=2)
+    return given | {kind: change(given[kind])}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            {kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"},
+            "too few",
+        ),
+        (spoilt("time", lambda values: values[::-1]), "goes back"),
+        (spoilt("time", lambda values: 0 * values), "no column of time"),
+        (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
+        (spoilt("accelerometer", lambda values: 0 * values), "never change"),
+        (spoilt("gyroscope", lambda values: 1e12 * values), "turns so fast"),
+        (
+            spoilt(
+                "magnetometer",
+                lambda values: np.where(np.arange(len(values))[:, None] % 3, values, np.nan),
+            ),
+            "magnetometer: µT",
+        ),
+    ],
+)
+def test_strange_recordings_are_told_and_never_a_crash(given, words):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = examine(as_text(given, quaternion=True), "strange")
+        assert words in " ".join(str(found).split())
+        assert as_csv(found) and as_code(found)
+
+
+def test_the_command_writes_report_and_corrected_recording(tmp_path, capsys):
+    (tmp_path / "walk.csv").write_text(as_text(simulate(4, poses=4)), "utf8")
+    with pytest.raises(SystemExit) as ended:
+        main(["recording", str(tmp_path / "walk.csv"), "--html", str(tmp_path / "report.html"),
+              "--csv", str(tmp_path / "right.csv"), "--convention", "xyzw"])  # fmt: skip
+    assert ended.value.code == 0 and "axes of the gyroscope" in capsys.readouterr().out
+    page = (tmp_path / "report.html").read_text("utf8")
+    assert page.count("<svg") >= 2 and "http" not in page.replace("http://www.w3.org", "")
+    again = np.genfromtxt(tmp_path / "right.csv", delimiter=",", names=True)
+    assert len(again) == len(simulate(4, poses=4)["time"]) and "qw" in again.dtype.names
+    assert NAMES[0] == "time (s)"
+
+
+def test_the_code_of_the_report_corrects_the_file_as_the_bench_did():
+    given = simulate(6) | {}
+    given["gyroscope"] = np.degrees(given["gyroscope"])[:, [1, 0, 2]] * [1, -1, 1] / 1.3 + 2
+    given["magnetometer"] = given["magnetometer"] @ np.diag([0.8, 1, 1.2]) + [20, -10, 5]
+    found = examine(as_text(given, digits=9), judged=False)
+    names = {kind: given[kind] for kind in ("gyroscope", "accelerometer", "magnetometer")}
+    exec(as_code(found), names)
+    for name in ("rates", "forces", "field"):
+        assert np.allclose(names[name], getattr(found, name), atol=1e-6), name
+    assert np.abs(names["rates"] - simulate(6)["gyroscope"]).max() < np.radians(5)
+
+
+# --- numbers --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
+def test_an_unknown_scale_of_the_gyroscope_is_found_to_three_per_cent(count):
+    random = np.random.default_rng(count)
+    for seed in range(count):
+        recording, scale = simulate(seed, poses=4 + seed % 3), random.uniform(0.5, 2)
+        recording["gyroscope"] = recording["gyroscope"] / scale
+        found = examine(as_text(recording), judged=False).facts["scale of the gyroscope"]
+        assert found == pytest.approx(scale, rel=0.03)
+
+
+def spoilt_by_iron(seed, poses, random):
+    recording = simulate(seed, poses=poses)
+    turn = Rotation.random(random_state=seed).as_matrix()
+    soft = turn @ np.diag(random.uniform([0.75, 0.9, 1.1], [0.9, 1.1, 1.35])) @ turn.T
+    hard = random.normal(size=3)
+    hard = hard / np.linalg.norm(hard) * random.uniform(10, 60)
+    return recording | {"magnetometer": recording["magnetometer"] @ soft.T + hard}
+
+
+@pytest.mark.parametrize("count", [3, pytest.param(100, marks=pytest.mark.long)])
+def test_soft_and_hard_iron_are_taken_away_to_a_degree_of_heading(count):
+    random = np.random.default_rng(count)
+    for seed in range(count):
+        recording = spoilt_by_iron(seed, 8, random)
+        found = examine(as_text(recording), judged=False)
+        level = np.einsum("nji,nj->ni", recording["truth"].inv().as_matrix(), found.field)
+        off = np.degrees(np.arctan2(level[:, 1], level[:, 0]))
+        by_pose = [np.mean(off[one.first : one.last]) for one in found.still]
+        assert found.light("offset of the magnetometer") == "wrong" and np.abs(by_pose).max() < 1, (
+            seed
+        )
+
+
+def test_iron_is_refused_where_the_turns_do_not_suffice():
+    """A few degrees about one axis."""
+    time = np.arange(0, 20, 0.01)
+    truth = Rotation.from_rotvec(np.outer(0.1 * np.sin(time), [0, 0, 1]))
+    random = np.random.default_rng(3)
+    rates = np.outer(0.1 * np.cos(time), [0, 0, 1]) + 0.001 * random.normal(size=(2000, 3))
+    recording = {
+        "time": time,
+        "gyroscope": rates,
+        "accelerometer": truth.inv().apply([0, 0, 9.81]) + 0.02 * random.normal(size=(2000, 3)),
+        "magnetometer": truth.inv().apply([20, 0, -40])
+        + [30, 0, 0]
+        + 0.3 * random.normal(size=(2000, 3)),
+    }
+    found = examine(as_text(recording), judged=False)
+    assert found.light("offset of the magnetometer") == "cannot tell", str(found)
+
+
+def test_a_magnetometer_without_a_gyroscope_is_put_right_by_lengths_or_refused():
+    """As far as lengths can: up to a turn. Gravity, which stands beside
+    it, tells that the dip is one then.
+    """
+    for seed, poses in ((1, 9), (2, 9), (3, 3)):
+        given = spoilt_by_iron(seed, poses, np.random.default_rng(seed))
+        rows = np.column_stack([given["time"], given["accelerometer"], given["magnetometer"]])
+        names = ["time (s)", *NAMES[4:]]
+        lines = [",".join(f"{value:.5f}" for value in row) for row in rows]
+        found = examine("\n".join([",".join(names), *lines]), judged=False)
+        if poses < 9:
+            assert found.light("offset of the magnetometer") in ("cannot tell", "wrong")
+            continue
+        ups = given["truth"].inv().apply([0, 0, 1])
+        dips = np.degrees(
+            np.arcsin((found.field * ups).sum(axis=1) / np.linalg.norm(found.field, axis=1))
+        )
+        lengths = np.linalg.norm(found.field, axis=1)
+        assert lengths.std() < 0.02 and dips.std() < 2.5
+        assert found.light("axes of the magnetometer") == "cannot tell"
+
+
+@pytest.mark.parametrize("count", [20, pytest.param(200, marks=pytest.mark.long)])
+def test_an_ellipsoid_is_found_up_to_a_turn_or_refused(count):
+    random = np.random.default_rng(count)
+    for seed in range(count):
+        turn = Rotation.random(random_state=seed).as_matrix()
+        soft = turn @ np.diag(random.uniform(0.7, 1.4, 3)) @ turn.T
+        ways = random.normal(size=(60, 3))
+        ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        values = 45 * ways @ soft.T + random.uniform(-60, 60, 3) + 0.2 * random.normal(size=(60, 3))
+        fit = fit_ellipsoid(values)
+        found = (values - fit.offset) @ fit.shape.T / fit.strength
+        off = np.linalg.norm(np.cross(found, ways), axis=1) / np.linalg.norm(found, axis=1)
+        assert np.degrees(np.arcsin(off)).max() < 2 and fit.uncertainty < 0.03
+        level = ways * [1, 1, 0.01]  # all the poses lie nearly in a plane
+        level = 45 * level / np.linalg.norm(level, axis=1, keepdims=True)
+        assert fit_ellipsoid(level @ soft.T + 20 + 0.2 * random.normal(size=(60, 3))) is None
+
+
+def test_allan_deviation_is_that_of_the_formulas():
+    """Of white noise, and of a random walk; against means over stretches taken one by one."""
+    random, step = np.random.default_rng(3), 0.02
+    white = random.normal(size=(20_000, 2))
+    times, deviations = allan_deviation(white, step)
+    few = times < 4
+    assert np.allclose(deviations[few], np.sqrt(step / times[few])[:, None], rtol=0.15)
+    walk = np.cumsum(random.normal(size=(40_000, 8)), axis=0) * np.sqrt(step)
+    times, deviations = allan_deviation(walk, step)
+    some = (times > 10 * step) & (times < 8)
+    assert np.allclose(
+        np.sqrt((deviations[some] ** 2).mean(axis=1)), np.sqrt(times[some] / 3), rtol=0.2
+    )
+    size = round(times[5] / step)
+    means = walk[: len(walk) // size * size].reshape(-1, size, 8).mean(axis=1)
+    plain = np.sqrt((np.diff(means, axis=0) ** 2).mean(axis=0) / 2)
+    assert np.allclose(plain, deviations[5], rtol=0.1)
+
+
+def test_noise_is_read_off_where_it_shows_and_not_where_a_hand_is():
+    random, step = np.random.default_rng(5), 0.01
+    time = step * np.arange(30_000)
+    white = 0.05 / np.sqrt(step) * random.normal(size=(len(time), 3))
+    noise = noise_of(*allan_deviation(white, step))
+    assert (
+        np.allclose(noise.angle_random_walk, 0.05, rtol=0.05)
+        and np.isnan(noise.bias_instability).all()
+    )
+    hand = np.sin(2 * np.pi * 3 * time + random.normal(size=(3, 1))).T * 2
+    assert np.isnan(noise_of(*allan_deviation(white / 20 + hand, step)).angle_random_walk).all()
+
+
+def test_innovations_of_an_honest_filter_stay_within_their_bounds():
+    """In 95 of 100 runs, give or take two: four hundred runs of
+    twenty seconds, at two directions.
+    """
+    from scipy.stats import chi2  # every process collects this file, and one runs it
+
+    runs, step, random = 400, 0.02, np.random.default_rng(5)
+    noise, wander, deviations = 0.01, 0.002, (0.03, 0.08)
+    references = np.array([[0, 0, 1.0], [0.6, 0, -0.8]])
+    truth = dcm_from_rotation_vector(random.normal(size=(runs, 3)))
+    first = np.diag([0.03**2] * 3 + [0.02**2] * 3)
+    wrong = dcm_from_rotation_vector(0.03 * random.normal(size=(runs, 3)))
+    estimate = MultiplicativeKalmanFilter(wrong @ truth, first, noise, wander)
+    bias, squares = 0.02 * random.normal(size=(runs, 3)), []
+    for k in range(1000):
+        rate = np.sin([0.7, 1.1, 0.4] * np.array(k * step))
+        truth = dcm_from_rotation_vector(rate * step) @ truth
+        estimate.turn(rate + bias + noise / np.sqrt(step) * random.normal(size=(runs, 3)), step)
+        bias = bias + wander * np.sqrt(step) * random.normal(size=(runs, 3))
+        if k % 5 == 4:
+            for reference, deviation in zip(references, deviations, strict=True):
+                seen = truth @ reference + deviation * random.normal(size=(runs, 3))
+                told = estimate.observe(seen, np.broadcast_to(reference, (runs, 3)), deviation)
+                squares.append(told.normalised_square)
+    low, high = chi_square_bounds(2 * len(squares))
+    means = np.mean(squares, axis=0) / 2
+    assert 0.93 <= np.mean((low < means) & (means < high)) <= 0.97
+    assert np.allclose(chi_square_bounds(800), chi2.ppf([0.025, 0.975], 800) / 800, rtol=1e-3)
