@@ -142,25 +142,6 @@ def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp
     }
 
 
-def test_records_from_before_there_were_cases_are_brought_over(begun, out, tmp_path):
-    for record in list(out.all()):
-        out.save(dataclasses.replace(record, cases=None, format=2))
-    shutil.rmtree(out.folder / "contracts")
-    left = [weight for weight in WEIGHTS if weight != begun.own[STUDENTS[3]]]
-    assert regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left)) == []
-    for record in out.all():
-        case = record.cases[NAME]
-        assert record.format == 3 and "older record" in case.known
-        asked = Contracts(out.folder).of(case.own.contract)
-        assert (
-            record.student == "wrong" or asked.question.given["weight"] == begun.own[record.student]
-        )
-        assert set(case.siblings) == set(siblings_of(NAME, 8))
-    # Nothing but the contracts is needed from then on.
-    shutil.rmtree(out.folder / "questions")
-    assert regrade(out.folder, solutions=tmp_path / "solutions") == []
-
-
 def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     """What a function returned was compared by position: all right functions fell from 3 to 0."""
     fewer = write_beams(tmp_path / "fewer", WEIGHTS, "[[0.25], [1.5]]")

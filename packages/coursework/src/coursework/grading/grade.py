@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple, TextIO, overload
 
 from ..authoring.course import edition_of, find_course, links_of
-from ..authoring.source import measured_questions, names_asked, said_beyond, said_found
+from ..authoring.source import names_asked
 from ..checking.fields import Json, by_name, many, text
 from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
@@ -393,16 +393,11 @@ def grade(
             if again and again != found:
                 store.save(again)
         write(store.folder / REFUSED, as_text(sorted(refused)))
-        strengths, guessed = _strengths(course.folder, questions)
-        for file, said in ((reports.STRENGTHS, strengths), (reports.GUESSED, guessed)):
-            known = store.said(file, by_name(text)) or {}
-            write(store.folder / file, as_text(known | said))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
     for line in said_of_people(store, standing):
         print(line, file=show)
-    _say_guessable(questions, strengths, show)
     _say_other_numbers(store, work, questions, show)
     return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
 
@@ -684,41 +679,6 @@ def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
             )
 
 
-def _strengths(
-    folder: Path, questions: Mapping[str, Questions]
-) -> tuple[dict[str, str], dict[str, str]]:
-    """What the author's attack says of the points of each assignment, and of each question;
-    nothing of what was not attacked.
-    """
-    measured = measured_questions(folder)
-    of_each = {
-        name: {one: measured[one] for one in asked if one in measured}
-        for name, asked in questions.items()
-    }
-    return (
-        {name: f"{said_beyond(found)}." for name, found in of_each.items() if found},
-        {one: said_found(about) for found in of_each.values() for one, about in found.items()},
-    )
-
-
-def _say_guessable(
-    questions: Mapping[str, Questions], strengths: Mapping[str, str], show: TextIO
-) -> None:
-    """Say which points a script could have guessed: whoever tries
-    answers in the check earns them.
-    """
-    for assignment, asked in questions.items():
-        if assignment in strengths:
-            print(f"{assignment}: {strengths[assignment]}", file=show)
-        cheap = {name: first for name, (first, *_) in asked.items() if first.guessable is not None}
-        if cheap:
-            tries = ", ".join(
-                f"{name} after {contract.guessable} tries"
-                for name, contract in sorted(cheap.items())
-            )
-            print(f"{assignment}: the others were guessed ({tries}).", file=show)
-
-
 def _assignments_kept(store: Store) -> dict[str, tuple[str, ...]]:
     """The notebooks of each assignment that was graded into a folder."""
     return store.said(COURSE, by_name(many(text))) or {}
@@ -989,9 +949,7 @@ def marked(
         # What the lines of a rubric are worth, where its author said so.
         rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
         marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
-    return with_decisions(
-        replace(record, format=FORMAT, cases=cases, marks=marks), standing or Standing()
-    )
+    return with_decisions(replace(record, cases=cases, marks=marks), standing or Standing())
 
 
 class _Progress:

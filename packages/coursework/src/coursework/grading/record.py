@@ -1,8 +1,7 @@
 """The record of one student's work on one assignment, as it is stored: what was
 handed in, asked, answered and marked.
 
-JSON calls a field as Python does, with spaces for underscores. A record of an
-earlier format lacks what came later.
+JSON calls a field as Python does, with spaces for underscores.
 """
 
 from __future__ import annotations
@@ -26,13 +25,6 @@ from ..checking.fields import (
 from ..checking.plain import Plain
 
 FORMAT = 3
-#: How a case came to be known: by the rule when the work was graded, or later
-#: from a record that did not hold it.
-AS_GRADED, FROM_THE_VERSION, BY_THE_RULE = (
-    "as graded",
-    "from the version in an older record",
-    "by the rule of today",
-)
 
 
 @dataclass(frozen=True)
@@ -165,8 +157,6 @@ class Case:
         only one.
     edition : str
         Of the course: another one draws afresh.
-    known : str
-        How this is known.
     """
 
     question: str
@@ -174,7 +164,6 @@ class Case:
     siblings: Mapping[str, Place] = field(default_factory=dict)
     rule: str = ""
     edition: str = ""
-    known: str = AS_GRADED
 
     @classmethod
     def from_json(cls, found: object, where: str) -> Case:
@@ -185,7 +174,6 @@ class Case:
             about.get("siblings", by_name(Place.from_json)),
             about.get("rule", text),
             about.get("edition", text),
-            about.get("known", text),
         )
 
     def as_json(self) -> dict[str, Json]:
@@ -195,7 +183,6 @@ class Case:
             "siblings": {name: place.as_json() for name, place in self.siblings.items()},
             "rule": self.rule,
             "edition": self.edition,
-            "known": self.known,
         }
 
 
@@ -247,8 +234,6 @@ class Mark:
         What identical answers have in common; empty where an answer has no fingerprint.
     version : str
         Of the contract.
-    guessable : int or None
-        After how many tries a script finds the right answer.
     tries : int or None
         How many different answers were tried, as the notebook remembers.
     title : str
@@ -273,7 +258,6 @@ class Mark:
     worth: float = 0
     group: str = ""
     version: str = ""
-    guessable: int | None = None
     tries: int | None = None
     title: str = ""
     policy: str | None = None
@@ -300,7 +284,6 @@ class Mark:
             about.get("worth", number),
             about.maybe("group", text) or "",
             about.maybe("version", text) or "",
-            about.maybe("guessable", whole),
             about.maybe("tries", whole),
             about.maybe("title", text) or "",
             about.maybe("policy", text),
@@ -526,9 +509,7 @@ class Record:
         By the names of questions and of siblings.
     remembered : mapping of str to Remembered
     marks : mapping of str to Mark
-    cases : mapping of str to Case, or None
-        ``None`` in records from before there were cases.
-    format : int
+    cases : mapping of str to Case
     """
 
     student: str
@@ -545,8 +526,7 @@ class Record:
     answers: Mapping[str, Answer] = field(default_factory=dict)
     remembered: Mapping[str, Remembered] = field(default_factory=dict)
     marks: Mapping[str, Mark] = field(default_factory=dict)
-    cases: Mapping[str, Case] | None = None
-    format: int = FORMAT
+    cases: Mapping[str, Case] = field(default_factory=dict)
 
     @property
     def points(self) -> float:
@@ -577,12 +557,10 @@ class Record:
         Misread
         """
         about = Fields(found, where)
-        format = about.maybe("format", whole) or 1
-        if format > FORMAT:
+        if (format := about.get("format", whole)) != FORMAT:
             raise ValueError(
-                f"{where} is of format {format}, and this coursework reads formats up to {FORMAT}: "
-                "a later one made it. "
-                "Install that one."
+                f"{where} is of format {format}, and this coursework reads format {FORMAT}: "
+                "another version made it. Install that one."
             )
         finished = about.maybe("finished", truth)
         return cls(
@@ -600,14 +578,13 @@ class Record:
             about.get("answers", by_name(Answer.from_json)),
             about.maybe("remembered", by_name(Remembered.from_json)) or {},
             about.maybe("marks", by_name(Mark.from_json)) or {},
-            about.maybe("cases", by_name(Case.from_json)),
-            format,
+            about.maybe("cases", by_name(Case.from_json)) or {},
         )
 
     def as_json(self) -> dict[str, Json]:
         """What :meth:`from_json` reads, and what its marks come to."""
         found: dict[str, Json] = {
-            "format": self.format,
+            "format": FORMAT,
             "key": self.key,
             "student": self.student,
             "assignment": self.assignment,
@@ -622,9 +599,8 @@ class Record:
             "answers": {name: answer.as_json() for name, answer in self.answers.items()},
             "remembered": {name: one.as_json() for name, one in self.remembered.items()},
             "marks": {name: mark.as_json() for name, mark in self.marks.items()},
+            "cases": {name: case.as_json() for name, case in self.cases.items()},
         }
-        if self.cases is not None:
-            found["cases"] = {name: case.as_json() for name, case in self.cases.items()}
         return found | {"points": self.points, "worth": self.worth, "undecided": self.undecided}
 
 

@@ -22,7 +22,6 @@ from markupsafe import Markup
 from tornado import httpserver, ioloop, netutil, web
 
 from ..authoring.author import to_page
-from ..checking import fields
 from ..checking.identity import plain_identity
 from ..checking.plain import Plain
 from ..checking.variants import text_of
@@ -45,7 +44,7 @@ from .judging.ledger import (
 from .record import Answer, Mark, Record
 from .reporting import pages
 from .reporting.mathematics import answer_as_mathematics
-from .reporting.reports import STRENGTHS, deed
+from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
 from .submissions.intake import SAYS
@@ -511,9 +510,6 @@ class _Overview(_Page):
         graded.read()
         found = graded.chosen(filters, self.settings["hide_names"])
         outcomes = {cluster.id: graded.outcome(cluster) for cluster in found}
-        guessable = {
-            name: about for name, about in graded.questions.items() if about.guessable is not None
-        }
         clusters = graded.clusters.values()
         self.show(
             "overview.html",
@@ -525,8 +521,6 @@ class _Overview(_Page):
             earlier=sum(graded.is_shown(one, "earlier") for one in clusters),
             titles={one.question: one.mark.title for one in graded.clusters.values()},
             text=lambda cluster: pages.answer_as_text(cluster.answer.plain, 120),
-            guessable=guessable,
-            strengths=graded.store.said(STRENGTHS, fields.by_name(fields.text)) or {},
         )
 
 
@@ -591,7 +585,7 @@ class _Answer(_Page):
             asked=Markup(_as_asked(contract)),
             given=contract.variant.given if contract else {},
             calls=contract.question.calls if contract else (),
-            case=(record.cases or {}).get(cluster.question),
+            case=record.cases.get(cluster.question),
             right=Markup(answer_as_mathematics(right)),
             right_text=pages.answer_as_text(right, 2_000),
             answer=Markup(answer_as_mathematics(cluster.answer.plain)),

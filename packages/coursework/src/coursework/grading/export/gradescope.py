@@ -20,7 +20,6 @@ from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
-from ...authoring.source import MEASURED
 from ...checking.fields import Fields, many, text, truth
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
@@ -89,8 +88,6 @@ def write_autograder(
         **{f"solutions/{stem}.ipynb": course.sources[stem].read_bytes() for stem in stems},
         f"solutions/{SECRET}": (folder / SECRET).read_bytes(),
     }
-    if (folder / MEASURED).is_file():
-        files[f"solutions/{MEASURED}"] = (folder / MEASURED).read_bytes()
     if course.edition:
         files["course.toml"] = f"edition = {json.dumps(course.edition)}\n".encode()
     if roster:

@@ -7,14 +7,13 @@ Contracts lie in the folder of results, one file each.
 """
 
 import json
-import os
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from ...checking.fields import by_name
 from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of
-from ..record import AS_GRADED, BY_THE_RULE, FROM_THE_VERSION, Case, Place, Record
+from ..record import Case, Place, Record
 from ..store import write
 from .contract import Asked, Contract, variants_from_json
 from .ledger import Decision, digest_of_answer
@@ -41,16 +40,9 @@ def variants_of(variants: Sequence[Contract]) -> dict[str, Contract]:
     return dict(zip(names_of_variants(one.variant for one in variants), variants, strict=True))
 
 
-def case_by_rule(
-    name: str, variants: Sequence[Contract], identity: str, known: str = AS_GRADED
-) -> Case:
+def case_by_rule(name: str, variants: Sequence[Contract], identity: str) -> Case:
     """The case of a student who is asked this question now."""
     order = numbers_of_variants(identity, name, variants[0].variant, len(variants))
-    return _case(name, variants, order, known)
-
-
-def _case(name: str, variants: Sequence[Contract], order: Sequence[int], known: str) -> Case:
-    """The case of whoever has the variants in this order."""
     names, first = list(variants_of(variants)), variants[0]
     places = [Place(names[number], variants[number].version) for number in order]
     # In an exam each has one question.
@@ -62,7 +54,6 @@ def _case(name: str, variants: Sequence[Contract], order: Sequence[int], known: 
         dict(zip(siblings, places[1:], strict=False)),
         f"{how} {len(names)}" if len(names) > 1 else "",
         first.variant.edition,
-        known,
     )
 
 
@@ -77,8 +68,6 @@ class Contracts:
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder, "contracts")
-        self.questions = Path(folder, "questions")
-        self._older: dict[str, tuple[Contract, Case]] | None = None
         self._known: dict[str, Contract] = {}
         self._kept: set[str] = set()
 
@@ -99,30 +88,7 @@ class Contracts:
                 self._known[version] = Contract.from_json(
                     json.loads(path.read_text("utf8")), str(path)
                 )
-            elif version in self.older:
-                self._known[version] = self.older[version][0]
         return self._known.get(version)
-
-    @property
-    def older(self) -> dict[str, tuple[Contract, Case]]:
-        """What was worked out before there were contracts, by version: each
-        edition of a notebook lies here still.
-        """
-        if self._older is None:
-            self._older = {}
-            for name in sorted(os.listdir(self.questions)) if self.questions.is_dir() else ():
-                if name.endswith(".json"):
-                    for asked, variants in questions_in(self.questions / name).items():
-                        for number, one in enumerate(variants):
-                            order = [
-                                (number + further) % len(variants)
-                                for further in range(len(variants))
-                            ]
-                            self._older[one.version] = (
-                                one,
-                                _case(asked, variants, order, FROM_THE_VERSION),
-                            )
-        return self._older
 
     def _path(self, version: str) -> Path:
         return self.folder / f"{version}.json"
@@ -160,24 +126,6 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
         return "answer"
     now = record.marks[decided.question].version
     return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
-
-
-def case_of(
-    record: Record, name: str, variants: Sequence[Contract], contracts: Contracts
-) -> Case | None:
-    """The case of an answer that was graded; ``None`` if the question was not asked then.
-
-    A record that was made before there were cases says by which version an answer
-    was judged: that is one variant.
-    """
-    if record.cases is not None:
-        return record.cases.get(name)
-    mark = record.marks.get(name)
-    if mark is None:
-        return None
-    if mark.version in contracts.older:
-        return contracts.older[mark.version][1]
-    return case_by_rule(name, variants, record.student, BY_THE_RULE)
 
 
 def asked_of(

@@ -19,7 +19,6 @@ from ...checking.fields import (
     many,
     number,
     text,
-    whole,
     written,
 )
 from ...checking.plain import Plain
@@ -103,8 +102,6 @@ class Contract:
     plain : Plain or None
         The right answer, but for a function.
     secret : Elsewhere or None
-    guessable : int or None
-        After how many tries the attack has found it.
     partial : str or None
         The right answer in words, whose parts earn their share.
     rubric : tuple of str, or mapping of float
@@ -124,7 +121,6 @@ class Contract:
     right: tuple[str, ...] | None = None
     plain: Plain | None = None
     secret: Elsewhere | None = None
-    guessable: int | None = None
     partial: str | None = None
     rubric: tuple[str, ...] | Mapping[str, float] = ()
     text: str = ""
@@ -149,7 +145,6 @@ class Contract:
             about.maybe("right", many(text)),
             cast("Plain | None", about.maybe("plain", by_name(a_list))),
             about.maybe("secret", Elsewhere.from_json),
-            about.maybe("guessable", whole),
             about.maybe("partial", text),
             about.maybe("rubric", _rubric) or (),
             about.maybe("text", text) or "",
@@ -168,7 +163,6 @@ class Contract:
             "right": written(self.right),
             "plain": written(self.plain),
             "secret": self.secret.as_json() if self.secret else None,
-            "guessable": self.guessable,
             "partial": self.partial,
             "rubric": written(self.rubric),
             "text": self.text,
@@ -204,7 +198,6 @@ class Contract:
             version="",
             title="",
             text="",
-            guessable=None,
             secret=None,
             rubric=tuple(self.rubric),
             question=replace(self.question, variant=variant),

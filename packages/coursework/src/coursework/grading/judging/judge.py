@@ -112,12 +112,7 @@ class Judge:
             {name: self.questions[record.assignment][name]}, record.student, record, self.contracts
         )
         contract = own[name].contract
-        return replace(
-            marking.UNJUDGED,
-            worth=contract.worth,
-            version=contract.version,
-            guessable=contract.guessable,
-        )
+        return replace(marking.UNJUDGED, worth=contract.worth, version=contract.version)
 
     # -- the process
 

@@ -18,13 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...authoring.author import AuthoredQuestion, AuthorError
-from ...authoring.source import (
-    MEASURED,
-    measured_strengths,
-    names_asked,
-    read_source,
-    texts_of_questions,
-)
+from ...authoring.source import names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
 from ...checking.fields import Json
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
@@ -39,7 +33,7 @@ from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import Contracts, asked_of, case_by_rule, case_of, questions_in
+from .cases import Contracts, asked_of, case_by_rule, questions_in
 from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
@@ -82,11 +76,10 @@ def questions_of(
 
 
 def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tuple[Contract, ...]]:
-    measured = measured_strengths(Path(path).parent)
     source = read_source(path, edition=edition, only=list(names_asked(path)), pictures=True)
     texts = texts_of_questions(source.notebook, source.figures)
     found = {
-        name: [contract_of(question, secret, measured.get(name) or None, texts.get(name, ""))]
+        name: [contract_of(question, secret, texts.get(name, ""))]
         for name, question in source.questions.items()
     }
     for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
@@ -94,7 +87,7 @@ def _questions_of(path: str | Path, secret: bytes, edition: str) -> dict[str, tu
         for name, question in read_source(
             path, number, edition, having, pictures=True
         ).questions.items():
-            found[name].append(contract_of(question, secret, measured.get(name) or None))
+            found[name].append(contract_of(question, secret))
     return {name: tuple(variants) for name, variants in found.items()}
 
 
@@ -127,7 +120,7 @@ def of_student(
     cases: dict[str, Case] = {}
     for name, variants in questions.items():
         today = case_by_rule(name, variants, identity)
-        case = case_of(record, name, variants, contracts) if record and contracts else None
+        case = record.cases.get(name) if record and contracts else None
         if case is None or case.edition != today.edition:
             case = today
         own[name], cases[name] = asked_of(name, variants, case, contracts), case
@@ -151,13 +144,11 @@ def with_second_chances(
     return {name: asked.contract for name, asked in questions.items()} | chances
 
 
-def contract_of(
-    question: AuthoredQuestion, secret: bytes, guessable: int | None = None, text: str = ""
-) -> Contract:
+def contract_of(question: AuthoredQuestion, secret: bytes, text: str = "") -> Contract:
     """All that marks need of a question, with the version that follows from it.
 
-    ``guessable`` is after how many tries the attack guessed it, if it did; ``text`` is that in the
-    source: a question with variants holds its own, beside which the figures stay.
+    ``text`` is that in the source: a question with variants holds its own, beside which the
+    figures stay.
     """
     near = {text: Locker().as_json() for text in question.near}
     found = Contract(
@@ -173,7 +164,6 @@ def contract_of(
         _canonical_of(question),
         question.plain if question.public.kind != "function" else None,
         in_secret.secret_of(question, secret),
-        guessable,
         read(question.public, question.plain).text if question.partial else None,
         question.rubric,
         "\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
@@ -199,9 +189,7 @@ def load_questions(
     """
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
-        file = path.with_name(MEASURED)
-        measured = file.read_bytes() if file.is_file() else b""
-        ours = hashlib.sha256(json.dumps(software()).encode() + secret + measured).digest()
+        ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
         depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
         places[path] = Path(kept) / f"{path.stem}-{depends}.json"
 
@@ -352,7 +340,6 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
         contract.worth,
         hashlib.sha256(text.encode()).hexdigest()[:16] if text else "",
         contract.version,
-        contract.guessable,
     )
 
 

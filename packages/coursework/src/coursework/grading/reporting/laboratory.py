@@ -164,7 +164,7 @@ class Laboratory:
                     mark.points,
                     _outcome(old),
                     _outcome(mark),
-                    after.cases[name].own.variant if after.cases else "",
+                    after.cases[name].own.variant,
                 )
                 self.changes.append(change)
 

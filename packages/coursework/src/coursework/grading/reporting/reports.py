@@ -22,21 +22,10 @@ from ..store import REFUSED, Store, file_name, write
 from ..submissions.intake import Refused
 from ..tables import lines, table
 from . import pages
-from .templates_of_pages import ENVIRONMENT, page
+from .templates_of_pages import page
 
 #: The addresses that feedback leads to, as the course had them when it was graded.
 LINKS = "links.json"
-#: What the author's attack says of the points of each assignment, and what that means for a mark.
-STRENGTHS = "strengths.json"
-#: After how many tries it has found each question.
-GUESSED = "guessed.json"
-GUESSING = (
-    "What lies before is earned without an idea by whoever lets a script try answers in `check`, "
-    "at some 12 ms a try; what lies behind was not found by the author's attack, and somebody may "
-    "have a better one. "
-    "An exam, a function, or a word with the student tells more."
-)
-ENVIRONMENT.globals["GUESSING"] = GUESSING
 #: What is said of an outcome once there is no "yet" any more.
 FINAL = {"decided": ("✓", "Decided by a person"), "wrong": ("✗", "Not right")}
 #: What the class did, to follow "31 % of the class ...", by the note of a
@@ -172,12 +161,7 @@ def write_all(store: Store) -> None:
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
     write(
         store.folder / "report.html",
-        report(
-            classes,
-            refused,
-            store.said(STRENGTHS, by_name(text)) or {},
-            store.said(GUESSED, by_name(text)) or {},
-        ),
+        report(classes, refused),
     )
 
 
@@ -319,12 +303,7 @@ def _deeds() -> dict[str, str]:
     }
 
 
-def report(
-    classes: Mapping[str, _Assignment],
-    refused: Sequence[Refused],
-    strengths: Mapping[str, str],
-    guessed: Mapping[str, str],
-) -> str:
+def report(classes: Mapping[str, _Assignment], refused: Sequence[Refused]) -> str:
     """The page on the class."""
     ways = sum((found.ways for found in classes.values()), Counter())
     versions = sum((found.versions for found in classes.values()), Counter())
@@ -334,8 +313,6 @@ def report(
             (name, file_name(name), found, _about(found)) for name, found in sorted(classes.items())
         ],
         refused=refused,
-        strengths=strengths,
-        guessed=guessed,
         ways=sorted(ways.items()),
         versions=sorted(versions.items()),
         parts=PARTS,

@@ -87,7 +87,6 @@ class Question:
 
     def __init__(self, assignment: str, mark: Mark) -> None:
         self.assignment, self.title, self.worth = assignment, mark.title, mark.worth
-        self.is_guessable = mark.guessable is not None
         self.outcomes: Counter[str] = Counter()
         self.notes: Counter[str] = Counter()
         self.earned, self.decided = 0.0, 0
