@@ -11,7 +11,7 @@ from pathlib import Path
 
 from .mismatch import mend
 from .mismatch.explanation import explain, sentences
-from .mismatch.table import COUNTS, KINDS
+from .mismatch.table import COUNTS, KINDS, WAYS
 from .programs import PROGRAMS
 
 #: What ``orientation explain`` ends with.
@@ -156,11 +156,14 @@ def _declared(words):
     for word in words:
         if word in COUNTS:
             declared["kind"] = word
+        elif word in WAYS:
+            declared["way"] = word
         elif word in choices:
             declared[choices[word]] = word
         else:
             raise ValueError(
-                f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}) nor a choice of one"
+                f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}), a choice of one nor "
+                f"a way that they lead ({', '.join(WAYS)})"
             )
     return declared
 
@@ -190,7 +193,7 @@ def _explain(chosen):
     else:
         for sentence in sentences(found):
             print(sentence)
-        if found.verdict == "named":
+        if found.has_line:
             print("It is mended by (NumPy and SciPy; `second` is one pose)")
             print(f"    {mend.python_line(found.chains[0])}")
             print("in C++ with Eigen, as the first program's matrix,")
@@ -204,6 +207,10 @@ def _explain(chosen):
 
 def as_data(explanation):
     """An explanation as plain data: what ``--json`` prints, in format 1."""
+
+    def line(write):
+        return write(explanation.chains[0]) if explanation.has_line else ""
+
     return {
         "format": 1,
         "verdict": explanation.verdict,
@@ -216,11 +223,9 @@ def as_data(explanation):
         "readings left": len(explanation.chains),
         "others": [chain.words() for chain in explanation.chains[1:]],
         "further pose": explanation.further_pose,
-        "mended by": mend.python_line(explanation.chains[0])
-        if explanation.verdict == "named"
-        else "",
-        "mended in C++ by": mend.cpp_line(explanation.chains[0])
-        if explanation.verdict == "named"
-        else "",
-        "formula": mend.formula(explanation.chains[0]) if explanation.verdict == "named" else "",
+        "question": explanation.question,
+        "descriptions": [name._asdict() for name in explanation.names],
+        "mended by": line(mend.python_line),
+        "mended in C++ by": line(mend.cpp_line),
+        "formula": line(mend.formula),
     }

@@ -41,8 +41,9 @@ console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs
     return {
       verdict: found.verdict, faults: found.faults, left: found.chains.length,
       residual: found.residual,
-      further: found.furtherPose,
-      mended: found.verdict === 'named'
+      further: found.furtherPose, question: found.question ?? '',
+      names: (found.names ?? []).map(({ condition, faults, declare }) => [condition, faults, declare]),
+      mended: (found.verdict === 'named' || found.names?.length) && !found.chains[0].relation.inside
         ? [mendingLine, eigenLine, formulaOf].map((write) => write(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
 })));
@@ -79,10 +80,12 @@ def in_python(case):
         "left": len(found.chains),
         "residual": found.residual,
         "further": found.further_pose,
+        "question": found.question,
+        "names": [[name.condition, list(name.faults), list(name.declare)] for name in found.names],
         "mended": [
             write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)
         ]
-        if found.verdict == "named"
+        if found.has_line
         else [],
     }
 

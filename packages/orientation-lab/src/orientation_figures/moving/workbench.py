@@ -4,14 +4,14 @@ import json
 
 import traitlets
 
-from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, whole_table
+from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, WAYS, whole_table
 from orientation_workbench.programs import PROGRAMS
 
 from .figure import MovingFigure
 from .state import Numbers
 
 UNKNOWN = "not known"
-NOTHING_KNOWN = {"program": UNKNOWN, "kind": UNKNOWN, "sequence": UNKNOWN}
+NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way"), UNKNOWN)
 #: Cases as they are met, most with the numbers of a public thread: what both
 #: programs gave, and what is known of each.
 EXAMPLES = {
@@ -78,11 +78,14 @@ class Known(traitlets.TraitType):
     def validate(self, obj, value):
         if not isinstance(value, dict) or set(value) - set(NOTHING_KNOWN):
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: a dictionary with 'program', 'kind' and 'sequence' was "
-                "expected"
+                f"{self.name} is {value!r}: expected was a dictionary with "
+                f"{', '.join(NOTHING_KNOWN)}"
             )
         known = NOTHING_KNOWN | value
-        for name, allowed in (("program", PROGRAMS), ("kind", COUNTS), ("sequence", SEQUENCES)):
+        for name, allowed in (
+            ("program", PROGRAMS), ("kind", COUNTS), ("sequence", SEQUENCES),
+            ("order", ("wxyz", "xyzw")), ("way", WAYS),
+        ):  # fmt: skip
             if known[name] != UNKNOWN and known[name] not in allowed:
                 raise traitlets.TraitError(
                     f"{self.name} has {name} {known[name]!r}; there is {', '.join(allowed)}"
@@ -98,8 +101,8 @@ class WorkbenchFigure(MovingFigure):
     first, second : str
         What each program gave, as :func:`orientation_workbench.explain` reads it.
     first_is, second_is : dict
-        What is known of each: ``program``, ``kind`` and ``sequence``, each ``'not known'`` at
-        first.
+        What is known of each: ``program``, ``kind``, ``sequence``, ``order`` of a quaternion, and
+        ``way``, which the numbers lead; each ``'not known'`` at first.
     noise : float
         Degrees by which the two may differ besides rounding.
 

@@ -22,6 +22,16 @@ from .text import Poses, read_poses
 LOOKED_AT, READ_AS = 300, 60
 
 
+class Name(NamedTuple):
+    """One description of a mix-up: on what condition it is right, the faults, and for both sides
+    what to declare if the condition holds.
+    """
+
+    condition: str
+    faults: tuple[str, ...]
+    declare: tuple
+
+
 class Explanation(NamedTuple):
     """What :func:`explain` found.
 
@@ -30,7 +40,8 @@ class Explanation(NamedTuple):
     the first. ``further_pose`` says which pose would decide between them, and is empty where
     nothing is open. ``residual`` is what is left by the first chain, in degrees. ``mirrored`` names
     the side, ``'first'`` or ``'second'``, whose matrix has the determinant -1 where the other's has
-    not; else it is empty.
+    not; else it is empty. ``names`` are the descriptions of one and the same relation between which
+    only a reader can choose, by an answer to ``question``.
     """
 
     verdict: str
@@ -40,6 +51,14 @@ class Explanation(NamedTuple):
     further_pose: str
     poses: int
     mirrored: str
+    names: tuple = ()
+    question: str = ""
+
+    @property
+    def has_line(self) -> bool:
+        """Whether one line makes of the second side's numbers the first's."""
+        known = self.verdict == "named" or bool(self.names)
+        return known and "inside" not in self.chains[0].relation
 
     def __str__(self) -> str:
         return "\n".join(sentences(self))
@@ -122,47 +141,180 @@ def explain(
             "same poses, in order"
         )
     one, other = (
-        search.side(poses.kinds, poses.numbers, poses.half, declared) for poses, declared in sides
+        search.side(poses.kinds, poses.numbers, poses.half, declared, noise)
+        for poses, declared in sides
     )
-    expected = table.expected_relation(*programs, [poses.kinds[0] for poses, _ in sides])
+    kinds = [poses.kinds[0] for poses, _ in sides]
+    ways = tuple(
+        table.WAYS.get(declared.get("way"), kind in manual["inverse"] if manual else None)
+        for (_, declared), kind, manual in zip(sides, kinds, programs, strict=True)
+    )
+    expected = table.expected_relation(*programs, kinds)
     chains, tried = search.chains(one, other, noise, expected)
-    classes = _classes(chains, sides) or mountings(one, other, noise)[:1]
+    together = _classes(chains, sides) or [[chain] for chain in mountings(one, other, noise)[:1]]
+    classes = _exact_first([members[0] for members in together])
     readings = list({id(chain.first): chain.first for chain in chains}.values())
-    return _verdict(classes, readings, one, other, sides, tried, noise)
-
-
-def _verdict(classes, readings, one, other, sides, tried, noise):
-    poses = len(sides[0][0].numbers)
     hands = [np.linalg.det(side.dcms[0, 0]) > 0 for side in (one, other)]
     mirrored = "" if hands[0] == hands[1] else ("first", "second")[hands.index(False)]
     if not classes:
-        return Explanation("unrelated", (), None, (), "", poses, mirrored)
+        return Explanation("unrelated", (), None, (), "", counts[0], mirrored)
     best = classes[0]
-    tolerance = max(one.doubts[0] + other.doubts[0], search.SINGLE_PRECISION) + noise
-    expected = tried * min(1.0, (1.5 * tolerance) ** 3 / (6 * math.pi)) ** poses
-    decided = len(classes) == 1 and (best.faults == 0 or expected < search.BY_CHANCE)
-    verdict = "same" if best.faults == 0 else "named" if decided else "undecided"
-    further = "" if decided else _further_pose(classes, readings, sides)
+    chance = _chance(best, one, tried, counts[0])
+    special = any(_is_special(poses) for poses, _ in sides)
+    if best.faults == 0 and (noise == 0 or chance < search.BY_CHANCE):
+        verdict = "same"
+    elif len(classes) > 1 or special or chance >= search.BY_CHANCE:
+        verdict = "undecided"
+    else:
+        verdict = "named"
+    names = ()
+    if verdict == "named":
+        alike = search.with_orders(best, one, other, noise, expected) + together[0]
+        names = _names(best, [chain for chain in alike if _usual_order(chain)], ways)
+        verdict = "undecided" if names else "named"
+    further = ""
+    if verdict == "undecided" and not names:
+        further = _further_pose(classes, readings, sides)
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
     return Explanation(
-        verdict, tuple(best.words()), residual, tuple(classes), further, poses, mirrored
+        verdict, tuple(best.words(ways)), residual, tuple(classes), further, counts[0], mirrored,
+        names, _question(names, best)
+    )  # fmt: skip
+
+
+#: A reading that leaves so many times what the best leaves, and more than a thousandth, is put
+#: behind those that fit exactly.
+EXACT = 20
+
+
+def _exact_first(chains):
+    limit = max(1e-3, EXACT * min((chain.residual for chain in chains), default=0.0))
+    return sorted(chains, key=lambda chain: chain.residual > limit)
+
+
+def _chance(best, first, tried, poses):
+    """How many chains of so few faults would fit as well by chance, were the second side's poses
+    unrelated ones that move as far as the first side's.
+    """
+    dcms = first.dcms[next(k for k, one in enumerate(first.readings) if one is best.first)]
+    gap = max(best.residual, search.SINGLE_PRECISION, min(first.doubts))
+    moved = [max(search.motion(dcm[None]), 1e-9) for dcm in dcms]
+    share = math.prod(
+        min(1.0, (1.5 * gap) ** 3 / 6 / (angle - math.sin(angle) or 1e-27)) for angle in moved
     )
+    return tried[: best.faults + 1].sum() * share
+
+
+def _is_special(poses):
+    """Whether all poses share what leaves several readings open: an angle or a part that is zero,
+    or two that are alike, as for turns about one axis, half and quarter turns.
+    """
+    sizes, near = np.abs(poses.numbers), 2 * poses.half + search.SINGLE_PRECISION
+    if (sizes <= near).all(axis=0).any():
+        return True
+    if sizes.shape[1] == 9:
+        pairs = ((1, 3), (2, 6), (5, 7))
+    else:
+        pairs = itertools.combinations(range(sizes.shape[1]), 2)
+    return any((np.abs(sizes[:, i] - sizes[:, j]) <= near).all() for i, j in pairs)
+
+
+# --- descriptions between which only the reader can choose ----------------------------------------
+
+#: A description that costs so much more than the simplest is left out.
+DEARER = 1.0
+_ORDERS = {"wxyz": "first", "xyzw": "last"}
+
+
+def _names(best, others, ways):
+    """Descriptions of one relation that call different axes, or none if all call the same."""
+    names, seen = [], set()
+    dearest = _dearness(best) + DEARER + 1e-6
+    for chain in [best, *(chain for chain in others if _dearness(chain) <= dearest)]:
+        swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
+        for which, second_inverse in enumerate(swaps):
+            faults = tuple(chain.words(ways, which))
+            upright = chain.relation.get("said", chain.relation) | {"inverse": False}
+            axes = tuple(table.words_of(upright, chain.kinds, second_inverse))
+            if axes in seen:
+                continue
+            seen.add(axes)
+            inverses = second_inverse ^ chain.relation["inverse"], second_inverse
+            names.append(_name(chain, inverses, faults, len(swaps) > 1, best))
+    return tuple(names) if len(names) > 1 else ()
+
+
+def _usual_order(chain):
+    orders = {reading["choices"].get("order") for reading in (chain.first, chain.second)}
+    return orders <= {None, *_ORDERS}
+
+
+def _dearness(chain):
+    """What a chain costs, but for which way a matrix leads beside numbers that are none."""
+    free = chain.relation["inverse"] and (chain.kinds.count("matrix") == 1)
+    return chain.cost - free
+
+
+def _name(chain, inverses, faults, by_way, best):
+    """A description with its condition, and with what the reader can declare for it."""
+    declare, conditions = ({}, {}), []
+    orders = [reading["choices"].get("order") for reading in (chain.first, chain.second)]
+    for side, order in zip(declare, orders, strict=True):
+        if order:
+            side["order"] = order
+    if any(orders):
+        where = " and ".join(
+            f"{_ORDERS.get(order, order)} in the {side}"
+            for side, order in zip(("first", "second"), orders, strict=True) if order
+        )  # fmt: skip
+        where = f"{_ORDERS[orders[0]]} in both" if orders[0] == orders[1] else where
+        conditions.append(f"the scalar part stands {where}")
+    if by_way:
+        for side, inverse, kind in zip(declare, inverses, chain.kinds, strict=True):
+            words = ("rows", "columns") if kind == "matrix" else ("body in world", "world in body")
+            side["way"] = words[inverse]
+        conditions.append(
+            f"the body's axes are the {'columns' if inverses[0] else 'rows'} of the first matrix"
+            if "matrix" in chain.kinds
+            else f"the {'first' if inverses[0] else 'second'} side gives the world as seen from "
+            "the body"
+        )
+    return Name(" and ".join(conditions), faults, declare)
+
+
+def _question(names, best):
+    if not names:
+        return ""
+    asked = []
+    if any("on the way" in name.faults[0] for name in names):
+        asked.append("Did angles or a quaternion pass from one program to the other?")
+    if len({name.declare[0].get("order") for name in names}) > 1:
+        asked.append("Does the scalar part of the quaternions stand first or last?")
+    if len({name.declare[0].get("way") for name in names}) > 1:
+        asked.append(
+            "Which way does the first matrix lead: are the body's axes its rows or its columns?"
+            if "matrix" in best.kinds
+            else "Which side gives the inverse, the world as seen from the body?"
+        )
+    return " ".join(asked)
 
 
 # --- which chains say the same --------------------------------------------------------------------
 
 
 def _classes(chains, sides):
-    """Of chains that do the same to whatever is pasted, the simplest; simplest first."""
-    found, seen = [], set()
+    """Chains that do the same to whatever is pasted, together; simplest first."""
+    classes, owner = [], {}
     samples = {
         kind: _samples(kind, sides[0][0]) for kind in {chain.first["kind"] for chain in chains}
     }
     for chain, keys in zip(chains, _predictions(chains, samples, 5)):
-        if seen.isdisjoint(keys):
-            found.append(chain)
-            seen.update(keys)
-    return found
+        members = next((owner[key] for key in keys if key in owner), None)
+        if members is None:
+            classes.append(members := [])
+        members.append(chain)
+        owner |= dict.fromkeys(keys - owner.keys(), members)
+    return classes
 
 
 def _predictions(chains, samples, decimals):
@@ -203,7 +355,9 @@ def _predictions(chains, samples, decimals):
 
 
 def _related(relation, dcms):
-    """The second side's orientations, by signed axes, of the first side's."""
+    """The second side's orientations of the first side's."""
+    if inside := relation.get("inside"):
+        dcms = search.after_inside(inside, dcms)
     left, right = (
         np.array(table.axes_matrix(relation["body"])),
         np.transpose(table.axes_matrix(relation["world"])),
@@ -242,7 +396,7 @@ def _further_pose(chains, readings, sides):
     depends on how its numbers are to be read. So the pose must decide by each reading of the first
     side that fits, also by those that say the same as another.
     """
-    if len(chains) > LOOKED_AT or len(readings) > READ_AS:
+    if len(chains) > LOOKED_AT or len(readings) > READ_AS or len(chains) == 1:
         return table.FURTHER_POSES[-1][0]
     for words, turns in table.FURTHER_POSES:
         if all(
@@ -291,7 +445,14 @@ def sentences(explanation):
                 "and no rotation."
             )
         return
-    if explanation.verdict == "same":
+    if explanation.names:
+        yield (
+            f"The numbers fit {len(explanation.names)} descriptions, and only you can say which is "
+            f"yours. {explanation.question}"
+        )
+        for name in explanation.names:
+            yield f"- {_condition(name)}{'; '.join(name.faults)}."
+    elif explanation.verdict == "same":
         yield "Both sides give the same orientation" + (f" in {several}." if left > 1 else ".")
     elif explanation.verdict == "named":
         yield "The two sides differ by " + _count(explanation.faults) + ":"
@@ -301,7 +462,7 @@ def sentences(explanation):
             + _count(explanation.faults)
             + ":"
         )
-    for fault in explanation.faults:
+    for fault in () if explanation.names else explanation.faults:
         yield f"- {fault}"
     if explanation.residual > 1e-3:
         yield f"What is left then is {explanation.residual:.2g} degrees."
@@ -309,6 +470,16 @@ def sentences(explanation):
         if left > 1:
             yield f"{more[0].upper()}{more[1:]} fit{'s' * (left == 2)} as well."
         yield f"To decide, {explanation.further_pose}, and paste that pose as well."
+
+
+def _condition(name):
+    """The condition, with how it is declared to the command."""
+    words = [
+        f"--{side}-is " + (f'"{value}"' if " " in value else value)
+        for side, declared in zip(("first", "second"), name.declare, strict=True)
+        for value in declared.values()
+    ]
+    return f"If {name.condition} ({' '.join(words)}): " if words else ""
 
 
 def _count(faults):

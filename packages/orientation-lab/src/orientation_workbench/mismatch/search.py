@@ -1,10 +1,22 @@
 """The search: every chain of at most three faults that explains the numbers, simplest first."""
 
 import functools
+import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
+
+from orientation import (
+    PROPER_EULER,
+    SEQUENCES,
+    body_fixed_from_dcm,
+    dcm_from_body_fixed,
+    dcm_from_quaternion,
+    nearest_dcm,
+    quaternion_from_dcm,
+    random_orientations,
+)
 
 from . import table
 from .meaning import dcms_from_numbers, doubt
@@ -15,6 +27,10 @@ SINGLE_PRECISION = 2e-6
 BLOCK = 200
 #: A chain is named only if fewer than this many are expected to fit unrelated numbers by chance.
 BY_CHANCE = 1e-3
+#: Of more chains than these nothing more is learned.
+MANY = 500
+#: A reading counts only if the thing moves by so many times what the numbers leave open.
+MOTION = 3
 
 
 class Chain(NamedTuple):
@@ -34,10 +50,15 @@ class Chain(NamedTuple):
         """
         return round(self.faults + self.rarity, 6)
 
-    def words(self):
-        """The faults, each as a phrase."""
+    @property
+    def kinds(self):
+        return self.first["kind"], self.second["kind"]
+
+    def words(self, ways=(None, None), which=0):
+        """The faults, each as a phrase; where body and world may change places, one of the ways."""
         *_, sides = table.of_both(self.first, self.second)
-        return sides + table.words_of(self.relation, (self.first["kind"], self.second["kind"]))
+        swapped = table.second_is_inverse(self.relation, self.kinds, ways)
+        return sides + table.words_of(self.relation, self.kinds, swapped[which])
 
 
 @functools.cache
@@ -64,7 +85,7 @@ class Side(NamedTuple):
     doubts: np.ndarray
 
 
-def side(kinds, numbers, half, declared):
+def side(kinds, numbers, half, declared, noise):
     """Read the numbers of one side in every way.
 
     Parameters
@@ -76,6 +97,8 @@ def side(kinds, numbers, half, declared):
         Half a unit of the last digit printed.
     declared : dict
         What is known of the program's convention.
+    noise : float
+        Radians by which the two sides may differ.
     """
     listed = []
     for kind in kinds:
@@ -89,7 +112,25 @@ def side(kinds, numbers, half, declared):
             cheapest[key] = reading
     readings = sorted(cheapest.values(), key=_price)
     dcms = np.stack([dcms_from_numbers(reading, numbers) for reading in readings])
-    return Side(readings, dcms, np.array([doubt(reading, half) for reading in readings]))
+    doubts = np.array([doubt(reading, half) for reading in readings])
+    if not noise:
+        return Side(readings, dcms, doubts)
+    # Small angles that are taken for degrees hardly move: within the noise anything fits them.
+    moves = np.array([motion(each) for each in dcms])
+    some = moves >= MOTION * (doubts + noise)
+    if not some.any():
+        raise ValueError(
+            f"the numbers may differ by {math.degrees(noise):.3g} degrees, and the thing moves by "
+            f"{math.degrees(moves.max()):.3g} only: too little to judge by"
+        )
+    return Side([each for each, fits in zip(readings, some) if fits], dcms[some], doubts[some])
+
+
+def motion(dcms):
+    """Radians of the largest turn in some poses, whatever their hand."""
+    hand = np.sign(np.linalg.det(dcms[0]))
+    across = np.linalg.norm(hand * dcms - np.eye(3), axis=(1, 2)).max()
+    return float(2 * np.arcsin(min(1.0, across / math.sqrt(8))))
 
 
 def _price(reading):
@@ -111,7 +152,8 @@ def _reading_key(reading):
 
 
 def chains(first, second, noise, expected=table.expected_relation(None, None, ())):
-    """All chains that fit every pose, cheapest first; and how many were tried.
+    """All chains that fit every pose, cheapest first; and how many were
+    tried with each number of faults.
 
     Parameters
     ----------
@@ -124,44 +166,211 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
     relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
-    left_first, fits, tried = np.swapaxes(first.dcms, -1, -2), [], 0
-    faults, shared = (
-        [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
-        for what in ("faults", "shared")
-    )
+    exactly = [np.flatnonzero(relation_faults == count) for count in range(table.MOST_FAULTS + 1)]
+    left_first, fits, pairs = np.swapaxes(first.dcms, -1, -2), [], []
+    tried = np.zeros(table.MOST_FAULTS + 1)
     # Signed permutations and the transpose leave the sum of fourth
     # powers alone: most pairs fall here.
     fourth = [(one.dcms**4).sum(axis=(2, 3)) for one in (first, second)]
-    for i, reading in enumerate(first.readings):
+    for i, both in enumerate(_faults_of_pairs(first, second)):
         tolerance = np.maximum(first.doubts[i] + second.doubts, SINGLE_PRECISION) + noise
-        left_over = (
-            table.MOST_FAULTS
-            - faults[0][i]
-            - faults[1]
-            + 2 * np.bitwise_count(shared[0][i] & shared[1])
-        )
-        tried += int(
-            sum((relation_faults <= allowed).sum() for allowed in left_over[left_over >= 0])
-        )
-        near = (np.abs(fourth[0][i] - fourth[1]) <= 12 * tolerance[:, None]).all(axis=1) & (
-            left_over >= 0
-        )
-        for budget in set(left_over[near].tolist()):
-            allowed = np.flatnonzero(relation_faults <= budget)
-            turned = np.where(inverse[allowed, None, None], left_first[i, 0], first.dcms[i, 0])
-            turned = (left[allowed] @ turned @ right[allowed]).reshape(-1, 9)
-            those = np.flatnonzero(near & (left_over == budget))
-            for block in np.array_split(those, math.ceil(len(those) / BLOCK)):
-                wanted = second.dcms[block, 0].reshape(-1, 1, 9)
-                close = np.abs(turned - wanted).max(axis=2) <= tolerance[block, None]
-                for j, k in zip(*np.nonzero(close)):
-                    j, k = block[j], allowed[k]
-                    start = left_first[i] if inverse[k] else first.dcms[i]
-                    gap = np.abs(left[k] @ start @ right[k] - second.dcms[j]).max()
-                    if gap <= tolerance[j]:
-                        relation, other = relations[k], second.readings[j]
-                        in_both, rare, _ = table.of_both(reading, other)
-                        total = in_both + relation["faults"], rare + relation["rarity"]
-                        fits.append(Chain(reading, other, relation, *total, float(gap)))
+        for faults, count in enumerate(np.bincount(both)[: table.MOST_FAULTS + 1]):
+            tried[faults:] += (
+                count * np.array([*map(len, exactly)])[: table.MOST_FAULTS + 1 - faults]
+            )
+        near = (np.abs(fourth[0][i] - fourth[1]) <= 12 * tolerance[:, None]).all(axis=1)
+        those = np.flatnonzero(near & (both <= table.MOST_FAULTS))
+        if those.size:
+            pairs.append((i, those, both[those], tolerance))
+    lowest = table.MOST_FAULTS
+    for level in range(table.MOST_FAULTS + 1):
+        if level > lowest + 1 or len(fits) > MANY:
+            break  # what takes two faults more than the simplest is not said of it
+        for i, near, both, tolerance in pairs:
+            for of_both in set(both[both <= level].tolist()):
+                allowed = exactly[level - of_both]
+                turned = np.where(inverse[allowed, None, None], left_first[i, 0], first.dcms[i, 0])
+                turned = (left[allowed] @ turned @ right[allowed]).reshape(-1, 9)
+                those = near[both == of_both]
+                for block in np.array_split(those, math.ceil(len(those) / BLOCK)):
+                    wanted = second.dcms[block, 0].reshape(-1, 1, 9)
+                    close = np.abs(turned - wanted).max(axis=2) <= tolerance[block, None]
+                    for j, k in zip(*np.nonzero(close)):
+                        j, k = block[j], allowed[k]
+                        start = left_first[i] if inverse[k] else first.dcms[i]
+                        gap = np.abs(left[k] @ start @ right[k] - second.dcms[j]).max()
+                        if gap <= tolerance[j]:
+                            readings = first.readings[i], second.readings[j]
+                            fits.append(_chain(*readings, relations[k], gap))
+        if fits:
+            lowest = min(lowest, level)
+    if hands[0] == hands[1]:
+        inside, more = _inside(first, second, noise)
+        fits, tried = fits + inside, tried + more
     fits.sort(key=lambda chain: (chain.cost, "; ".join(chain.words())))
     return fits, tried
+
+
+def _chain(first, second, relation, gap):
+    in_both, rarity, _ = table.of_both(first, second)
+    return Chain(
+        first,
+        second,
+        relation,
+        in_both + relation["faults"],
+        rarity + relation["rarity"],
+        float(gap),
+    )
+
+
+def _faults_of_pairs(first, second):
+    """Faults of each reading of the first side with each of the second side's."""
+    faults, shared, codes = (
+        [np.array([reading[what] for reading in one.readings]) for one in (first, second)]
+        for what in ("faults", "shared", "codes")
+    )
+    for i in range(len(first.readings)):
+        alike = np.bitwise_count(shared[0][i] & shared[1])
+        yield faults[0][i] + faults[1] - 2 * alike + table.changed(codes[0][i], codes[1])
+
+
+# --- causes inside --------------------------------------------------------------------------------
+
+
+_PERMUTED = ["".join(places) for places in itertools.permutations("123")]
+#: Scalar last read as scalar first, and the other way round.
+_MISREAD = ("xyzw", "zwxy")
+#: Angles on the way come back with this much more doubt, where the middle
+#: one is not far from its singularity.
+_LOOSER = 6
+
+
+@functools.cache
+def _inner_relations():
+    """What can go wrong between two programs that hand on angles or a quaternion, and get a matrix
+    or a quaternion out: read by one sequence and put together by another, or scalar first for last.
+    First as it is, then with the inverse besides.
+    """
+    listed = []
+    for read, built, places in itertools.product(SEQUENCES, SEQUENCES, _PERMUTED):
+        rarity = 0.2 if places in ("123", "321") else 0.4
+        rarity -= 0.1 * (built == read[::-1] and places == "321")
+        rarity += 0.4 * (read in PROPER_EULER or built in PROPER_EULER)
+        listed.append({"inside": ("angles", read, built, places), "rarity": rarity})
+    listed += [{"inside": ("quaternion", "wxyz", one, ""), "rarity": 0.1} for one in _MISREAD]
+    plain = {"inverse": False, "body": table.SAME_AXES, "world": table.SAME_AXES, "hand": False}
+    return [
+        plain | each | {"inverse": inverse, "faults": 1 + inverse}
+        for inverse in (False, True)
+        for each in listed
+    ]
+
+
+@functools.cache
+def _distinct():
+    """Which of them are to be tried: those that are no mere renaming of axes,
+    and the two known ones that are.
+    """
+    dcm = random_orientations(1, np.random.default_rng(20))
+    _, left, right, inverse, _ = _relations(False, table.expected_relation(None, None, ()))
+    start = np.where(inverse[:, None, None], np.swapaxes(dcm, -1, -2), dcm)
+    renamed = {tuple(each) for each in (left @ start @ right).reshape(-1, 9).round(6) + 0.0}
+    made = _all_inside(dcm).reshape(-1, 9).round(6) + 0.0
+    return np.array([
+        tuple(each) not in renamed or one["inside"][0] == "quaternion" or _turned_over(one)
+        for each, one in zip(made, _inner_relations(), strict=True)
+    ]) & (np.abs(made - dcm.reshape(9)).max(axis=1) > 1e-6)  # fmt: skip
+
+
+def _turned_over(relation):
+    _, read, built, places = relation["inside"]
+    return built == read[::-1] and places == "321"
+
+
+def after_inside(inside, dcms):
+    """The orientations that come of reading and putting together by what ``inside`` names."""
+    what, read, built, places = inside
+    if what == "quaternion":
+        return dcm_from_quaternion(
+            quaternion_from_dcm(dcms)[..., [read.index(part) for part in built]]
+        )
+    angles = body_fixed_from_dcm(dcms, read)
+    return dcm_from_body_fixed(angles[..., [int(place) - 1 for place in places]], built)
+
+
+def _all_inside(dcms):
+    """The same for all of :func:`_inner_relations`, an array of
+    shape ``(relations, poses, 3, 3)``.
+    """
+    dcms, permuted = nearest_dcm(dcms).dcm, [[int(k) - 1 for k in places] for places in _PERMUTED]
+    made = []
+    for read in SEQUENCES:
+        angles = np.moveaxis(body_fixed_from_dcm(dcms, read)[:, permuted], 0, 1)
+        made += [dcm_from_body_fixed(angles, built) for built in SEQUENCES]
+    parts = quaternion_from_dcm(dcms)
+    orders = [["wxyz".index(part) for part in order] for order in _MISREAD]
+    made.append(dcm_from_quaternion(np.moveaxis(parts[:, orders], 0, 1)))
+    made = np.concatenate(made)
+    return np.concatenate([made, np.swapaxes(made, -1, -2)])
+
+
+def _inside(first, second, noise):
+    """The chains with one cause inside, and how many were tried with each number of faults."""
+    relations, fits = _inner_relations(), []
+    tried = np.zeros(table.MOST_FAULTS + 1)
+    handed_on = [
+        [k for k, reading in enumerate(one.readings) if reading["kind"] in ("matrix", "quaternion")]
+        for one in (first, second)
+    ]
+    for i in handed_on[0]:
+        reading = first.readings[i]
+        others = [
+            j
+            for j in handed_on[1]
+            if table.of_both(reading, second.readings[j])[0] <= 1
+            and reading["rarity"] + second.readings[j]["rarity"] == 0
+        ]
+        if not others:
+            continue
+        made = _all_inside(first.dcms[i])
+        changes = np.abs(made - first.dcms[i]).max(axis=(1, 2, 3))
+        for j in others:
+            both = table.of_both(reading, second.readings[j])[0]
+            tolerance = max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise
+            tolerance *= _LOOSER
+            gaps = np.abs(made - second.dcms[j]).max(axis=(1, 2, 3))
+            tried[both + 1 : both + 3] += len(relations) / 2
+            # What changes nothing explains nothing.
+            fits += [
+                _chain(reading, second.readings[j], relations[k], gaps[k])
+                for k in np.flatnonzero((gaps <= tolerance) & (changes > tolerance) & _distinct())
+            ]
+    return fits, tried
+
+
+def with_orders(best, first, second, noise, expected):
+    """The cheapest chain for each order, scalar first or last, of the quaternions in the best one,
+    also where it takes more faults than a chain may have.
+    """
+    hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
+    relations, left, right, inverse, _ = _relations(hands[0] != hands[1], expected)
+    listed = []
+    for (i, one), (j, other) in itertools.product(
+        _usual_orders(first, best.first), _usual_orders(second, best.second)
+    ):
+        tolerance = max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise
+        start = first.dcms[i][:, None]
+        start = np.where(inverse[:, None, None], np.swapaxes(start, -1, -2), start)
+        gaps = np.abs(left @ start @ right - second.dcms[j][:, None]).max(axis=(0, 2, 3))
+        fits = [
+            _chain(one, other, relations[k], gaps[k]) for k in np.flatnonzero(gaps <= tolerance)
+        ]
+        listed += sorted(fits, key=lambda chain: chain.cost)[:1]
+    return listed
+
+
+def _usual_orders(one, best):
+    for k, reading in enumerate(one.readings):
+        usual = reading["choices"].get("order") in ("wxyz", "xyzw")
+        if reading is best or (usual and best["kind"] == "quaternion"):
+            yield k, reading

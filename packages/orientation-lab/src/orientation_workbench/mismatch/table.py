@@ -20,6 +20,8 @@ nothing of it is said twice.
 import functools
 import itertools
 
+import numpy as np
+
 from orientation import PROPER_EULER, SEQUENCES
 from orientation.mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
 
@@ -358,7 +360,7 @@ def beyond(relation, expected):
         "inverse": relation["inverse"] != inverse,
         "body": _after(relation["body"], body),
         "world": _after(relation["world"], world),
-        "said": relation | {"rows are the world's": relation["inverse"] != rows_are_the_worlds},
+        "said": relation,
     }
 
 
@@ -371,11 +373,16 @@ def _after(names, others):
     return tuple(found)
 
 
-def words_of(relation, kinds):
-    """The faults of a relation, each as a phrase."""
-    relation, said = relation.get("said", relation), []
-    if relation["inverse"]:
-        said.append(f"one is {INVERSE[kinds[1]]}")
+def words_of(relation, kinds, swapped=False):
+    """The faults of a relation, each as a phrase.
+
+    ``swapped`` says that the second side's numbers are the inverse of what is meant: then the rows
+    of its matrix are the world's axes, and body and world change places.
+    """
+    said = [f"one is {INVERSE[kinds[1]]}"] if relation.get("said", relation)["inverse"] else []
+    if inside := relation.get("inside"):
+        return [_words_inside(*inside), *said]
+    relation = relation.get("said", relation)
     for whose in ("body", "world"):
         if relation.get(f"{whose} turn") is not None:
             said.append(
@@ -384,14 +391,65 @@ def words_of(relation, kinds):
     if relation["hand"]:
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
         return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
-    swapped = relation.get("rows are the world's", relation["inverse"])
-    for names, body in (
-        (relation["world" if swapped else "body"], True),
-        (relation["body" if swapped else "world"], False),
-    ):
-        if words := axes_choice(names, body)["words"]:
-            said.append(words)
-    return said
+    body, world = (relation["body"], relation["world"])[:: -1 if swapped else 1]
+    # All signs of both reversed does the same: what is known goes first, then what is right-handed.
+    body, world = min(
+        ((body, world), (tuple(map(_opposite, body)), tuple(map(_opposite, world)))), key=_strange
+    )
+    named = axes_choice(body, True), axes_choice(world, False)
+    return said + [option["words"] for option in named if option["words"]]
+
+
+def _strange(axes):
+    options = axes_choice(axes[0], True), axes_choice(axes[1], False)
+    cost = sum(option["faults"] + option["rarity"] for option in options)
+    return round(cost, 6), left_handed(axes[0])
+
+
+def _words_inside(what, read, built, places):
+    if what == "quaternion":
+        return (
+            f"a quaternion on the way was stored as {', '.join(read)} and read as "
+            f"{', '.join(built)}, or the other way round"
+        )
+    put = f"{'-'.join(built)} (body fixed)"
+    if places == "321":
+        put = f"{'-'.join(built[::-1])} (space fixed)"
+    elif places != "123":
+        put += f", taking them in the order {', '.join(places)}"
+    return (
+        f"angles on the way: they were read off as {'-'.join(read)} (body fixed) and put together "
+        f"as {put}"
+    )
+
+
+#: Which way the numbers of a side lead, in the words of the options: whether they are the inverse
+#: of what they are in this book. Of a matrix, the words say what of it the body's axes are.
+WAYS = {"rows": False, "columns": True, "body in world": False, "world in body": True}
+
+
+def second_is_inverse(relation, kinds, ways):
+    """Whether the second side's numbers are the inverse of what is meant: all answers that are
+    open, as a tuple of truth values.
+
+    Parameters
+    ----------
+    relation : dict
+    kinds : tuple of two str
+    ways : tuple of two (bool or None)
+        Whether each side gives the inverse, where it is known. A quaternion or angles nobody has
+        said anything of are taken for those of the body in the world.
+    """
+    likely = [None if kind == "matrix" else False for kind in kinds]
+    one, other = (usual if way is None else way for way, usual in zip(ways, likely, strict=True))
+    inverse = relation["inverse"]
+    if one is None and other is None:
+        return (inverse, not inverse)
+    if one is None or other is None or one ^ other == inverse:
+        return (one ^ inverse if other is None else other,)
+    if None in ways and ways != (None, None):
+        return (ways[0] ^ inverse if ways[1] is None else ways[1],)
+    return (not other, other)
 
 
 def readings(kind, declared, degrees_likely=False):
@@ -433,15 +491,43 @@ def readings(kind, declared, degrees_likely=False):
         partial = longer
     return [
         {"kind": kind, "choices": chosen, "faults": faults, "rarity": rarity, "words": list(words),
-         "shared": sum(1 << SHARED.index(like) for like in shared)}
+         "shared": sum(1 << SHARED.index(like) for like in shared),
+         "codes": _codes(chosen, base, declared)}
         for chosen, faults, rarity, words, shared in partial
     ]  # fmt: skip
+
+
+def _codes(choices, base, declared):
+    """Numbers for what may not change silently from one side to the other: unit and sequence.
+
+    The unit (0 where it is none, or a fault already) and whether it is declared; the letters of the
+    sequence, those that it has body fixed, and whether it is declared.
+    """
+    unit, letters = choices.get("unit"), choices.get("sequence")
+    usual = unit == base.get("unit")
+    space_fixed = choices.get("axes of the turns") == "space fixed"
+    return (
+        ("radians", "degrees").index(unit) + 1 if unit and usual else 0,
+        int("unit" in declared),
+        SEQUENCES.index(letters) + 1 if letters else 0,
+        SEQUENCES.index(letters[::-1] if space_fixed else letters) + 1 if letters else 0,
+        int("sequence" in declared),
+    )
+
+
+def changed(codes, others):
+    """How many of unit and sequence differ between two readings where not both are declared."""
+    one, other = (np.moveaxis(np.asarray(each), -1, 0) for each in (codes, others))
+    units = (one[0] * other[0] > 0) & (one[0] != other[0]) & (one[1] * other[1] == 0)
+    letters = (one[2] * other[2] > 0) & (one[2] != other[2]) & (one[3] != other[3])
+    return 1 * units + (letters & (one[4] * other[4] == 0))
 
 
 def of_both(first, second):
     """Faults, rarity and words of the readings of both sides; what both do alike is no fault."""
     alike = first["shared"] & second["shared"]
     faults = first["faults"] + second["faults"] - 2 * alike.bit_count()
+    faults += int(changed(first["codes"], second["codes"]))
     common = [
         option["words"] for bit, (group, value) in enumerate(SHARED) if alike >> bit & 1
         for option in _choices(group) if option["value"] == value
@@ -452,6 +538,10 @@ def of_both(first, second):
         for said in reading["words"]
         if said not in common
     ]
+    (unit, known, *_), (other, too, *_) = first["codes"], second["codes"]
+    if unit * other and unit != other and not known * too:
+        said = ["radians", "degrees"][:: other - unit]
+        words.append(f"the first numbers are in {said[0]}, the second in {said[1]}")
     return faults, first["rarity"] + second["rarity"] + 0.1 * alike.bit_count(), words
 
 
@@ -578,6 +668,7 @@ def whole_table():
         "programs": {program: expected_of(program) for program in PROGRAMS},
         "spelling": whole_spelling(),
         "inverse": INVERSE,
+        "ways": WAYS,
         "taught": TAUGHT,
         "further poses": [
             [words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES

@@ -3,10 +3,10 @@
 // comes with the figure; here are the reader of text and the loops, held to the same cases by
 // tests/test_mismatch_in_the_page.py.
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, determinant, dot, length, multiply, nearestDcm, quaternionFromDcm, scale,
-  transpose, unit } from './mathematics.js';
+  dcmFromQuaternion, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
+  SEQUENCES, transpose, unit } from './mathematics.js';
 
-const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, READ_AS = 60, SLACK = 1e-4;
+const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1, READ_AS = 60, SLACK = 1e-4;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
@@ -353,7 +353,7 @@ function beyond(relation, expected) {
   const [body, world] = relation.inverse ? [expected.world, expected.body] : [expected.body, expected.world];
   const names = { body: after(relation.body, body), world: after(relation.world, world) };
   return { ...relation, ...names, inverse: relation.inverse !== expected.inverse, left: axesMatrix(names.body),
-    right: transpose(axesMatrix(names.world)), said: { ...relation, swapped: relation.inverse !== expected.rowsAreTheWorlds } };
+    right: transpose(axesMatrix(names.world)), said: relation };
 }
 
 export function relationsOf(mirrored, table) {
@@ -386,9 +386,10 @@ const isShared = (group, value, table) => table.shared.some(([own, one]) => own 
 // Faults, rarity and words of the readings of both sides; what both do alike is no fault.
 function ofBoth(first, second) {
   const alike = first.shared.filter((words) => second.shared.includes(words));
-  return { faults: first.faults + second.faults - 2 * alike.length, rarity: first.rarity + second.rarity + 0.1 * alike.length,
+  const units = unitChanges(first, second) ? [`the first numbers are in ${first.unit}, the second in ${second.unit}`] : [];
+  return { faults: first.faults + second.faults - 2 * alike.length + units.length + sequenceChanges(first, second), rarity: first.rarity + second.rarity + 0.1 * alike.length,
     words: [['first', first], ['second', second]].flatMap(([side, { words }]) => words.filter((one) => !alike.includes(one))
-      .map((one) => `in the ${side} numbers ${one}`)) };
+      .map((one) => `in the ${side} numbers ${one}`)).concat(units) };
 }
 
 function readingsOf(kind, declared, large, table) {
@@ -407,8 +408,17 @@ function readingsOf(kind, declared, large, table) {
     }
     partial = longer;
   }
+  for (const reading of partial) {
+    const { unit: inUnit, sequence: letters = '' } = reading.choices, canonical = backwards([...letters], reading.choices['axes of the turns'] === 'space fixed').join('');
+    Object.assign(reading, { unit: inUnit === base.unit ? inUnit : '', letters, canonical, known: { unit: 'unit' in declared, sequence: 'sequence' in declared } });
+  }
   return partial;
 }
+
+// Whether the unit changes between two readings, and the sequence, where not both are declared.
+const unitChanges = (one, other) => Boolean(one.unit && other.unit && one.unit !== other.unit && !(one.known.unit && other.known.unit));
+const sequenceChanges = (one, other) => Boolean(one.letters && other.letters && one.letters !== other.letters && one.canonical !== other.canonical
+  && !(one.known.sequence && other.known.sequence));
 
 // Readings that mean the same by any numbers: space fixed is body fixed from behind.
 function readingKey({ kind, choices }) {
@@ -422,7 +432,7 @@ function readingKey({ kind, choices }) {
 const fourthPowers = (dcm) => dcm.flat().reduce((sum, entry) => sum + entry ** 4, 0);
 const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), price = (one, other) => costOf(one) - costOf(other);
 
-function sideOf(poses, declared, table) {
+function sideOf(poses, declared, table, noise) {
   const cheapest = new Map();
   for (const kind of poses.kinds) {
     // Of an axis and its angle, wherever that stands, only the angle can be large.
@@ -432,13 +442,25 @@ function sideOf(poses, declared, table) {
       if (!held || price(reading, held) < 0) cheapest.set(key, reading);
     }
   }
-  return [...cheapest.values()].sort(price).map((reading) => {
+  const side = [...cheapest.values()].sort(price).map((reading) => {
     const dcms = poses.numbers.map((numbers) => dcmFromNumbers(reading, numbers));
-    return { reading, dcms, flat: dcms.map((dcm) => dcm.flat()), fourth: dcms.map(fourthPowers), doubt: doubtOf(reading, poses.half) };
+    return { reading, dcms, flat: dcms.map((dcm) => dcm.flat()), fourth: dcms.map(fourthPowers), doubt: doubtOf(reading, poses.half), moves: motionOf(dcms) };
   });
+  if (!noise) return side;
+  // Small angles that are taken for degrees hardly move: within the noise anything fits them.
+  const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
+  if (some.length) return some;
+  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, and the thing moves by ${short(Math.max(...side.map(({ moves }) => moves)) / DEGREE, 3)} only: too little to judge by`);
 }
 
-const related = (relation, dcm) => multiply(relation.left, relation.inverse ? transpose(dcm) : dcm, relation.right);
+// Radians of the largest turn in some poses, whatever their hand.
+function motionOf(dcms) {
+  const hand = Math.sign(determinant(dcms[0])), across = Math.max(...dcms.map((dcm) => distance(dcm.map((row) => scale(hand, row)), IDENTITY)));
+  return 2 * Math.asin(Math.min(1, across / Math.sqrt(8)));
+}
+
+const related = (relation, given) => relatedBy(relation, relation.inside ? afterInside(relation.inside, given) : given);
+const relatedBy = (relation, dcm) => multiply(relation.left, relation.inverse ? transpose(dcm) : dcm, relation.right);
 
 function gapOf(relation, first, second) {
   let gap = 0;
@@ -456,7 +478,7 @@ function expectedRelations(mirrored, expected, table) {
   const kept = KEPT.get(table), key = JSON.stringify([mirrored, expected]);
   if (!kept.has(key)) {
     const relations = relationsOf(mirrored, table).map((relation) => beyond(relation, expected));
-    kept.set(key, { relations, within: [0, 1, 2, 3].map((most) => relations.filter(({ faults }) => faults <= most)) });
+    kept.set(key, { relations, exactly: [0, 1, 2, 3].map((count) => relations.filter(({ faults }) => faults === count)) });
   }
   return kept.get(key);
 }
@@ -464,39 +486,109 @@ function expectedRelations(mirrored, expected, table) {
 function chainsOf(first, second, noise, table, expected) {
   const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
   const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
-  const { relations, within } = expectedRelations(mirrored !== aside, expected, table);
-  const fits = [];
-  let tried = 0;
+  const { exactly } = expectedRelations(mirrored !== aside, expected, table);
+  const fits = [], tried = [0, 0, 0, 0], pairs = [[], [], [], []], most = table['most faults'];
   for (const one of first) {
-    const turned = [];   // made as they are needed: those of few faults come first
+    one.turned = [];   // made as they are needed: those of few faults come first
     for (const other of second) {
       // This runs up to a million times: no more is worked out than what decides.
       let faults = one.reading.faults + other.reading.faults;
       if (one.reading.shared.length && other.reading.shared.length) for (const words of one.reading.shared) if (other.reading.shared.includes(words)) faults -= 2;
-      const budget = table['most faults'] - faults;
-      if (budget < 0) continue;
-      tried += within[budget].length;
+      faults += unitChanges(one.reading, other.reading) + sequenceChanges(one.reading, other.reading);
+      if (faults > most) continue;
+      for (let more = 0; more <= most - faults; more += 1) tried[faults + more] += exactly[more].length;
       const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise;
       let alike = true;
       for (let pose = 0; alike && pose < one.fourth.length; pose += 1) alike = Math.abs(one.fourth[pose] - other.fourth[pose]) <= 12 * tolerance;
-      if (!alike) continue;
-      const wanted = other.flat[0];
-      for (let k = 0; k < within[budget].length; k += 1) {
-        const made = (turned[k] ??= related(relations[k], one.dcms[0]).flat());
-        let near = true;
-        for (let entry = 0; near && entry < 9; entry += 1) near = Math.abs(made[entry] - wanted[entry]) <= tolerance;
-        if (!near) continue;
-        const relation = relations[k], residual = gapOf(relation, one.dcms, other.dcms);
-        if (residual <= tolerance) {
-          fits.push({ first: one.reading, second: other.reading, relation, residual, faults: faults + relation.faults,
-            rarity: ofBoth(one.reading, other.reading).rarity + relation.rarity });
-        }
-      }
+      if (alike) pairs[faults].push([one, other, tolerance]);
     }
   }
+  // What takes two faults more than the simplest is not said of it.
+  for (let level = 0, lowest = most; level <= Math.min(most, lowest + 1) && fits.length <= MANY; level += 1) {
+    pairs.slice(0, level + 1).forEach((those, inReadings) => those.forEach(([one, other, tolerance]) => {
+      const wanted = other.flat[0], turned = (one.turned[level - inReadings] ??= []);
+      exactly[level - inReadings].forEach((relation, k) => {
+        const made = (turned[k] ??= related(relation, one.dcms[0]).flat());
+        for (let entry = 0; entry < 9; entry += 1) if (!(Math.abs(made[entry] - wanted[entry]) <= tolerance)) return;
+        const residual = gapOf(relation, one.dcms, other.dcms);
+        if (residual <= tolerance) {
+          fits.push({ first: one.reading, second: other.reading, relation, residual, faults: level, rarity: ofBoth(one.reading, other.reading).rarity + relation.rarity });
+        }
+      });
+    }));
+    if (fits.length) lowest = Math.min(lowest, level);
+  }
+  if (!mirrored) insideOf(first, second, noise, table, fits, tried);
   for (const chain of fits) chain.words = wordsOf(chain, table).join('; ');
   fits.sort((a, b) => price(a, b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
   return { fits, tried };
+}
+
+// ---- causes inside: angles or a quaternion handed on, as in orientation_workbench.mismatch.search ----------
+
+const PERMUTED = ['123', '132', '213', '231', '312', '321'], MISREAD = ['xyzw', 'zwxy'];
+const INNER = [...SEQUENCES.flatMap((read) => SEQUENCES.flatMap((built) => PERMUTED.map((places) => ({ inside: ['angles', read, built, places],
+  rarity: (['123', '321'].includes(places) ? 0.2 : 0.4) - 0.1 * (built === [...read].reverse().join('') && places === '321')
+    + 0.4 * (read[0] === read[2] || built[0] === built[2]) })))), ...MISREAD.map((order) => ({ inside: ['quaternion', 'wxyz', order, ''], rarity: 0.1 }))];
+
+function afterInside([what, read, built, places], given) {
+  const { dcm } = nearestDcm(given);
+  if (what === 'quaternion') {
+    const parts = quaternionFromDcm(dcm);
+    return dcmFromQuaternion(indices(read, built).map((k) => parts[k]));
+  }
+  const angles = bodyFixedFromDcm(dcm, read);
+  return dcmFromBodyFixed([...places].map((place) => angles[place - 1]), built);
+}
+
+// Those that are no mere renaming of axes, and the known ones that are.
+const DISTINCT = new WeakMap();
+function distinctOf(table) {
+  if (!DISTINCT.has(table)) {
+    const key = (dcm) => dcm.flat().map((entry) => Math.round(entry * 1e6) + 0).join(), [dcm] = SAMPLES;
+    const plain = { inverse: false, body: SAME_AXES, world: SAME_AXES, rowsAreTheWorlds: false };
+    const renamed = new Set(expectedRelations(false, plain, table).relations.map((relation) => key(related(relation, dcm))));
+    DISTINCT.set(table, INNER.filter(({ inside, inside: [what, read, built, places] }) => {
+      const made = key(afterInside(inside, dcm));
+      return made !== key(dcm) && (what === 'quaternion' || (places === '321' && built === [...read].reverse().join('')) || !renamed.has(made));
+    }));
+  }
+  return DISTINCT.get(table);
+}
+
+function insideOf(first, second, noise, table, fits, tried) {
+  const plain = { body: SAME_AXES, world: SAME_AXES, hand: false, left: IDENTITY, right: IDENTITY };
+  for (const one of first.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind))) {
+    const others = second.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind)
+      && ofBoth(one.reading, reading).faults <= 1 && one.reading.rarity + reading.rarity === 0);
+    const made = others.length ? distinctOf(table).map((cause) => one.dcms.map((dcm) => afterInside(cause.inside, dcm))) : [];
+    for (const other of others) {
+      const both = ofBoth(one.reading, other.reading), tolerance = LOOSER * (Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise);
+      for (const inverse of [false, true]) {
+        tried[both.faults + 1 + inverse] += INNER.length;
+        made.forEach((dcms, k) => {
+          const relation = { ...plain, inverse };
+          const residual = gapOf({ ...relation }, dcms, other.dcms);
+          if (residual > tolerance || gapOf(relation, dcms, one.dcms) <= tolerance) return;
+          const { inside, rarity } = distinctOf(table)[k];
+          fits.push({ first: one.reading, second: other.reading, relation: { ...relation, inside }, residual, faults: both.faults + 1 + inverse, rarity: both.rarity + rarity });
+        });
+      }
+    }
+  }
+}
+
+// The cheapest chain for each order, scalar first or last, of the quaternions in the best one.
+function withOrders(best, first, second, noise, table, expected) {
+  const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
+  const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
+  const { relations } = expectedRelations(mirrored !== aside, expected, table);
+  const usual = (side, reading) => side.filter((one) => one.reading === reading || (reading.kind === 'quaternion' && one.reading.choices.order in ORDERS));
+  return usual(first, best.first).flatMap((one) => usual(second, best.second).flatMap((other) => {
+    const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise, both = ofBoth(one.reading, other.reading);
+    return relations.map((relation) => ({ first: one.reading, second: other.reading, relation, residual: gapOf(relation, one.dcms, other.dcms),
+      faults: both.faults + relation.faults, rarity: both.rarity + relation.rarity })).filter(({ residual }) => residual <= tolerance).sort(price).slice(0, 1);
+  }));
 }
 
 // A constant turn on the body's side, on the world's, or both: three poses tell one, four tell two.
@@ -574,14 +666,16 @@ function predictionsOf(chains, samples, decimals, table) {
   });
 }
 
+// Chains that do the same to whatever is pasted, together.
 function classesOf(chains, poses, table) {
-  const found = [], seen = new Set(), samples = Object.fromEntries(poses.kinds.map((kind) => [kind, samplesOf(kind, poses, table)]));
+  const classes = [], owner = new Map(), samples = Object.fromEntries(poses.kinds.map((kind) => [kind, samplesOf(kind, poses, table)]));
   predictionsOf(chains, samples, 5, table).forEach((keys, k) => {
-    if (keys.some((key) => seen.has(key))) return;
-    found.push(chains[k]);
-    for (const key of keys) seen.add(key);
+    let members = owner.get(keys.find((key) => owner.has(key)));
+    if (!members) classes.push(members = []);
+    members.push(chains[k]);
+    for (const key of keys) if (!owner.has(key)) owner.set(key, members);
   });
-  return found;
+  return classes;
 }
 
 function turnedNumbers(reading, numbers, turns) {
@@ -592,7 +686,7 @@ function turnedNumbers(reading, numbers, turns) {
 }
 
 function furtherPose(chains, readings, poses, table) {
-  if (chains.length > LOOKED_AT || readings.length > READ_AS) return table['further poses'].at(-1)[0];
+  if (chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return table['further poses'].at(-1)[0];
   const decides = ([, turns]) => readings.every((reading) => {
     const own = chains.filter(({ first }) => first.kind === reading.kind);
     const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table);
@@ -603,15 +697,99 @@ function furtherPose(chains, readings, poses, table) {
 
 // ---- the answer ----------------------------------------------------------------------------------------
 
-export function wordsOf({ first, second, relation: whole }, table) {
-  const said = ofBoth(first, second).words, relation = whole.said ?? whole;
-  if (relation.inverse) said.push(`one is ${table.inverse[second.kind]}`);
+// The faults; swapped says that the second side gives the inverse of what is meant: then body and world change places.
+function relationWords({ second, relation: whole }, swapped, table, inverse = (whole.said ?? whole).inverse) {
+  const relation = whole.said ?? whole, said = inverse ? [`one is ${table.inverse[second.kind]}`] : [];
+  if (whole.inside) return [insideWords(whole.inside), ...said];
   for (const whose of ['body', 'world']) {
     if (relation[`${whose} turn`]) said.push(`a constant turn on the ${whose}'s side, as of an instrument that is mounted askew`);
   }
   if (relation.hand) return [...said, `the other hand: ${/-(.)/.exec(relation.body)[1]} is reversed in the world and on the body`];
-  const [body, world] = (relation.swapped ?? relation.inverse) ? [relation.world, relation.body] : [relation.body, relation.world];
-  return [...said, axesChoice(body, true, table).words, axesChoice(world, false, table).words].filter(Boolean);
+  return [...said, ...namedAxes(relation, swapped, table).map(({ words }) => words).filter(Boolean)];
+}
+
+// All signs of both reversed does the same: said is what is known, and then what is right-handed.
+function namedAxes(relation, swapped, table) {
+  const axes = swapped ? [relation.world, relation.body] : [relation.body, relation.world];
+  const options = [axes, axes.map(opposite)].map((pair) => ({ named: pair.map((names, k) => axesChoice(names, k === 0, table)), left: determinant(axesMatrix(pair[0])) < 0 }));
+  const [one, other] = options.map(({ named, left }) => [costOf({ faults: named[0].faults + named[1].faults, rarity: named[0].rarity + named[1].rarity }), left]);
+  return options[Number(other[0] < one[0] || (other[0] === one[0] && one[1] && !other[1]))].named;
+}
+
+function insideWords([what, read, built, places]) {
+  if (what === 'quaternion') return `a quaternion on the way was stored as ${[...read].join(', ')} and read as ${[...built].join(', ')}, or the other way round`;
+  const put = places === '321' ? `${[...built].reverse().join('-')} (space fixed)` : `${[...built].join('-')} (body fixed)${places === '123' ? '' : `, taking them in the order ${[...places].join(', ')}`}`;
+  return `angles on the way: they were read off as ${[...read].join('-')} (body fixed) and put together as ${put}`;
+}
+
+// Whether the second side's numbers are the inverse of what is meant: all answers that are open.
+function secondIsInverse({ first, second, relation: { inverse } }, ways) {
+  const [one, other] = [first, second].map(({ kind }, k) => ways[k] ?? (kind === 'matrix' ? null : false));
+  if (one === null && other === null) return [inverse, !inverse];
+  if (one === null || other === null || (one !== other) === inverse) return [other === null ? one !== inverse : other];
+  if (ways.includes(null) && ways.some((way) => way !== null)) return [ways[1] === null ? ways[0] !== inverse : ways[1]];
+  return [!other, other];
+}
+
+export const wordsOf = (chain, table, ways = [null, null], which = 0) => [...ofBoth(chain.first, chain.second).words,
+  ...relationWords(chain, secondIsInverse(chain, ways)[which], table)];
+
+const ORDERS = { wxyz: 'first', xyzw: 'last' };
+const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
+
+// Descriptions of one relation that call different axes, none if all call the same; and the question that decides.
+function namesOf(best, others, ways, table) {
+  const names = [], seen = new Set();
+  const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices }) => !choices.order || choices.order in ORDERS)
+    && dearness(chain) <= dearness(best) + DEARER + 1e-6);
+  for (const chain of [best, ...usual]) {
+    const swaps = secondIsInverse(chain, ways);
+    swaps.forEach((swapped, which) => {
+      const axes = relationWords(chain, swapped, table, false).join('; ');
+      if (seen.has(axes)) return;
+      seen.add(axes);
+      const inverses = [swapped !== chain.relation.inverse, swapped], declare = [{}, {}], conditions = [];
+      const orders = [chain.first, chain.second].map(({ choices }) => choices.order);
+      orders.forEach((order, k) => { if (order) declare[k].order = order; });
+      if (orders.some(Boolean)) {
+        const each = orders.map((order, k) => order && `${ORDERS[order] ?? order} in the ${['first', 'second'][k]}`).filter(Boolean).join(' and ');
+        conditions.push(`the scalar part stands ${orders[0] === orders[1] ? `${ORDERS[orders[0]]} in both` : each}`);
+      }
+      const matrix = [chain.first.kind, chain.second.kind].includes('matrix');
+      if (swaps.length > 1) {
+        [chain.first, chain.second].forEach(({ kind }, k) => { declare[k].way = (kind === 'matrix' ? ['rows', 'columns'] : ['body in world', 'world in body'])[Number(inverses[k])]; });
+        conditions.push(matrix ? `the body's axes are the ${inverses[0] ? 'columns' : 'rows'} of the first matrix`
+          : `the ${inverses[0] ? 'first' : 'second'} side gives the world as seen from the body`);
+      }
+      names.push({ condition: conditions.join(' and '), faults: wordsOf(chain, table, ways, which), declare });
+    });
+  }
+  if (names.length < 2) return { names: [], question: '' };
+  const differ = (what) => new Set(names.map(({ declare }) => declare[0][what])).size > 1, asked = [];
+  if (names.some(({ faults }) => faults[0].includes('on the way'))) asked.push('Did angles or a quaternion pass from one program to the other?');
+  if (differ('order')) asked.push('Does the scalar part of the quaternions stand first or last?');
+  if (differ('way')) {
+    asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Which way does the first matrix lead: are the body\'s axes its rows or its columns?'
+      : 'Which side gives the inverse, the world as seen from the body?');
+  }
+  return { names, question: asked.join(' ') };
+}
+
+// How many chains of so few faults would fit as well by chance, were the second side's poses unrelated ones.
+function chanceOf(best, first, tried) {
+  const { dcms } = first.find(({ reading }) => reading === best.first), gap = Math.max(best.residual, SINGLE_PRECISION, Math.min(...first.map(({ doubt }) => doubt)));
+  return dcms.reduce((share, dcm) => {
+    const angle = Math.max(motionOf([dcm]), 1e-9);
+    return share * Math.min(1, (1.5 * gap) ** 3 / 6 / (angle - Math.sin(angle) || 1e-27));
+  }, tried.slice(0, best.faults + 1).reduce((sum, count) => sum + count, 0));
+}
+
+// Whether all poses share what leaves several readings open: an angle or a part that is zero, or two that are alike.
+function isSpecial({ numbers, half }) {
+  const near = 2 * half + SINGLE_PRECISION, count = numbers[0].length, sizes = numbers.map((pose) => pose.map(Math.abs));
+  if (sizes[0].some((_, k) => sizes.every((pose) => pose[k] <= near))) return true;
+  const pairs = count === 9 ? [[1, 3], [2, 6], [5, 7]] : sizes[0].flatMap((_, i) => sizes[0].slice(i + 1).map((__, k) => [i, i + 1 + k]));
+  return pairs.some(([i, j]) => sizes.every((pose) => Math.abs(pose[i] - pose[j]) <= near));
 }
 
 // As orientation_workbench.explain: { verdict, faults, residual, chains, furtherPose, poses } and the poses as read.
@@ -632,19 +810,25 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
     throw new Error(`the first side holds ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
   }
   // What stands in the text goes before what the manual says, and what the reader says before both.
-  const [one, other] = sides.map((poses, k) => sideOf(poses, { ...programs[k]?.declared, ...poses.declared, ...given[k][2] }, table));
-  const { fits, tried } = chainsOf(one, other, noise, table, expectedRelation(programs, sides.map(({ kinds }) => kinds[0]), table));
-  let chains = classesOf(fits, sides[0], table);
-  if (!chains.length) chains = mountingsOf(one, other, noise, table).slice(0, 1);
+  const [one, other] = sides.map((poses, k) => sideOf(poses, { ...programs[k]?.declared, ...poses.declared, ...given[k][2] }, table, noise));
+  const kinds = sides.map((side) => side.kinds[0]), expected = expectedRelation(programs, kinds, table);
+  const ways = kinds.map((kind, k) => table.ways[given[k][2].way] ?? (programs[k] ? programs[k].inverse.includes(kind) : null));
+  const { fits, tried } = chainsOf(one, other, noise, table, expected);
+  let together = classesOf(fits, sides[0], table);
+  if (!together.length) together = mountingsOf(one, other, noise, table).slice(0, 1).map((chain) => [chain]);
+  const limit = Math.max(1e-3, EXACT * Math.min(...together.map(([{ residual }]) => residual)));
+  const chains = [false, true].flatMap((far) => together.map(([chain]) => chain).filter(({ residual }) => (residual > limit) === far));
   const hands = [one, other].map((side) => determinant(side[0].dcms[0]) > 0);
   const mirrored = hands[0] === hands[1] ? '' : ['first', 'second'][hands.indexOf(false)];
   if (!chains.length) return { verdict: 'unrelated', mirrored, asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
-  const [best] = chains, tolerance = Math.max(one[0].doubt + other[0].doubt, SINGLE_PRECISION) + noise;
-  const expected = tried * Math.min(1, (1.5 * tolerance) ** 3 / (6 * Math.PI)) ** counts[0];
-  const decided = chains.length === 1 && (best.faults === 0 || expected < BY_CHANCE);
-  return { asTheirManualsSay, mirrored, verdict: best.faults === 0 ? 'same' : decided ? 'named' : 'undecided', faults: wordsOf(best, table), chains, sides, poses: counts[0],
+  const [best] = chains, chance = chanceOf(best, one, tried);
+  let verdict = chains.length > 1 || sides.some(isSpecial) || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
+  if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE)) verdict = 'same';
+  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], ways, table);
+  if (asked.names.length) verdict = 'undecided';
+  return { ...asked, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
-    furtherPose: decided ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
+    furtherPose: verdict !== 'undecided' || asked.names.length ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
 }
 
 // The orientations of both sides at one pose, as the simplest chain reads them: what is drawn.
@@ -656,7 +840,8 @@ export function drawnDcms(explanation, table, pose) {
 }
 
 // For each of the words of a chain the section of the book that teaches it and the questions on it, each [address, title].
-export function taughtBy({ first, second, relation: whole }, table) {
+export function taughtBy(chain, table, ways) {
+  const { first, second, relation: whole } = chain;
   const links = [], relation = whole.said ?? whole;
   for (const { kind, words, shared } of [first, second]) {
     const other = kind === first.kind && words === first.words ? second : first;
@@ -665,11 +850,11 @@ export function taughtBy({ first, second, relation: whole }, table) {
       links.push(table.taught[own?.group] ?? null);
     }
   }
+  if (whole.inside) links.push(table.taught[whole.inside[0] === 'angles' ? 'axes of the turns' : 'order']);
   if (relation.inverse) links.push(table.taught[`inverse ${second.kind}`]);
   for (const whose of ['body', 'world']) if (relation[`${whose} turn`]) links.push(table.taught.turn);
   if (relation.hand) return [...links, table.taught.hand];
-  const swapped = relation.swapped ?? relation.inverse, named = { body: relation[swapped ? 'world' : 'body'], world: relation[swapped ? 'body' : 'world'] };
-  return [...links, ...['body', 'world'].filter((whose) => named[whose] !== SAME_AXES).map((whose) => table.taught[whose])];
+  return [...links, ...namedAxes(relation, secondIsInverse(chain, ways)[0], table).map(({ words }, k) => words && table.taught[k ? 'world' : 'body']).filter(Boolean)];
 }
 
 // ---- the line that mends it: as orientation_workbench.mismatch.mend ----------------------------------------

@@ -18,21 +18,21 @@ const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 
 
 // What an address carries to here, as far as a reader could have entered it: it may come from anybody.
 export function takenUp(content, programs = []) {
-  const state = {};
+  const state = {}, ways = [UNKNOWN, 'rows', 'columns', 'body in world', 'world in body'];
   for (const side of ['first', 'second']) {
     if (typeof content[side] === 'string' && content[side].length <= LONGEST) state[side] = content[side];
-    const { program = UNKNOWN, kind = UNKNOWN, sequence = UNKNOWN } = content[`${side}_is`] ?? {};
-    const known = KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
-    if (known) state[`${side}_is`] = { program, kind, sequence };
+    const { program = UNKNOWN, kind = UNKNOWN, sequence = UNKNOWN, order = UNKNOWN, way = UNKNOWN } = content[`${side}_is`] ?? {};
+    const known = ways.includes(way) && [UNKNOWN, 'wxyz', 'xyzw'].includes(order) && KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
+    if (known) state[`${side}_is`] = { program, kind, sequence, order, way };
   }
   if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
   // Numbers that were brought alone wait for the other program's.
   return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
 }
 
-const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN };
+const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, order: UNKNOWN, way: UNKNOWN };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
-  && (name === 'kind' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
+  && (name !== 'sequence' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
 const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
@@ -42,9 +42,11 @@ export function render({ model, el }) {
     name: 'The frames of both programs, each beside the frame N.' });
   const redraw = onceAFrame(draw);
   const words = liveText();
+  const answered = (...declare) => Object.fromEntries(['first_is', 'second_is'].map((name, k) => [name, { ...model.get(name), ...declare[k] }]));
   const sides = ['first', 'second'].map((side, k) => {
     const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
-      input: () => change(model, { [side]: field.value }) });
+      // What was answered of other numbers is not known of these.
+      input: () => change(model, { [side]: field.value, ...answered({ order: UNKNOWN, way: UNKNOWN }, { order: UNKNOWN, way: UNKNOWN }) }) });
     const read = element('p', { class: 'read' });
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
@@ -129,8 +131,8 @@ export function render({ model, el }) {
       write(side.read, found ? wasRead(found, k, table) : '');
     });
     put(verdict, 'data-verdict', found?.verdict ?? '');
-    const said = found ? answer(found, table) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
-    if (said.map((one) => one.outerHTML).join('') !== verdict.innerHTML) verdict.replaceChildren(...said);
+    const said = found ? answer(found, table, (declare) => change(model, answered(...declare))) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
+    verdict.replaceChildren(...said);
     mended();
     words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : `${capital(fault)}.`);
     if (found) glideTo(drawnDcms(found, table, found.poses - 1));
@@ -138,7 +140,7 @@ export function render({ model, el }) {
 
   // Also where both do as their manuals say there may be something to convert.
   function mended() {
-    const line = found?.verdict === 'named' || (found?.verdict === 'same' && found.asTheirManualsSay)
+    const line = (found && !found.chains[0]?.relation.inside && (found.verdict === 'named' || found.names?.length)) || (found?.verdict === 'same' && found.asTheirManualsSay)
       ? LANGUAGES[language.element.querySelector('select').value](found.chains[0]) : '';
     mend.hidden = !line;
     write(code, line);
@@ -188,16 +190,21 @@ const told = (group, value) => ({ order: () => [...value].join(' '), sequence: (
   signs: () => (value === '+++' ? '' : `signs ${[...value].join(' ')}`), 'place of the angle': () => `angle ${value}` }[group] ?? (() => value))();
 
 // The answer as the reader sees it; every fault leads to where the book teaches it.
-function answer(found, table) {
+function answer(found, table, declare) {
   const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
     return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.${
       found.mirrored && ` The ${found.mirrored} side's matrix has the determinant −1: a mirror image, and no rotation.`}`)];
   }
+  if (found.names.length) {
+    const told = ({ condition, faults, declare: known }) => [`${condition ? `If ${condition}: ` : ''}${faults.join('; ')}. `,
+      ...(Object.keys(known[0]).length + Object.keys(known[1]).length ? [button('So it is', () => declare(known))] : [])];
+    return [element('p', { class: 'heading' }, 'One question decides.'), element('p', {}, found.question), element('ul', {}, ...found.names.map((name) => element('li', {}, ...told(name))))];
+  }
   if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest reading is:'));
   if (found.faults.length) {
-    const links = taughtBy(best, table);
+    const links = taughtBy(best, table, found.ways);
     parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${capital(fault)}. `,
       ...(links[k] ? linked(links[k]) : [])))));
   }
