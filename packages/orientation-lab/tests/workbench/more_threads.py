@@ -300,7 +300,7 @@ PASTED = [
         "moveit/moveit_calibration 132 sxyz",
         "q=[-0.0372638, -0.0326999, 0.773564, 0.631776]",
         "(-0.09784475354668137, 0.016334569880032665, 1.7711006453446172)",
-        "named",
+        "undecided",
         "scalar part stands last",
     ),
     pasted(

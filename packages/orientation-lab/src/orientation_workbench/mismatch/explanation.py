@@ -150,7 +150,8 @@ def explain(
         for (_, declared), kind, manual in zip(sides, kinds, programs, strict=True)
     )
     expected = table.expected_relation(*programs, kinds)
-    chains, tried = search.chains(one, other, noise, expected)
+    special = any(_is_special(poses) for poses, _ in sides)
+    chains, tried = search.chains(one, other, noise, expected, special)
     together = _classes(chains, sides) or [[chain] for chain in mountings(one, other, noise)[:1]]
     classes = _exact_first([members[0] for members in together])
     readings = list({id(chain.first): chain.first for chain in chains}.values())
@@ -159,8 +160,7 @@ def explain(
     if not classes:
         return Explanation("unrelated", (), None, (), "", counts[0], mirrored)
     best = classes[0]
-    chance = _chance(best, one, tried, counts[0])
-    special = any(_is_special(poses) for poses, _ in sides)
+    chance = _chance(best, one, tried)
     if best.faults == 0 and (noise == 0 or chance < search.BY_CHANCE):
         verdict = "same"
     elif len(classes) > 1 or special or chance >= search.BY_CHANCE:
@@ -170,7 +170,8 @@ def explain(
     names = ()
     if verdict == "named":
         alike = search.with_orders(best, one, other, noise, expected) + together[0]
-        names = _names(best, [chain for chain in alike if _usual_order(chain)], ways)
+        known = [declared.get("order") for _, declared in sides]
+        names = _names(best, [chain for chain in alike if _usual_order(chain, known)], ways)
         verdict = "undecided" if names else "named"
     further = ""
     if verdict == "undecided" and not names:
@@ -192,7 +193,7 @@ def _exact_first(chains):
     return sorted(chains, key=lambda chain: chain.residual > limit)
 
 
-def _chance(best, first, tried, poses):
+def _chance(best, first, tried):
     """How many chains of so few faults would fit as well by chance, were the second side's poses
     unrelated ones that move as far as the first side's.
     """
@@ -221,16 +222,22 @@ def _is_special(poses):
 
 # --- descriptions between which only the reader can choose ----------------------------------------
 
-#: A description that costs so much more than the simplest is left out.
-DEARER = 1.0
+#: A description that costs so much more than the simplest is left out; the second holds unless both
+#: sides are read otherwise in the same way.
+DEARER, DEARER_ON_ONE_SIDE = 1.15, 0.4
 _ORDERS = {"wxyz": "first", "xyzw": "last"}
 
 
 def _names(best, others, ways):
     """Descriptions of one relation that call different axes, or none if all call the same."""
     names, seen = [], set()
-    dearest = _dearness(best) + DEARER + 1e-6
-    for chain in [best, *(chain for chain in others if _dearness(chain) <= dearest)]:
+    near = [
+        chain
+        for chain in others
+        if _dearness(chain) - _dearness(best)
+        <= (DEARER if _order_shared(chain) == _order_shared(best) else DEARER_ON_ONE_SIDE) + 1e-6
+    ]
+    for chain in [best, *near]:
         swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
         for which, second_inverse in enumerate(swaps):
             faults = tuple(chain.words(ways, which))
@@ -244,9 +251,18 @@ def _names(best, others, ways):
     return tuple(names) if len(names) > 1 else ()
 
 
-def _usual_order(chain):
-    orders = {reading["choices"].get("order") for reading in (chain.first, chain.second)}
-    return orders <= {None, *_ORDERS}
+def _usual_order(chain, known):
+    """Whether the scalar parts stand where they are known to stand, or else first or last."""
+    orders = [reading["choices"].get("order") for reading in (chain.first, chain.second)]
+    return all(
+        order is None or order == declared or (declared is None and order in _ORDERS)
+        for order, declared in zip(orders, known, strict=True)
+    )
+
+
+def _order_shared(chain):
+    """Whether both sides store a quaternion in one order, or neither holds one."""
+    return chain.first["choices"].get("order") == chain.second["choices"].get("order")
 
 
 def _dearness(chain):

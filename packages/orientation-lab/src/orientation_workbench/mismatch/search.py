@@ -29,6 +29,8 @@ BLOCK = 200
 BY_CHANCE = 1e-3
 #: Of more chains than these nothing more is learned.
 MANY = 500
+#: Of a quaternion, what both sides may do alike: the bit of scalar last.
+QUATERNION_SHARED = 1 << table.SHARED.index(("order", "xyzw"))
 #: A reading counts only if the thing moves by so many times what the numbers leave open.
 MOTION = 3
 
@@ -118,10 +120,14 @@ def side(kinds, numbers, half, declared, noise):
     # Small angles that are taken for degrees hardly move: within the noise anything fits them.
     moves = np.array([motion(each) for each in dcms])
     some = moves >= MOTION * (doubts + noise)
-    if not some.any():
+    # That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
+    if any(
+        not enough and (reading["faults"] == 0 or reading["shared"] & QUATERNION_SHARED)
+        for reading, enough in zip(readings, some, strict=True)
+    ):
         raise ValueError(
             f"the numbers may differ by {math.degrees(noise):.3g} degrees, and the thing moves by "
-            f"{math.degrees(moves.max()):.3g} only: too little to judge by"
+            f"{math.degrees(moves.min()):.3g} only: too little to judge by"
         )
     return Side([each for each, fits in zip(readings, some) if fits], dcms[some], doubts[some])
 
@@ -151,7 +157,7 @@ def _reading_key(reading):
     return reading["kind"], tuple(sorted(choices.items()))
 
 
-def chains(first, second, noise, expected=table.expected_relation(None, None, ())):
+def chains(first, second, noise, expected, special):
     """All chains that fit every pose, cheapest first; and how many were
     tried with each number of faults.
 
@@ -163,6 +169,8 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
     expected : tuple
         What the programs differ by in any case:
         :func:`orientation_workbench.mismatch.table.expected_relation`.
+    special : bool
+        Whether the poses leave several readings open, however neat one is.
     """
     hands = [np.linalg.det(one.dcms[0, 0]) > 0 for one in (first, second)]
     relations, left, right, inverse, relation_faults = _relations(hands[0] != hands[1], expected)
@@ -183,9 +191,11 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
         if those.size:
             pairs.append((i, those, both[those], tolerance))
     lowest = table.MOST_FAULTS
+    angles = max(len(first.readings), len(second.readings)) > len(_ORDERS)
     for level in range(table.MOST_FAULTS + 1):
-        if level > lowest + 1 or len(fits) > MANY:
-            break  # what takes two faults more than the simplest is not said of it
+        # Angles have a thousand readings: what takes two faults more than the simplest is not said.
+        if (level > lowest + 1 or len(fits) > MANY) and angles:
+            break
         for i, near, both, tolerance in pairs:
             for of_both in set(both[both <= level].tolist()):
                 allowed = exactly[level - of_both]
@@ -204,9 +214,11 @@ def chains(first, second, noise, expected=table.expected_relation(None, None, ()
                             fits.append(_chain(*readings, relations[k], gap))
         if fits:
             lowest = min(lowest, level)
-    if hands[0] == hands[1]:
+    # Of a special pose they would say nothing that other readings do not say as well.
+    if hands[0] == hands[1] and not (special and fits):
         inside, more = _inside(first, second, noise)
-        fits, tried = fits + inside, tried + more
+        fits += [chain for chain in inside if not fits or chain.faults <= lowest]
+        tried += more
     fits.sort(key=lambda chain: (chain.cost, "; ".join(chain.words())))
     return fits, tried
 
@@ -237,6 +249,7 @@ def _faults_of_pairs(first, second):
 # --- causes inside --------------------------------------------------------------------------------
 
 
+_ORDERS = table.KINDS["quaternion"][0]["choices"]
 _PERMUTED = ["".join(places) for places in itertools.permutations("123")]
 #: Scalar last read as scalar first, and the other way round.
 _MISREAD = ("xyzw", "zwxy")
@@ -280,6 +293,11 @@ def _distinct():
         tuple(each) not in renamed or one["inside"][0] == "quaternion" or _turned_over(one)
         for each, one in zip(made, _inner_relations(), strict=True)
     ]) & (np.abs(made - dcm.reshape(9)).max(axis=1) > 1e-6)  # fmt: skip
+
+
+@functools.cache
+def _of_quaternions():
+    return np.array([one["inside"][0] == "quaternion" for one in _inner_relations()])
 
 
 def _turned_over(relation):
@@ -339,11 +357,14 @@ def _inside(first, second, noise):
             tolerance = max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise
             tolerance *= _LOOSER
             gaps = np.abs(made - second.dcms[j]).max(axis=(1, 2, 3))
+            # A quaternion that stands on one side is read otherwise there, and not on the way.
+            matrices = reading["kind"] == second.readings[j]["kind"] == "matrix"
+            tried_here = _distinct() if matrices else _distinct() & ~_of_quaternions()
             tried[both + 1 : both + 3] += len(relations) / 2
             # What changes nothing explains nothing.
             fits += [
                 _chain(reading, second.readings[j], relations[k], gaps[k])
-                for k in np.flatnonzero((gaps <= tolerance) & (changes > tolerance) & _distinct())
+                for k in np.flatnonzero((gaps <= tolerance) & (changes > tolerance) & tried_here)
             ]
     return fits, tried
 

@@ -6,7 +6,7 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmF
   dcmFromQuaternion, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
   SEQUENCES, transpose, unit } from './mathematics.js';
 
-const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1, READ_AS = 60, SLACK = 1e-4;
+const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, READ_AS = 60, SLACK = 1e-4;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
@@ -449,8 +449,9 @@ function sideOf(poses, declared, table, noise) {
   if (!noise) return side;
   // Small angles that are taken for degrees hardly move: within the noise anything fits them.
   const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
-  if (some.length) return some;
-  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, and the thing moves by ${short(Math.max(...side.map(({ moves }) => moves)) / DEGREE, 3)} only: too little to judge by`);
+  // That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
+  if (!side.some((one) => !some.includes(one) && (one.reading.faults === 0 || (one.reading.kind === 'quaternion' && one.reading.shared.length)))) return some;
+  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, and the thing moves by ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} only: too little to judge by`);
 }
 
 // Radians of the largest turn in some poses, whatever their hand.
@@ -483,7 +484,7 @@ function expectedRelations(mirrored, expected, table) {
   return kept.get(key);
 }
 
-function chainsOf(first, second, noise, table, expected) {
+function chainsOf(first, second, noise, table, expected, special) {
   const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
   const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
   const { exactly } = expectedRelations(mirrored !== aside, expected, table);
@@ -503,8 +504,10 @@ function chainsOf(first, second, noise, table, expected) {
       if (alike) pairs[faults].push([one, other, tolerance]);
     }
   }
-  // What takes two faults more than the simplest is not said of it.
-  for (let level = 0, lowest = most; level <= Math.min(most, lowest + 1) && fits.length <= MANY; level += 1) {
+  // Angles have a thousand readings: what takes two faults more than the simplest is not said.
+  const angles = Math.max(first.length, second.length) > 24;
+  let lowest = most;
+  for (let level = 0; level <= most && (!angles || (level <= lowest + 1 && fits.length <= MANY)); level += 1) {
     pairs.slice(0, level + 1).forEach((those, inReadings) => those.forEach(([one, other, tolerance]) => {
       const wanted = other.flat[0], turned = (one.turned[level - inReadings] ??= []);
       exactly[level - inReadings].forEach((relation, k) => {
@@ -518,7 +521,7 @@ function chainsOf(first, second, noise, table, expected) {
     }));
     if (fits.length) lowest = Math.min(lowest, level);
   }
-  if (!mirrored) insideOf(first, second, noise, table, fits, tried);
+  if (!mirrored && !(special && fits.length)) insideOf(first, second, noise, table, fits, tried, fits.length ? lowest : most);
   for (const chain of fits) chain.words = wordsOf(chain, table).join('; ');
   fits.sort((a, b) => price(a, b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
   return { fits, tried };
@@ -556,7 +559,7 @@ function distinctOf(table) {
   return DISTINCT.get(table);
 }
 
-function insideOf(first, second, noise, table, fits, tried) {
+function insideOf(first, second, noise, table, fits, tried, most) {
   const plain = { body: SAME_AXES, world: SAME_AXES, hand: false, left: IDENTITY, right: IDENTITY };
   for (const one of first.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind))) {
     const others = second.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind)
@@ -569,8 +572,10 @@ function insideOf(first, second, noise, table, fits, tried) {
         made.forEach((dcms, k) => {
           const relation = { ...plain, inverse };
           const residual = gapOf({ ...relation }, dcms, other.dcms);
-          if (residual > tolerance || gapOf(relation, dcms, one.dcms) <= tolerance) return;
+          if (residual > tolerance || both.faults + 1 + inverse > most || gapOf(relation, dcms, one.dcms) <= tolerance) return;
           const { inside, rarity } = distinctOf(table)[k];
+          // A quaternion that stands on one side is read otherwise there, and not on the way.
+          if (inside[0] === 'quaternion' && !(one.reading.kind === 'matrix' && other.reading.kind === 'matrix')) return;
           fits.push({ first: one.reading, second: other.reading, relation: { ...relation, inside }, residual, faults: both.faults + 1 + inverse, rarity: both.rarity + rarity });
         });
       }
@@ -735,13 +740,14 @@ export const wordsOf = (chain, table, ways = [null, null], which = 0) => [...ofB
   ...relationWords(chain, secondIsInverse(chain, ways)[which], table)];
 
 const ORDERS = { wxyz: 'first', xyzw: 'last' };
+const orderShared = ({ first, second }) => first.choices.order === second.choices.order;
 const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
 
 // Descriptions of one relation that call different axes, none if all call the same; and the question that decides.
-function namesOf(best, others, ways, table) {
+function namesOf(best, others, known, ways, table) {
   const names = [], seen = new Set();
-  const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices }) => !choices.order || choices.order in ORDERS)
-    && dearness(chain) <= dearness(best) + DEARER + 1e-6);
+  const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || order === known[k] || (!known[k] && order in ORDERS))
+    && dearness(chain) <= dearness(best) + (orderShared(chain) === orderShared(best) ? DEARER : DEARER_ON_ONE_SIDE) + 1e-6);
   for (const chain of [best, ...usual]) {
     const swaps = secondIsInverse(chain, ways);
     swaps.forEach((swapped, which) => {
@@ -810,10 +816,11 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
     throw new Error(`the first side holds ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
   }
   // What stands in the text goes before what the manual says, and what the reader says before both.
-  const [one, other] = sides.map((poses, k) => sideOf(poses, { ...programs[k]?.declared, ...poses.declared, ...given[k][2] }, table, noise));
+  const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));
+  const [one, other] = sides.map((poses, k) => sideOf(poses, declared[k], table, noise));
   const kinds = sides.map((side) => side.kinds[0]), expected = expectedRelation(programs, kinds, table);
   const ways = kinds.map((kind, k) => table.ways[given[k][2].way] ?? (programs[k] ? programs[k].inverse.includes(kind) : null));
-  const { fits, tried } = chainsOf(one, other, noise, table, expected);
+  const special = sides.some(isSpecial), { fits, tried } = chainsOf(one, other, noise, table, expected, special);
   let together = classesOf(fits, sides[0], table);
   if (!together.length) together = mountingsOf(one, other, noise, table).slice(0, 1).map((chain) => [chain]);
   const limit = Math.max(1e-3, EXACT * Math.min(...together.map(([{ residual }]) => residual)));
@@ -822,9 +829,9 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
   const mirrored = hands[0] === hands[1] ? '' : ['first', 'second'][hands.indexOf(false)];
   if (!chains.length) return { verdict: 'unrelated', mirrored, asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
   const [best] = chains, chance = chanceOf(best, one, tried);
-  let verdict = chains.length > 1 || sides.some(isSpecial) || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
+  let verdict = chains.length > 1 || special || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
   if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE)) verdict = 'same';
-  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], ways, table);
+  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], declared.map(({ order }) => order), ways, table);
   if (asked.names.length) verdict = 'undecided';
   return { ...asked, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
