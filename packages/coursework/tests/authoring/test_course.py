@@ -21,7 +21,7 @@ from coursework.__main__ import main
 from coursework.authoring import selftest
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
-from coursework.authoring.packing import DISTRIBUTIONS, archive, wheel
+from coursework.authoring.packing import DISTRIBUTIONS, archive, next_version, wheel
 from coursework.authoring.release import release
 from coursework.authoring.source import measured_strengths
 from coursework.authoring.trial import trial
@@ -261,13 +261,13 @@ def test_a_mended_package_has_another_version(tmp_path):
     git("init", "--quiet")
     git("add", "coursework")
     git("commit", "-m", "first")
-    assert built(tmp_path)[0] == f"{stated}.post20261201080000"
+    assert built(tmp_path)[0] == f"{stated}.dev20261201080000"
     git("tag", f"coursework-checks-{stated}")
     assert built(tmp_path)[0] == stated
     (tmp_path / "coursework" / "grading" / "new.py").write_text("")
     os.utime(tmp_path / "coursework" / "grading" / "new.py", (1796202000, 1796202000))
     version, wheel_file = built(tmp_path)
-    assert version == f"{stated}.post20261202090000"
+    assert version == f"{next_version(stated)}.dev20261202090000"
     # Whoever has installed it, and makes a course with it, hands out just that.
     with zipfile.ZipFile(wheel_file) as box:
         box.extractall(tmp_path / "installed")

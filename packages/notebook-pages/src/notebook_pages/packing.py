@@ -81,12 +81,13 @@ class Project:
 
     @cache  # noqa: B019  (there are as many as the book names, and they last)
     def version(self) -> str:
-        """The version of the wheel: as the sources state it, or ``1.1.0.post20261122093000``.
+        """The version of the wheel: as the sources state it, or ``1.1.0.dev20261122093000``.
 
-        A package that readers hold is only replaced by one of another version. So the version that
-        is stated is for the sources of its tag alone; built from others, it adds when they were
-        last changed, in UTC: when they were last committed or, where something is not committed or
-        there is no repository, when the files were written.
+        pip replaces an installed package only by one of another version. So the stated version is
+        for the sources of its tag alone. Before the tag, the version is the stated one still in
+        development, with the time in UTC when the sources were last changed: committed or, where
+        something is not committed or there is no repository, written. Sources changed after the
+        tag are in development of the next version, so that versions only ever rise.
         """
         file = self._stating(self.repository)
         found = STATED.search(file.read_text("utf8"))
@@ -100,15 +101,16 @@ class Project:
         )
         if committed:
             unknown = self._named("ls-files", "--others", "--exclude-standard")
-            if self._git("log", "-1", "--format=%ct", tag) and not (
-                unknown or self._named("diff", "--name-only", "--relative", tag)
-            ):
-                return stated
+            if self._git("log", "-1", "--format=%ct", tag):
+                if not (unknown or self._named("diff", "--name-only", "--relative", tag)):
+                    return stated
+                *front, last = stated.split(".")
+                stated = ".".join([*front, str(int(last) + 1)])
             changed = unknown + self._named("diff", "--name-only", "--relative", "HEAD")
         # Of a file that is gone, the folder that it stood in tells when.
         written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
         latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
-        return f"{stated}.post{latest:%Y%m%d%H%M%S}"
+        return f"{stated}.dev{latest:%Y%m%d%H%M%S}"
 
     def _git(self, *arguments: str) -> str:
         """What git says of the sources, or nothing where there is no git, or

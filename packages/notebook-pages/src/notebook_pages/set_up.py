@@ -41,7 +41,9 @@ def fetch_packages():
     with tempfile.TemporaryDirectory(dir=FETCHED) as folder:
         for file in (PACKAGE, LOCK):
             shutil.copy(file, folder)
-        npm("ci", "--silent", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
+        # npm prints its own errors. Its cache lies here, since not every home can be written.
+        quietly = ("--loglevel=error", "--no-progress", "--no-audit", "--no-fund")
+        npm("ci", "--ignore-scripts", *quietly, "--cache", Path(folder, "cache"), cwd=folder)
         shutil.rmtree(NODE_MODULES, ignore_errors=True)
         Path(folder, "node_modules").rename(NODE_MODULES)
 

@@ -52,9 +52,9 @@ def packages_archive():
     """
     if not PROJECTS:
         return ""
-    stated, _, moment = PROJECTS[-1].version().partition(".post")
-    newest = max([moment, *(project.version().partition(".post")[2] for project in PROJECTS)])
-    return f"{PROJECTS[-1].name}-{stated}.post{newest}.zip"
+    stated, _, moment = PROJECTS[-1].version().partition(".dev")
+    newest = max([moment, *(project.version().partition(".dev")[2] for project in PROJECTS)])
+    return f"{PROJECTS[-1].name}-{stated}{f'.dev{newest}' if newest else ''}.zip"
 
 
 def introduction(title):

@@ -444,29 +444,29 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
             [python, "-c", "import sealed_trial; print(sealed_trial.DIGEST)"], text=True
         )
 
-    old, new = pack("1.1.0.post20261122093000", "first"), pack("1.1.0.post20261201080000", "second")
-    assert install(update(old, work)) == "sealed in 1.1.0.post20261122093000\n"
+    old, new = pack("1.1.0.dev20261122093000", "first"), pack("1.1.0.dev20261201080000", "second")
+    assert install(update(old, work)) == "sealed in 1.1.0.dev20261122093000\n"
     (work / "a.ipynb").write_text("my answer")
     (work / "requirements.txt").write_text((work / "requirements.txt").read_text() + "pandas\n")
     said = update(new, work)
-    assert install(said) == "sealed in 1.1.0.post20261201080000\n"
+    assert install(said) == "sealed in 1.1.0.dev20261201080000\n"
     assert {path.name for path in work.iterdir()} == {
-        "sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
+        "sealed_trial-1.1.0.dev20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
         "a-new-1.ipynb", MANIFEST,
     }  # fmt: skip
     assert (work / "a.ipynb").read_text() == "my answer"
     assert (work / "requirements.txt").read_text().splitlines() == [
-        "./sealed_trial-1.1.0.post20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
+        "./sealed_trial-1.1.0.dev20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
     ]  # fmt: skip
     # Nothing new: nothing to install. An older archive: refused before anything is written.
     # Not in the Python that runs this.
     assert any("pip install" in line for line in update(new, work))
     monkeypatch.setattr(
-        "coursework.checking.update.version", lambda name: "1.1.0.post20261201080000"
+        "coursework.checking.update.version", lambda name: "1.1.0.dev20261201080000"
     )
     assert not any("pip install" in line for line in update(new, work))
     before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(ArchiveRefused, match="post20261122093000.*post20261201080000"):
+    with pytest.raises(ArchiveRefused, match="dev20261122093000.*dev20261201080000"):
         update(old, work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 
@@ -585,25 +585,25 @@ def test_a_version_follows_from_the_sources(tmp_path):
     )
     touch("src/orientation/__init__.py", '__version__ = "1.1.0"\n', at(2026, 11, 1))
     # No repository: when the newest file was written.
-    assert version() == "1.1.0.post20261101000000"
+    assert version() == "1.1.0.dev20261101000000"
     git("init", "--quiet")
     git("add", ".")
     git("commit", "-m", "first")
-    assert version() == "1.1.0.post20261122093000"
+    assert version() == "1.1.0.dev20261122093000"
     touch("chapters/a.ipynb", "{}", at(2026, 12, 1))
     touch("src/tools/grading/grade.py", "# mended", at(2026, 12, 1))
     git("add", ".")
     git("commit", "-m", "what students do not get", when="2026-12-01T00:00:00Z")
-    assert version() == "1.1.0.post20261122093000"
+    assert version() == "1.1.0.dev20261122093000"
     touch("src/orientation/a.py", "# mended", at(2026, 12, 2, 10))
-    assert version() == "1.1.0.post20261202100000"  # not committed yet
+    assert version() == "1.1.0.dev20261202100000"  # not committed yet
     git("commit", "-am", "mended", when="2026-12-02T11:00:00Z")
-    assert version() == "1.1.0.post20261202110000"
+    assert version() == "1.1.0.dev20261202110000"
     git("clone", "--quiet", "--no-local", "--depth=1", f"file://{book}", str(tmp_path / "shallow"))
-    assert version(tmp_path / "shallow") == "1.1.0.post20261202110000"
+    assert version(tmp_path / "shallow") == "1.1.0.dev20261202110000"
     os.remove(book / "src/orientation/a.py")
     os.utime(book / "src/orientation", (at(2026, 12, 3), at(2026, 12, 3)))
-    assert version() == "1.1.0.post20261203000000"
+    assert version() == "1.1.0.dev20261203000000"
     # Released, it is plain: as long as the sources are those of its tag,
     # whatever else the repository gets.
     git("checkout", ".")
@@ -618,4 +618,4 @@ def test_a_version_follows_from_the_sources(tmp_path):
         ),
     ):
         undo()
-        assert version() == "1.1.0.post20261205000000"
+        assert version() == "1.1.1.dev20261205000000"

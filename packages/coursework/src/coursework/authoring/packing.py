@@ -157,12 +157,13 @@ def dated(
     files: Sequence[Path] = (),
 ) -> str:
     """The version of a package that is built from its sources: as it is stated, or
-    ``1.2.0.post20261122093000``.
+    ``1.2.0.dev20261122093000``.
 
-    A package that students hold is only replaced by one of another version. So the version that the
-    sources state is for those of its tag alone; built from others, it adds when they were last
-    changed, in UTC: when they were last committed or, where something is not committed or there is
-    no repository, when those files were written.
+    pip replaces an installed package only by one of another version. So the stated version is for
+    the sources of its tag alone. Before the tag, the version is the stated one still in
+    development, with the time in UTC when the sources were last changed: committed or, where
+    something is not committed or there is no repository, written. Sources changed after the tag are
+    in development of the next version, so that versions only ever rise.
 
     Parameters
     ----------
@@ -190,15 +191,25 @@ def dated(
     committed = git("log", "-1", "--format=%ct")
     if committed:
         unknown = named("ls-files", "--others", "--exclude-standard")
-        if git("log", "-1", "--format=%ct", tag) and not unknown + named(
-            "diff", "--name-only", "--relative", tag
-        ):
-            return stated
+        if git("log", "-1", "--format=%ct", tag):
+            if not unknown + named("diff", "--name-only", "--relative", tag):
+                return stated
+            stated = next_version(stated)
         files = unknown + named("diff", "--name-only", "--relative", "HEAD")
     # Of a file that is gone, the folder that it stood in tells when.
     written = [(path if path.exists() else path.parent).stat().st_mtime for path in files]
     latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
-    return f"{stated}.post{latest:%Y%m%d%H%M%S}"
+    return f"{stated}.dev{latest:%Y%m%d%H%M%S}"
+
+
+def next_version(stated: str) -> str:
+    """The version that follows when only a mistake is corrected.
+
+    >>> next_version("1.0.0")
+    '1.0.1'
+    """
+    *front, last = stated.split(".")
+    return ".".join([*front, str(int(last) + 1)])
 
 
 def _own_version(root: Path) -> str:

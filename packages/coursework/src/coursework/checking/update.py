@@ -199,9 +199,15 @@ def _is_installed(file: str) -> bool:
         return False
 
 
-def _order(number: str) -> list[int]:
-    """Versions in their order: those of our packages are numbers, and ``post`` with a number."""
-    return [int(part) for part in re.findall(r"\d+", number)]
+def _order(number: str) -> tuple[list[int], bool, int]:
+    """A key that sorts versions: numbers, where ``.dev`` comes before the version itself.
+
+    >>> _order("1.9") < _order("1.10.dev7") < _order("1.10")
+    True
+    """
+    release, in_development, moment = number.partition(".dev")
+    parts = [int(part) for part in re.findall(r"\d+", release)]
+    return parts, not in_development, int(moment or 0)
 
 
 def _older(folder: Path, name: str) -> list[Path]:
