@@ -1,4 +1,4 @@
-"""An engineer or a packager installs what the repository offers: from it, from an sdist, from a wheel."""
+"""An engineer or a packager installs what the repository offers, from an sdist and a wheel."""
 
 import os
 import subprocess

@@ -42,7 +42,7 @@ console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs
       verdict: found.verdict, faults: found.faults, left: found.chains.length,
       residual: found.residual,
       further: found.furtherPose, question: found.question ?? '',
-      names: (found.names ?? []).map(({ condition, faults, declare }) => [condition, faults, declare]),
+      names: (found.names ?? []).map((each) => [each.condition, each.faults, each.declare]),
       mended: (found.verdict === 'named' || found.names?.length) && !found.chains[0].relation.inside
         ? [mendingLine, eigenLine, formulaOf].map((write) => write(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
