@@ -13,6 +13,8 @@ const DRAWN = new Set(['svg', 'g', 'path', 'circle']);
 const WITH_KEYS = new Set(['button', 'input', 'select', 'textarea']);
 // On an element that has the focus, this keeps JupyterLab from taking the keys as its own shortcuts.
 const OWN_KEYS = 'data-lm-suppress-shortcuts';
+// Around what takes text JupyterLab cancels Enter all the same: there the keys stop where they were typed.
+const TAKES_TEXT = 'textarea, input:is([type=text], [type=number])';
 
 // An element with attributes (functions are event listeners) and children; $...$ in a text is mathematics.
 export function element(tag, attributes = {}, ...children) {
@@ -22,6 +24,7 @@ export function element(tag, attributes = {}, ...children) {
     else if (value !== undefined && value !== false) made.setAttribute(name, value === true ? '' : value);
   }
   if (WITH_KEYS.has(tag)) made.setAttribute(OWN_KEYS, 'true');
+  if (made.matches(TAKES_TEXT)) made.addEventListener('keydown', (event) => event.stopPropagation());
   made.append(...children.flatMap((child) => (typeof child === 'string' ? words(child) : child)));
   return made;
 }
