@@ -32,6 +32,19 @@ def free_port():
 
 
 class Engine:
+    """What all engines share. The keyboard and the pointer are those of WebDriver:
+    ``perform`` is given their actions.
+    """
+
+    def click(self, x, y):
+        place = {"type": "pointerMove", "x": round(x), "y": round(y)}
+        press = [{"type": kind, "button": 0} for kind in ("pointerDown", "pointerUp")]
+        self.perform({"type": "pointer", "id": "mouse", "actions": [place, *press]})
+
+    def type(self, text):
+        strokes = [{"type": kind, "value": key} for key in text for kind in ("keyDown", "keyUp")]
+        self.perform({"type": "key", "id": "keyboard", "actions": strokes})
+
     def wait(self, function, *arguments):
         """Wait until ``function``, in the page, gives something true; give that."""
         end = time.monotonic() + PATIENCE
@@ -49,6 +62,12 @@ class Chromium(Engine):
 
     def go(self, address):
         self.page.goto(address)
+
+    def click(self, x, y):
+        self.page.mouse.click(x, y)
+
+    def type(self, text):
+        self.page.keyboard.type(text)
 
     def run(self, function, *arguments):
         return self.page.evaluate(f"(given) => ({function})(...given)", list(arguments))
@@ -139,6 +158,9 @@ class Firefox(Engine):
         )  # fmt: skip
         assert answer["type"] == "success", answer["exceptionDetails"]["text"]
         return json.loads(answer["result"]["value"])
+
+    def perform(self, source):
+        self.send("input.performActions", context=self.context, actions=[source])
 
     def close(self):
         self.socket.close()
@@ -232,6 +254,9 @@ class WebKit(Engine):
         )
         assert "error" not in answer, answer["error"]
         return answer["value"]
+
+    def perform(self, source):
+        self.send("/actions", {"actions": [source]})
 
     def close(self):
         try:

@@ -154,7 +154,7 @@ def test_link_within_a_page_leads_to_its_place_at_once(open_page):
 def test_lecture_mode_begins_with_the_whole_page(open_page):
     page = open_page(LONG, script=HOLD)
     page.wait_for_function("held.length")
-    page.keyboard.press("l")
+    page.locator("button.lecture-mode").click()
     page.wait_for_selector("html.lecture:not(.in-parts)")
     page.keyboard.press("End")
     assert page.locator(".in-step").last.is_visible()

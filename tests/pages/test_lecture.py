@@ -57,7 +57,7 @@ def opened(browser, site):
 
 def begin(page):
     """The lecture comes when it is asked for."""
-    page.keyboard.press("l")
+    page.locator("button.lecture-mode").click()
     page.wait_for_selector("html.lecture")
 
 

@@ -211,15 +211,11 @@ def test_little_is_fetched_before_the_first_answer():
     assert WORDS.name in (HTML / SCRIPT).read_text("utf8")
 
 
-@pytest.mark.parametrize(
-    ("key", "size", "theme"), [("/", WIDE, "light"), ("Control+k", NARROW, "dark")]
-)
-def test_palette_answers_while_one_types_and_leads_to_the_very_place(
-    browser, site, key, size, theme
-):
+@pytest.mark.parametrize(("size", "theme"), [(WIDE, "light"), (NARROW, "dark")])
+def test_palette_answers_while_one_types_and_leads_to_the_very_place(browser, site, size, theme):
     with Visit(browser, site, CHAPTER, theme, size) as visit:
         page = visit.page
-        page.keyboard.press(key)
+        page.keyboard.press("Control+k")
         page.keyboard.type("sl")
         assert page.locator(FOUND).count() == 0
         page.keyboard.type("er")
@@ -240,7 +236,7 @@ def test_words_that_come_late_leave_the_reader_where_they_are(browser, site):
     with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
         held = []
         visit.page.route("**/search-words.js*", lambda route: held.append(route))
-        visit.page.keyboard.press("/")
+        visit.page.keyboard.press("Control+k")
         visit.page.keyboard.type("slerp")
         visit.page.locator(FOUND).first.wait_for()
         visit.page.keyboard.press("ArrowDown")
@@ -254,7 +250,7 @@ def test_words_that_come_late_leave_the_reader_where_they_are(browser, site):
 
 def test_pasted_numbers_lead_to_the_workbench_alone(browser, site):
     with Visit(browser, site, CHAPTER, "light", WIDE) as visit:
-        visit.page.keyboard.press("/")
+        visit.page.keyboard.press("Control+k")
         visit.page.locator("dialog input").fill("0.7071 0 0 0.7071")
         visit.page.locator(FOUND).first.wait_for()
         assert visit.page.locator(FOUND).count() == 1

@@ -30,13 +30,15 @@ THEME_STYLES = (
     "exercise.css",
 )
 STYLE = "style.css"
-# Scripts that some extension would put on every page although no page uses them.
-UNUSED_SCRIPTS = ("thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight")
+# Scripts that some extension would put on every page although no page uses them. Sphinx's doctools
+# took the key "/" from whoever wrote in a cell.
+UNUSED_SCRIPTS = (
+    "thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight", "doctools",
+)  # fmt: skip
 #: The scripts of the page itself, in their order, which a page fetches as one file;
 #: and those that not all pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
-    "doctools.js",
     "progress.js",
     "clipboard.min.js",
     "copybutton.js",
@@ -53,6 +55,7 @@ JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 VALUE = re.compile(r"--(?:bs|mystnb|pst|sbt)-[\w-]+")
 UNUSED_FILES = (
+    "doctools.js",
     "searchtools.js",
     "language_data.js",
     "sphinx_highlight.js",
@@ -400,7 +403,7 @@ def join_scripts(site):
     makes. Each script begins with the styles that it alone needs.
     """
     static = site / "_static"
-    if not (static / "doctools.js").exists():  # Sphinx had nothing to build and copied nothing
+    if not (static / PAGE_SCRIPTS[0]).exists():  # Sphinx had nothing to build and copied nothing
         return
     theme = static / PAGE_SCRIPTS[-1]
     text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))

@@ -98,11 +98,6 @@ for (const output of document.querySelectorAll("div.cell_output > .output")) {
 
 document.querySelector("button.print-page")?.addEventListener("click", () => print());
 
-// A page opened from disk may not read other pages: the search then shows titles alone.
-if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined") {
-  DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;
-}
-
 // The theme brings the contents back to where they stood on the page before; the entry of this page is to be seen.
 {
   const entry = document.querySelector(".bd-sidebar-primary li.current > a.current");
@@ -114,9 +109,9 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
   if (entry) addEventListener("load", show);
 }
 
-// The search is loaded when somebody goes to a field of it, the lecture when it begins; the keys / and L lead there.
+// Load the search when somebody goes to a field of it, the lecture when it begins. No key leads to either by itself: who
+// dictates to the computer, or types where nothing takes text, would set it off. The theme opens the search by Ctrl+K.
 {
-  const typing = "input:not([type=range], [type=radio], [type=checkbox]), textarea, select, [contenteditable], .cm-editor, dialog";
   const load = (name, onload) => {
     const link = document.querySelector(`link[rel='${name}-script']`);
     const onerror = () => document.head.append(link); // what did not come is asked for again
@@ -124,15 +119,7 @@ if (location.protocol === "file:" && typeof DOCUMENTATION_OPTIONS !== "undefined
     link?.remove(); // once
   };
   const lecture = document.querySelector("button.lecture-mode");
-  const lead = { "/": () => document.querySelector(".search-button__button")?.click() };
-  if (lecture) lead.l = () => load("lecture", () => lecture.click());
   document.addEventListener("focusin", ({ target }) => target.closest("form.bd-search") && load("search"));
-  document.addEventListener("keydown", (event) => {
-    const to = lead[event.key?.toLowerCase()]; // what a browser fills in has none
-    if (!to || event.ctrlKey || event.metaKey || event.altKey || event.target.closest(typing)) return;
-    event.preventDefault();
-    to();
-  });
-  lecture?.addEventListener("click", lead.l);
+  lecture?.addEventListener("click", () => load("lecture", () => lecture.click()));
   if (document.querySelector("form.bd-search:not(dialog form)")) load("search");
 }

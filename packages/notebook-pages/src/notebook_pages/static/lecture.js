@@ -1,6 +1,7 @@
-// The lecture: the page in the steps that its author marked, at the size of a hall, with its figures alive. The key L or
-// the button begins and ends it; the keys are said by "?". Nothing is moved within the page: what is not shown is
-// hidden, and what is shown lies over everything else. book.js loads this when somebody asks for it, with its styles.
+// The lecture: the page in the steps that its author marked, at the size of a hall, with its figures alive. A button
+// begins it, and no key does: one letter must not turn the page of somebody who dictates or types. The keys within it are
+// said by "?". Nothing is moved within the page: what is not shown is hidden, and what is shown lies over everything
+// else. book.js loads this when somebody asks for it, with its styles.
 {
   const root = document.documentElement;
   const article = document.querySelector(".bd-article");
@@ -274,7 +275,7 @@
     ["S", "notes in a window of their own", openSpeaker],
     ["F", "full screen", () => (document.fullscreenElement ? document.exitFullscreen() : root.requestFullscreen?.())],
     ["?", "these keys", () => outline()],
-    ["L, Escape", "back to the page", () => end()],
+    ["Escape", "back to the page", () => end()],
   ];
   const outline = () => {
     if (menu.open) return menu.close();
@@ -362,7 +363,6 @@
   function keys(event) {
     if (event.altKey || event.ctrlKey || event.metaKey || event.target.closest?.(`${TYPING}, dialog`)) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (key === "l") return toggle();
     if (!root.classList.contains("lecture")) return;
     const remote = key === "PageDown" || key === "PageUp"; // a speaker's remote: it steps wherever the focus is
     if (!remote && event.target.closest?.(MOVED) && !/^[a-z?.]$/.test(key)) return;

@@ -234,6 +234,12 @@ export class Cell {
     this.ran = false;
   }
 
+  // Whoever has just run the cell, and still looks at it, sees what stands below it: the bar does not lie over it.
+  showReply() {
+    const { top, bottom } = this.input.getBoundingClientRect();
+    if (bottom > 0 && top < innerHeight) this.output.scrollIntoView({ block: "nearest" });
+  }
+
   // The cell has run; ``note`` is a box with what went wrong. The book's own result stays beside that.
   end(note) {
     this.box.classList.remove("running", "waiting");

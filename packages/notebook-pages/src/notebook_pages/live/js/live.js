@@ -38,6 +38,14 @@ class Page {
     this.askWho();
   }
 
+  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end.
+  write(cell, point) {
+    cell.edit();
+    const { editor } = cell;
+    editor.focus();
+    editor.dispatch({ selection: { anchor: point ? editor.posAtCoords(point, false) : editor.state.doc.length } });
+  }
+
   // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
   askWho() {
     const cell = this.cells.find(({ original }) => /^(?:student|(?:coursework\.)?me|this_is_me)\(/m.test(original));
@@ -328,6 +336,7 @@ class Page {
     if (lacking.length && ["ok", "error", "missing"].includes(outcome.status)) {
       this.leave(cell, `it needs ${named(...lacking)}, which is not part of the page’s Python`);
     } else this.settle(cell, outcome);
+    if (cell.asked) cell.showReply();
     cell.asked = this.stopping = false;
   }
 

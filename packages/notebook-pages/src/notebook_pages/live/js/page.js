@@ -136,6 +136,23 @@
     run.dataset.label = `Run cell ${number + 1}`;
     box.querySelector(".cell_input").append(run);
   });
+  // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
+  // Python waits for the first run.
+  const write = (number, point) => !fromDisk && open().then((opened) => opened.write(opened.cells[number], point), tools.explain);
+  boxes.forEach((box, number) => {
+    const code = box.querySelector(".cell_input > div");
+    code.tabIndex = 0;
+    code.setAttribute("role", "textbox");
+    code.setAttribute("aria-label", `Code of cell ${number + 1}`);
+    code.addEventListener("focus", () => code.matches(":focus-visible") && write(number));
+    code.addEventListener("click", ({ target, x, y }) => {
+      // Who has selected some of it is about to copy it.
+      if (!target.closest("button") && getSelection().isCollapsed) write(number, { x, y });
+    });
+  });
+  const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
+  if (answers.length && !fromDisk) addEventListener("load", () => setTimeout(() =>
+    open().then(({ cells }) => answers.forEach((number) => cells[number].edit()), () => (page = undefined))));
   // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
   const give = async (number, files) => {
     if (fromDisk) return tools.say(FROM_DISK);

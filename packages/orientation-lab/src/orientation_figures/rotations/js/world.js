@@ -44,7 +44,7 @@ class World {
     new ResizeObserver(() => this.resize()).observe(this.stage);
     this.resize();
     this.listen();
-    this.enter(STOPS[0].id);
+    if (sections.length) this.follow(); else this.enter(STOPS[0].id);
     this.takeUp();
   }
 
@@ -100,23 +100,26 @@ class World {
     addEventListener('resize', () => this.follow());
     addEventListener('hashchange', () => this.takeUp());
     new MutationObserver(() => this.recolour()).observe(document.documentElement, { attributeFilter: ['data-theme'] });
-    this.follow();
   }
 
   // ---- the text moves it -----------------------------------------------------------------------------------
 
-  // Which stop is being read, and how much of it.
+  // Where a stop stands in the window when its scene begins, which is where a link to it leads; and over how many pixels
+  // of scrolling the scene goes on.
+  course({ place }) {
+    const begins = parseFloat(getComputedStyle(place).scrollMarginTop), { top, height } = place.getBoundingClientRect();
+    const line = (begins + innerHeight) / 2;
+    return { top, line, begins, lasts: Math.max(1, 0.85 * (height + begins - line)) };
+  }
+
+  // Which stop is being read, and how much of it: one begins to read it when it has come up to the middle of what the
+  // window shows of the text.
   follow() {
-    if (!this.sections.length || this.bound) return;
-    const below = this.figure.getBoundingClientRect();
-    // Beside the text the line at which one reads is in the middle of the window; below the figure it is lower.
-    // In the lecture it has the screen, and nobody reads.
-    const narrow = below.width > 0.8 * innerWidth && !document.documentElement.matches('.lecture');
-    const line = narrow ? (below.bottom + innerHeight) / 2 : 0.55 * innerHeight;
+    if (!this.sections.length) return;
     let now = this.sections[0], part = 0;
     for (const section of this.sections) {
-      const { top, height } = section.place.getBoundingClientRect();
-      if (top <= line) [now, part] = [section, Math.min(1, (line - top) / (0.85 * height))];
+      const { top, line, begins, lasts } = this.course(section);
+      if (top <= line) [now, part] = [section, Math.min(1, Math.max(0, (begins - top) / lasts))];
     }
     this.enter(now.id);
     this.goal.t = calm() ? stopOf(now.id).still : part;
@@ -623,8 +626,8 @@ class World {
     const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((one) => Number.isFinite(one) && Math.abs(one) <= most);
     const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((one) => one.id === stop);
     if (section) {
-      const { top, height } = section.place.getBoundingClientRect();
-      scrollTo({ top: scrollY + top - 0.55 * innerHeight + share * 0.85 * height + 1, behavior: 'instant' });
+      const { top, begins, lasts } = this.course(section);
+      scrollTo({ top: scrollY + top - begins + share * lasts, behavior: 'instant' });
       this.follow();
     } else {
       this.enter(stop);

@@ -1,0 +1,125 @@
+"""Whatever a reader types, wherever the book takes text, stands there as it was typed."""
+
+import pytest
+from engines import ENGINES, Chromium
+from playwright.sync_api import expect
+
+CELL = "chapters/simple-orientations.html"
+ANSWER = "exercises/simple-orientations.html"
+ASCII = "".join(map(chr, range(33, 127)))
+WRITTEN = "x = sm.pi/6  # " + ASCII + "äöüßéñçø€"
+# The middle of a cell's code, scrolled into view. Some are folded away.
+MIDDLE = """(number) => {
+  const code = [...document.querySelectorAll('div.cell_input')].filter((one) => one.checkVisibility())[number];
+  code.scrollIntoView({ block: 'center', behavior: 'instant' });
+  const box = code.getBoundingClientRect();
+  return [box.left + box.width / 2, box.top + box.height / 2];
+}"""  # noqa: E501
+SETTLED = "() => !document.documentElement.matches('.settling, .in-parts')"
+CODE = "() => document.activeElement.innerText"
+
+
+@pytest.fixture(params=["Chromium", *ENGINES])
+def engine(request, browser):
+    engine = Chromium(browser) if request.param == "Chromium" else ENGINES[request.param]()
+    yield engine
+    engine.close()
+
+
+@pytest.mark.parametrize("address", [CELL, ANSWER])
+def test_every_character_stands_in_a_cell_as_it_was_typed(engine, site, address):
+    engine.go(site + address)
+    engine.wait(SETTLED)
+    engine.click(*engine.run(MIDDLE, 1))
+    engine.wait("() => document.activeElement.matches('.cm-content')")
+    engine.type(WRITTEN)
+    assert WRITTEN in engine.run(CODE)
+
+
+@pytest.fixture
+def page(browser):
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    yield context.new_page()
+    context.close()
+
+
+def write_in_a_cell(page, site):
+    page.goto(site + CELL)
+    page.wait_for_function(SETTLED)
+    page.mouse.click(*page.evaluate(MIDDLE, 1))
+    expect(page.locator(".cm-editor.cm-focused")).to_be_visible()
+    page.keyboard.press("Control+a")
+
+
+def test_another_layout_a_dead_key_and_an_input_method(page, site):
+    """A German keyboard has the slash on Shift and 7, and braces on AltGr; Japanese is composed."""
+    write_in_a_cell(page, site)
+    keyboard = page.context.new_cdp_session(page)
+    for key, code, modifiers in [("/", "Digit7", 8), ("{", "Digit7", 0), ("@", "KeyQ", 0)]:
+        stroke = {"key": key, "code": code, "modifiers": modifiers}
+        keyboard.send("Input.dispatchKeyEvent", {"type": "keyDown", "text": key, **stroke})
+        keyboard.send("Input.dispatchKeyEvent", {"type": "keyUp", **stroke})
+    dead = {"type": "rawKeyDown", "key": "Dead", "code": "BracketLeft"}
+    keyboard.send("Input.dispatchKeyEvent", dead)
+    keyboard.send("Input.insertText", {"text": "ê"})
+    composed = {"text": "かい", "selectionStart": 2, "selectionEnd": 2}
+    keyboard.send("Input.imeSetComposition", composed)
+    keyboard.send("Input.insertText", {"text": "回転"})
+    expect(page.locator(".cm-editor.cm-focused .cm-content")).to_have_text("/{@ê回転")
+
+
+def test_a_cell_is_edited_as_any_editor_is(page, site):
+    write_in_a_cell(page, site)
+    content = page.locator(".cm-editor.cm-focused .cm-content")
+    page.keyboard.type("a/b")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("Backspace")
+    page.keyboard.type("*")
+    expect(content).to_have_text("a*b")
+    page.keyboard.press("Control+z")
+    expect(content).to_have_text("a/b")
+    page.keyboard.press("Home")
+    page.keyboard.press("Tab")
+    assert content.inner_text() == "    a/b"
+    page.keyboard.press("Escape")
+    expect(page.locator("button.run-cell:focus")).to_be_visible()
+
+
+def test_the_search_takes_every_character(page, site):
+    page.goto(site + CELL)
+    page.locator("button.search-button__button").first.click()
+    field = page.locator("dialog input[type=search]")
+    expect(field).to_be_focused()
+    page.keyboard.type(ASCII)
+    expect(field).to_have_value(ASCII)
+
+
+@pytest.mark.parametrize(
+    ("address", "name"),
+    [
+        ("workbench.html", "What the first program gives"),
+        ("chapters/convention-card.html", "Numbers to convert"),
+    ],
+)
+def test_the_fields_of_figures_take_every_character_and_new_lines(page, site, address, name):
+    page.goto(site + address)
+    field = page.get_by_label(name)
+    field.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type(ASCII)
+    page.keyboard.press("Enter")
+    page.keyboard.type("a/b")
+    expect(field).to_have_value(f"{ASCII}\na/b")
+
+
+@pytest.mark.parametrize("address", [CELL, "workbench.html", "rotations.html", "index.html"])
+def test_who_dictates_hello_to_a_page_turns_nothing(page, site, address):
+    """Dictation types where nothing takes text."""
+    page.goto(site + address)
+    page.wait_for_load_state("load")
+    page.locator("h1").first.click()
+    before = page.evaluate("[location.href, document.documentElement.className]")
+    page.keyboard.type("hello/all?")
+    page.wait_for_timeout(300)
+    assert page.evaluate("[location.href, document.documentElement.className]") == before
+    assert page.locator("dialog[open]").count() == 0
