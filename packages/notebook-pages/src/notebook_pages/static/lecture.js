@@ -182,7 +182,7 @@
     const start = performance.now();
     const move = (moment) => {
       const share = still ? 1 : Math.min(1, Math.max(0, (moment - start) / GLIDE));
-      scrollTo({ top: from + 0.8 * height * share, behavior: "instant" });
+      scrollTo({ top: from + 0.9 * height * share, behavior: "instant" });
       if (share < 1) gliding = requestAnimationFrame(move);
     };
     move(start);

@@ -107,7 +107,8 @@ class World {
   // Where a stop stands in the window when its scene begins, which is where a link to it leads; and over how many pixels
   // of scrolling the scene goes on.
   course({ place }) {
-    const begins = parseFloat(getComputedStyle(place).scrollMarginTop), { top, height } = place.getBoundingClientRect();
+    const { top, height } = place.getBoundingClientRect();
+    const begins = Math.min(parseFloat(getComputedStyle(place).scrollMarginTop), top + scrollY);   // the first stands higher
     const line = (begins + innerHeight) / 2;
     return { top, line, begins, lasts: Math.max(1, 0.85 * (height + begins - line)) };
   }
@@ -698,6 +699,13 @@ const turnedPoint = (axis, angle, point) => {
 // Where scripts run the stills are text, until somebody needs them.
 const unfold = () => { for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent; };
 addEventListener('beforeprint', unfold);
+// As in essay.css: where figure and text have no room beside each other, each stop has its still.
+const small = matchMedia('(max-width: 599px) and (max-height: 420px)');
+small.addEventListener('change', unfold);
+if (small.matches) {
+  unfold();
+  document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });   // the page has grown
+}
 
 for (const figure of document.querySelectorAll('.world:not([data-ready], [data-stills])')) {
   const sections = [...document.querySelectorAll('[data-stop]')].map((still) => ({ id: still.dataset.stop, place: still.closest('section') ?? still, still }));

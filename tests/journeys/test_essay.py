@@ -1,0 +1,88 @@
+"""The essay, opened at a stop, read on, and read in windows of all sizes."""
+
+import re
+
+import pytest
+from places import HTML
+
+ESSAY = "rotations.html"
+STOPS = re.findall(r'data-stop="([\w-]+)"', (HTML / ESSAY).read_text("utf8"))
+SIZES = [(1300, 900), (1024, 700), (740, 360), (380, 760), (320, 200)]
+# Whether the place is seen: within the window, and under nothing else.
+SEEN = """(box) => {
+  const { left, top, width, height } = box.getBoundingClientRect();
+  const there = document.elementFromPoint(left + Math.min(width, 40) / 2, top + height / 2);
+  return box.contains(there);
+}"""
+
+
+@pytest.fixture(params=SIZES, ids=lambda size: "x".join(map(str, size)))
+def page(request, browser):
+    width, height = request.param
+    context = browser.new_context(viewport={"width": width, "height": height})
+    yield context.new_page()
+    context.close()
+
+
+def open_essay(page, address):
+    page.goto("about:blank")
+    page.goto(address)
+    page.locator(".world:is([data-ready], [data-stills])").wait_for()
+    if page.locator(".world[data-stills]").count():
+        pytest.skip("this browser has no WebGL")
+
+
+def wait_for_stop(page, stop):
+    page.wait_for_function(
+        "stop => document.querySelector('.world').dataset.state === stop", arg=stop
+    )
+
+
+@pytest.mark.parametrize("stop", ["two-motors", "lock", "your-turn"])
+def test_a_link_to_a_stop_shows_that_stop(page, site, stop):
+    open_essay(page, f"{site}{ESSAY}#{stop}")
+    wait_for_stop(page, stop)
+    heading = page.locator(f"#{stop} > h2")
+    assert heading.evaluate(SEEN)
+    text = page.locator(f"#{stop} > p").first
+    if page.viewport_size["height"] > 300:
+        assert text.evaluate(SEEN), "the figure lies over what it is to show"
+
+
+def test_the_figure_is_whole_and_leaves_room_for_the_text(page, site):
+    open_essay(page, f"{site}{ESSAY}#lock")
+    wait_for_stop(page, "lock")
+    width, height = page.viewport_size["width"], page.viewport_size["height"]
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    figure = page.locator(".world .world-live").bounding_box()
+    picture = page.locator(".world canvas").bounding_box()
+    output = page.locator(".cell:has(.world)").bounding_box()
+    assert picture["width"] <= output["width"] + 1 and figure["x"] + figure["width"] <= width
+    assert picture["height"] > 120
+    beside = figure["x"] > width / 3
+    covered = 0 if beside else max(0, figure["y"] + figure["height"])
+    assert height - covered > min(140, 0.7 * height)
+
+
+def test_a_reload_in_mid_page_stays_there(page, site):
+    open_essay(page, f"{site}{ESSAY}#same-numbers")
+    wait_for_stop(page, "same-numbers")
+    page.mouse.wheel(0, 60)
+    page.wait_for_timeout(300)
+    before = page.locator(".world").get_attribute("data-state")
+    page.reload()
+    page.locator(".world[data-ready]").wait_for()
+    wait_for_stop(page, before)
+
+
+@pytest.mark.parametrize("page", [(1300, 900)], indirect=True)
+def test_every_stop_has_an_address_and_its_scene_begins_there(page, site):
+    assert len(STOPS) == 16
+    for stop in STOPS:
+        open_essay(page, f"{site}{ESSAY}#{stop}")
+        wait_for_stop(page, stop)
+        page.wait_for_timeout(700)
+        assert page.evaluate("document.querySelector('.world').world.state.t") < 0.05, stop
+        page.mouse.wheel(0, 1)
+        page.wait_for_timeout(200)
+        assert page.evaluate("document.querySelector('.world').world.state.t") < 0.1, stop
