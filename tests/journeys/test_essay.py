@@ -74,7 +74,7 @@ def test_a_reload_in_mid_page_stays_there(page, site):
     wait_for_stop(page, before)
 
 
-@pytest.mark.parametrize("page", [(1300, 900)], indirect=True)
+@pytest.mark.parametrize("page", [(740, 360)], indirect=True)
 def test_every_stop_has_an_address_and_its_scene_begins_there(page, site):
     open_essay(page, site + ESSAY)
     stops = page.evaluate(STOPS)
