@@ -14,6 +14,7 @@ from .angular_velocity import (
 )
 from .axis_angle import axis_angle_from_dcm, dcm_from_axis_angle, quaternion_from_axis_angle
 from .comparison import Diagnosis, diagnose, same_orientation
+from .derivatives import jacobian, propagate_covariance
 from .direction_cosines import NearestDCM, check_dcm, nearest_dcm, simple_dcm
 from .euler_angles import (
     PROPER_EULER,
@@ -80,10 +81,12 @@ __all__ = [
     "diagnose",
     "gimbal_lock_margin",
     "interpolate_quaternions",
+    "jacobian",
     "mean_orientation",
     "modified_rodrigues_from_dcm",
     "multiply_quaternions",
     "nearest_dcm",
+    "propagate_covariance",
     "quaternion_from_axis_angle",
     "quaternion_from_dcm",
     "quaternion_rate",

@@ -121,6 +121,12 @@ class NumberFormula(Protocol):
     ) -> Sequence[Number | float]: ...
 
 
+class Conversion(Protocol):
+    """A function that gives one description of an orientation for another."""
+
+    def __call__(self, value: Components, /, *further: Components) -> Components: ...
+
+
 class Excess(Protocol):
     """``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input."""
 

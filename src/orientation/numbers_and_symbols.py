@@ -85,6 +85,20 @@ def is_symbolic(value: object) -> TypeGuard[Symbols]:
     return hasattr(value, "free_symbols")
 
 
+class Variable:
+    """A value that stands for itself in a conversion which is to be differentiated by it."""
+
+    def slopes_of(
+        self,
+        formula: NumberFormula,
+        shape: tuple[int, ...],
+        arguments: Sequence[Argument],
+        guard: Guard | None,
+    ) -> Array:
+        """The derivatives of what the formula gives, of shape ``(count, ..., *shape)``."""
+        raise NotImplementedError
+
+
 def evaluate(
     formula: Formula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
 ) -> Array | Matrix:
@@ -204,6 +218,9 @@ def _evaluate_what_is_read(
     arguments: Sequence[Argument],
     guard: Guard | None,
 ) -> Scalars:
+    for _, value, _ in arguments:
+        if isinstance(value, Variable):
+            return value.slopes_of(formula, shape, arguments, guard)
     single = [one_item(value, item, name) for name, value, item in arguments]
     given = [entries for entries in single if entries is not None]
     if len(given) == len(single):
@@ -256,13 +273,16 @@ def _evaluate_item(
     return array(result).reshape(shape) if len(shape) > 1 else array(result)
 
 
-def _evaluate_batch(
-    formula: NumberFormula,
-    shape: tuple[int, ...],
-    arrays: list[Array],
-    arguments: Sequence[Argument],
-    guard: Guard | None,
-) -> Array:
+def columns_of(
+    arrays: list[Array], arguments: Sequence[Argument]
+) -> tuple[tuple[int, ...], list[Array]]:
+    """The shape of the batch that some arrays make together, and of each array its items as rows.
+
+    Raises
+    ------
+    ValueError
+        If the batches do not fit each other.
+    """
     import numpy
 
     shapes = [
@@ -282,12 +302,24 @@ def _evaluate_batch(
             numpy.broadcast_to(array, batch + item)
             for array, (_, _, item) in zip(arrays, arguments)
         ]
-    flat = [
+    return batch, [
         array.reshape(math.prod(batch), math.prod(item))
         for array, (_, _, item) in zip(arrays, arguments)
     ]
+
+
+def _evaluate_batch(
+    formula: NumberFormula,
+    shape: tuple[int, ...],
+    arrays: list[Array],
+    arguments: Sequence[Argument],
+    guard: Guard | None,
+) -> Array:
+    import numpy
+
+    batch, flat = columns_of(arrays, arguments)
     result = numpy.empty((math.prod(batch), math.prod(shape)))
-    functions = _array_functions()
+    functions = array_functions()
     for start in range(0, len(result), BLOCK):
         components = [
             column
@@ -295,15 +327,7 @@ def _evaluate_batch(
             for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
         ]
         if guard:
-            with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
-                size = guard.excess(functions, *components[: guard.size])
-            if not (size <= TOLERANCE).all():
-                worst = int(numpy.argmax(size))
-                index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
-                guard.explain(
-                    [float(column[worst]) for column in components[: guard.size]],
-                    f" (item {index})",
-                )
+            demand(guard, components, batch, start)
         block = result[start : start + BLOCK]
         # Written one after another, and turned around at once.
         rows = numpy.empty(block.shape[::-1])
@@ -312,6 +336,21 @@ def _evaluate_batch(
         rows += 0.0
         block[:] = rows.T
     return result.reshape(batch + shape)
+
+
+def demand(
+    guard: Guard, components: Sequence[Array], batch: tuple[int, ...], start: int = 0
+) -> None:
+    """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
+    import numpy
+
+    with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
+        size = guard.excess(array_functions(), *components[: guard.size])
+    if not (size <= TOLERANCE).all():
+        worst = int(numpy.argmax(size))
+        index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
+        where = f" (item {index})" if batch else ""
+        guard.explain([float(column[worst]) for column in components[: guard.size]], where)
 
 
 def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
@@ -525,7 +564,7 @@ NUMBERS: NumberFunctions[float] = _OneNumber()
 
 
 @functools.cache
-def _array_functions() -> NumberFunctions[Array]:
+def array_functions() -> NumberFunctions[Array]:
     import numpy
 
     class Columns:
@@ -537,9 +576,14 @@ def _array_functions() -> NumberFunctions[Array]:
 
         @staticmethod
         def norm(*components: Array | float) -> Array:
-            return numpy.sqrt(
-                functools.reduce(operator.add, (entry * entry for entry in components))
-            )
+            with numpy.errstate(over="ignore"):
+                length: Array = numpy.sqrt(
+                    functools.reduce(operator.add, (entry * entry for entry in components))
+                )
+            if numpy.isinf(length).any():
+                # The squares are too large: slower, but with the result that one item has.
+                length = functools.reduce(numpy.hypot, components, numpy.zeros(()))
+            return length
 
         @staticmethod
         def largest(*sizes: Array) -> Array:

@@ -1,0 +1,381 @@
+"""Derivatives of conversions, and with them covariances, from the one formula of each.
+
+A formula takes scalar components and gives scalar components. Handed numbers that carry their
+slopes (dual numbers), it gives the slopes of the result with it: for one item and for batches, and
+for symbols SymPy differentiates it.
+
+An orientation has three ways to change, and a direction cosine matrix nine entries. So a matrix
+counts here as the small turn :math:`\\boldsymbol\\delta` that changes it,
+
+.. math::
+
+   {}^A\\mathbf{C}^N(\\boldsymbol\\delta)
+   = \\exp(-[\\boldsymbol\\delta]_\\times)\\,{}^A\\mathbf{C}^N ,
+
+with components along :math:`A`, as everywhere in this package, or along :math:`N` if asked.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+from .direction_cosines import DCM_GUARD
+from .numbers_and_symbols import (
+    Argument,
+    Guard,
+    Variable,
+    array_functions,
+    columns_of,
+    demand,
+    is_symbolic,
+    number_array,
+    symbol_components,
+)
+
+if TYPE_CHECKING:
+    from ._types import Array, Conversion, Matrix, NumberFormula, Numbers, Symbols, Truth, Values
+
+#: Standard deviation from which a first-order covariance says little: the result bends within it.
+LARGE = 0.5
+
+#: A slope that is larger comes from a singularity and from rounding.
+STEEP = 1e10
+
+#: Components of :math:`-[\hat e_k]_\times`, which turns a matrix by a little about axis k.
+TURNS = (
+    ((0, 0, 0), (0, 0, 1), (0, -1, 0)),
+    ((0, 0, -1), (0, 0, 0), (1, 0, 0)),
+    ((0, 1, 0), (-1, 0, 0), (0, 0, 0)),
+)
+
+Along = Literal["target", "source"]
+
+
+class Dual:
+    """A batch of numbers with their slopes, of shape ``(count, ...)``: one for each variable."""
+
+    __slots__ = ("value", "slopes")
+    # NumPy leaves operations of an array with this to the methods below.
+    __array_ufunc__ = None
+
+    def __init__(self, value: Array, slopes: Array) -> None:
+        self.value, self.slopes = value, slopes
+
+    def __add__(self, other: Dual | Array | float) -> Dual:
+        if isinstance(other, Dual):
+            return Dual(self.value + other.value, self.slopes + other.slopes)
+        return Dual(self.value + other, self.slopes)
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Dual:
+        return Dual(-self.value, -self.slopes)
+
+    def __sub__(self, other: Dual | Array | float) -> Dual:
+        return self + -other
+
+    def __rsub__(self, other: Array | float) -> Dual:
+        return -self + other
+
+    def __mul__(self, other: Dual | Array | float) -> Dual:
+        if isinstance(other, Dual):
+            slopes = self.slopes * other.value + self.value * other.slopes
+            return Dual(self.value * other.value, slopes)
+        return Dual(self.value * other, self.slopes * other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Dual | Array | float) -> Dual:
+        if not isinstance(other, Dual):
+            return self * (1 / other)
+        share = self.value / other.value
+        return Dual(share, (self.slopes - share * other.slopes) / other.value)
+
+    def __rtruediv__(self, other: Array | float) -> Dual:
+        return Dual(0 * self.value + other, 0 * self.slopes) / self
+
+    def __pow__(self, power: int) -> Dual:
+        return Dual(self.value**power, power * self.value ** (power - 1) * self.slopes)
+
+    def __abs__(self) -> Dual:
+        import numpy
+
+        return self * numpy.where(self.value < 0, -1.0, 1.0)
+
+    def __lt__(self, other: float) -> Truth:
+        return self.value < other
+
+    def __gt__(self, other: float) -> Truth:
+        return self.value > other
+
+
+def parts(entry: Dual | Array | float) -> tuple[Array | float, Array | float]:
+    """The value and the slopes of a component, which may be constant."""
+    return (entry.value, entry.slopes) if isinstance(entry, Dual) else (entry, 0.0)
+
+
+class DualFunctions:
+    """The functions that formulas use, for numbers with slopes."""
+
+    def __init__(self) -> None:
+        self.plain = array_functions()
+
+    def sin(self, angle: Dual) -> Dual:
+        return Dual(self.plain.sin(angle.value), self.plain.cos(angle.value) * angle.slopes)
+
+    def cos(self, angle: Dual) -> Dual:
+        return Dual(self.plain.cos(angle.value), -self.plain.sin(angle.value) * angle.slopes)
+
+    def atan2(self, sine: Dual, cosine: Dual) -> Dual:
+        square = sine.value**2 + cosine.value**2
+        slopes = (cosine.value * sine.slopes - sine.value * cosine.slopes) / square
+        return Dual(self.plain.atan2(sine.value, cosine.value), slopes)
+
+    def norm(self, *components: Dual | float) -> Dual:
+        values, slopes = zip(*map(parts, components))
+        length = self.plain.norm(*values)
+        # A length has no slope at zero. Formulas use there only what does not depend on it.
+        safe = self.plain.where(length > 0, length, 1.0)
+        return Dual(length, sum(value / safe * by for value, by in zip(values, slopes)))
+
+    def where(self, condition: Truth, yes: Dual | float, no: Dual | float) -> Dual | Array:
+        where = self.plain.where
+        if not isinstance(yes, Dual) and not isinstance(no, Dual):
+            return where(condition, yes, no)
+        (value, slopes), (other, others) = parts(yes), parts(no)
+        return Dual(where(condition, value, other), where(condition, slopes, others))
+
+    def pick(self, scores: Sequence[Dual], rows: Sequence[Sequence[Dual]]) -> Sequence[Dual]:
+        import numpy
+
+        best = numpy.argmax([score.value for score in scores], axis=0)
+        return [
+            Dual(
+                numpy.choose(best, [entry.value for entry in entries]),
+                numpy.choose(best, [entry.slopes for entry in entries]),
+            )
+            for entries in zip(*rows)
+        ]
+
+
+class _Numbers(Variable):
+    """Numbers by which a conversion is differentiated."""
+
+    def __init__(self, given: Values, along: Along) -> None:
+        self.given, self.along = given, along
+
+    def slopes_of(
+        self,
+        formula: NumberFormula,
+        shape: tuple[int, ...],
+        arguments: Sequence[Argument],
+        guard: Guard | None,
+    ) -> Array:
+        import numpy
+
+        arrays = [
+            number_array(self.given if isinstance(value, _Numbers) else value, item, name)
+            for name, value, item in arguments
+        ]
+        batch, flat = columns_of(arrays, arguments)
+        columns = [column for rows in flat for column in rows.T]
+        if guard:
+            demand(guard, columns, batch)
+        components: list[Array | Dual] = []
+        for (_, value, item), rows in zip(arguments, flat):
+            components += (
+                self._with_slopes(rows, item) if isinstance(value, _Numbers) else list(rows.T)
+            )
+        count = max(len(entry.slopes) for entry in components if isinstance(entry, Dual))
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            # No type says that a formula works with whatever has these operations.
+            result = map(parts, formula(DualFunctions(), *components))  # type: ignore[arg-type]
+            ones = numpy.ones((count, len(columns[0])))
+            values, slopes = zip(*((value * ones[0], by * ones) for value, by in result))
+            if shape == (3, 3):
+                demand(DCM_GUARD, values, batch)
+                slopes = tuple(self._turns(values, slopes))
+                shape = (3,)
+        found = numpy.stack(slopes, axis=-1)
+        steep = ~(numpy.abs(found) < STEEP).all(axis=(0, -1))
+        if steep.any():
+            worst = int(numpy.argmax(steep))
+            where = (
+                f" (item {[int(k) for k in numpy.unravel_index(worst, batch)]})" if batch else ""
+            )
+            raise ValueError(
+                f"the conversion has no derivative at {arguments[0][0]}{where}: "
+                "a small change makes a large one there, as of Euler angles at gimbal lock"
+            )
+        return found.reshape(count, *batch, *shape)
+
+    def _with_slopes(self, rows: Array, item: tuple[int, ...]) -> list[Dual]:
+        """The components of items: each its own variable, those of a matrix by three turns."""
+        import numpy
+
+        slopes = numpy.eye(rows.shape[1])[:, None]
+        if item == (3, 3):
+            matrices, turns = rows.reshape(-1, 3, 3), numpy.array(TURNS, dtype=float)[:, None]
+            turned = turns @ matrices if self.along == "target" else matrices @ turns
+            slopes = turned.reshape(3, -1, 9)
+        return [Dual(column, slopes[..., k]) for k, column in enumerate(rows.T)]
+
+    def _turns(self, values: Sequence[Array], slopes: Sequence[Array]) -> list[Array]:
+        """The small turns that change a matrix at these slopes of its entries."""
+        import numpy
+
+        matrix = numpy.stack(values, axis=-1).reshape(-1, 3, 3)
+        rates = numpy.stack(slopes, axis=-1).reshape(len(slopes[0]), -1, 3, 3)
+        back = matrix.swapaxes(-1, -2)
+        # Either way this is -[delta] x, with the components along the frame that is asked for.
+        skew = rates @ back if self.along == "target" else back @ rates
+        return [skew[..., 1, 2], skew[..., 2, 0], skew[..., 0, 1]]
+
+
+def jacobian(
+    conversion: Conversion, value: Values, *further: object, along: Along = "target"
+) -> Array | Matrix:
+    r"""Derivative of what a conversion gives by what it is given.
+
+    A direction cosine matrix, given or returned, counts as the three components of a small turn:
+    :math:`{}^A\mathbf{C}^N` becomes :math:`\exp(-[\boldsymbol\delta]_\times)\,{}^A\mathbf{C}^N`.
+
+    Parameters
+    ----------
+    conversion : callable
+        A conversion of this package, such as :func:`body_fixed_from_dcm`, or a function of one
+        argument that calls one.
+    value : SymPy expressions, floats or array of shape ``(*item)`` or ``(..., *item)``
+        What it is differentiated by: the first argument of the conversion.
+    *further
+        Its other arguments, which are constant.
+    along : {'target', 'source'}
+        The frame along which the components of a small turn are taken: :math:`A` or :math:`N` of
+        :math:`{}^A\mathbf{C}^N`.
+
+    Returns
+    -------
+    SymPy matrix, array of shape ``(m, n)`` or ``(..., m, n)``
+        With ``m`` components of the result and ``n`` of ``value``. What gives an axis and an angle
+        has four, the angle last.
+
+    Raises
+    ------
+    ValueError
+        If the conversion has no derivative there, as Euler angles at gimbal lock, or a matrix that
+        it gives is no direction cosine matrix.
+
+    Examples
+    --------
+    A small turn about the last axis of the sequence changes the last angle alone:
+
+    >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed, jacobian
+    >>> D_C_A = dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')
+    >>> jacobian(body_fixed_from_dcm, D_C_A, 'zxy')[:, 1].round(12).tolist()
+    [0.0, 0.0, 1.0]
+
+    Notes
+    -----
+    The formula of the conversion is evaluated with numbers that carry their slopes. Source:
+    Griewank and Walther (2008), chapter 3.
+    """
+    if along not in ("target", "source"):
+        raise ValueError(f"along is {along!r}, where 'target' or 'source' was expected")
+    if is_symbolic(value):
+        return _jacobian_of_symbols(conversion, value, further, along)
+    import numpy
+
+    result = conversion(_Numbers(value, along), *further)
+    parts = result if isinstance(result, tuple) else (result,)
+    # Axis and angle come apart: the angle has an axis of the array less.
+    most = max(part.ndim for part in parts)
+    joined = numpy.concatenate(
+        [part if part.ndim == most else part[..., None] for part in parts], axis=-1
+    )
+    derivative: Array = numpy.moveaxis(joined, 0, -1)
+    return derivative
+
+
+def propagate_covariance(
+    conversion: Conversion,
+    value: Numbers,
+    covariance: Numbers,
+    *further: object,
+    along: Along = "target",
+) -> Array:
+    r"""Covariance of what a conversion gives, to first order.
+
+    .. math::
+
+       \mathbf{P}_y = \mathbf{J}\,\mathbf{P}_x\,\mathbf{J}^T
+
+    with the :func:`jacobian` of the conversion. The covariance of a direction cosine matrix is that
+    of the small turn :math:`\boldsymbol\delta`, in square radians.
+
+    Parameters
+    ----------
+    conversion, value, further, along
+        As for :func:`jacobian`. ROS states the covariance of small turns about fixed axes: those of
+        :math:`N`, ``along='source'``.
+    covariance : array of shape ``(n, n)`` or ``(..., n, n)``
+
+    Returns
+    -------
+    array of shape ``(m, m)`` or ``(..., m, m)``
+
+    Warns
+    -----
+    UserWarning
+        If a standard deviation comes out at more than half a radian: the first order says little
+        then. Close to gimbal lock, the first and the last angle spread that far.
+
+    Raises
+    ------
+    ValueError
+        As :func:`jacobian`, and if the shapes do not fit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed, propagate_covariance
+    >>> D_C_A = dcm_from_body_fixed((0.1, 1.0, 0.3), 'zxy')
+    >>> spread = propagate_covariance(body_fixed_from_dcm, D_C_A, 1e-4 * np.eye(3), 'zxy')
+    >>> np.sqrt(np.diag(spread)).round(4).tolist()
+    [0.0185, 0.01, 0.0185]
+    """
+    import numpy
+
+    derivative = jacobian(conversion, value, *further, along=along)
+    count = derivative.shape[-1]
+    given = number_array(covariance, (count, count), "covariance")
+    result: Array = derivative @ given @ derivative.swapaxes(-1, -2)
+    largest = float(numpy.sqrt(numpy.max(numpy.diagonal(result, axis1=-2, axis2=-1), initial=0)))
+    if largest > LARGE:
+        warnings.warn(
+            f"a standard deviation comes out as {largest:.3g}: the first order says little at that "
+            "size. Near gimbal lock, give the covariance of the small turn instead of the angles'",
+            stacklevel=2,
+        )
+    return result
+
+
+def _jacobian_of_symbols(
+    conversion: Conversion, value: Symbols, further: Sequence[object], along: Along
+) -> Matrix:
+    import sympy
+
+    column = sympy.Matrix([value]) if isinstance(value, sympy.Expr) else sympy.Matrix(value)
+    entries = symbol_components(list(column), (len(column),), "value")
+    stand_ins = [sympy.Dummy(f"x{k}") for k in range(len(entries))]
+    result = conversion(stand_ins[0] if isinstance(value, sympy.Expr) else stand_ins, *further)
+    back = dict(zip(stand_ins, entries))
+    if result.shape != (3, 3):
+        return result.jacobian(stand_ins).xreplace(back)
+    turns = []
+    for stand_in in stand_ins:
+        rate = result.diff(stand_in)
+        skew = rate * result.T if along == "target" else result.T * rate
+        turns.append([skew[1, 2], skew[2, 0], skew[0, 1]])
+    return sympy.Matrix(turns).T.xreplace(back)
