@@ -131,25 +131,6 @@ def test_a_second_camera_gains_what_the_prediction_keys():
     assert "About seven times" in text
 
 
-def test_one_turn_is_not_always_the_cheapest():
-    """Of a slew too small to reach the greatest rate, by the work of its wheels."""
-    moments, torque, angles = (
-        np.array([120.0, 90.0, 60.0]),
-        0.04,
-        np.radians([2.463, -3.903, -1.829]),
-    )
-    turn = (Rotation.from_euler("YZX", angles)).as_rotvec()
-    angle = np.linalg.norm(turn)
-    axis = turn / angle
-    one = torque * angle * (moments * axis**2).sum() / max(moments * abs(axis)) / 2
-    three = torque * abs(angles).sum() / 2
-    told = [
-        float(number)
-        for number in re.findall(r"([\d.]+) J", printed("cases-from-practice", "nearby = dcm"))
-    ]
-    assert three < one and told == pytest.approx([one, three], abs=1e-6)
-
-
 def test_restoring_is_shown_to_leave_the_error_as_it_is():
     text = printed("orientation-in-motion", "('left alone', lambda state: state)")
     alone, restored = (float(number) for number in re.findall(r"wrong by ([\d.e-]+) rad", text))

@@ -6,8 +6,7 @@ import numpy as np
 
 from orientation.axis_angle import dcm_from_axis_angle
 from orientation.direction_cosines import simple_dcm
-from orientation.euler_angles import body_fixed_from_dcm, dcm_from_body_fixed
-from orientation.rotation_vector import dcm_from_rotation_vector, rotation_vector_from_dcm
+from orientation.euler_angles import dcm_from_body_fixed
 
 from .drawing import Drawing, hatted, view_from
 
@@ -226,44 +225,6 @@ def leg_drawing(bend=np.radians(35)):
     drawing.line(place(thigh, (0, 0, 0.2), (0, -0.9, 0.2)), "muted", "guide")
     below = -thigh[1]
     return drawing.turn(-thigh[2], bend, below, 0.75, r"$\theta$", place(thigh, (0, 0, 0.2))[0])
-
-
-def slew_drawing(before, after):
-    """Return a drawing of a satellite whose telescope turns from ``before`` to
-    ``after``, both ``(3, 3)`` along N.
-    """
-    before, after = np.asarray(before, dtype=float), np.asarray(after, dtype=float)
-    turned = after @ before.T
-    vector, angles = rotation_vector_from_dcm(turned), body_fixed_from_dcm(turned, "zyx")
-    steps = np.linspace(0, 1, 25)[:, None]
-    one = dcm_from_rotation_vector(steps * vector) @ before
-    shares = np.clip(np.linspace(0, 3, 61)[:, None] - np.arange(3), 0, 1)
-    three = dcm_from_body_fixed(shares * angles, "zyx") @ before
-    degrees = np.degrees(np.append(np.linalg.norm(vector), angles))
-    drawing = Drawing(
-        "A satellite, a box with a telescope, in a sphere of the sky, before the slew in grey and "
-        "after it in blue. "
-        f"One turn through {degrees[0]:.0f} degrees leads the telescope's line of sight along an "
-        "arc from the one star to the other. "
-        f"Three single turns, {degrees[1]:.0f} degrees about z, {degrees[2]:.0f} about y and "
-        f"{degrees[3]:.0f} about x, lead it along two arcs that meet in a corner; the last leaves "
-        "it in its place.",
-        view_from(np.radians(32), np.radians(24)),
-        150,
-    )
-    drawing.circle(drawing.view[2], 1.0, kind="faint")
-    drawing.circle((0, 0, 1), 1.0)
-    drawing.line([row[0] for row in three], "B", "guide")
-    drawing.line([row[0] for row in one], "accent", "thick")
-    for rows, colour in ((before, "muted"), (after, "D")):
-        drawing.box(rows, (0.42, 0.26, 0.26), colour=colour)
-        drawing.cylinder(0.21 * rows[0], 0.48 * rows[0], 0.1, colour)
-        drawing.line([0.48 * rows[0], rows[0]], colour, "guide")
-        drawing.dot(rows[0], colour, 6)
-    drawing.arrow(
-        1.25 * vector / np.linalg.norm(vector) @ before, colour="accent", label=r"$\hat{e}$"
-    )
-    return drawing.triad("D", after, length=0.75)
 
 
 def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):

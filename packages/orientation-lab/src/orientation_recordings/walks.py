@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-STEP = 0.02
+STEP = 0.04
 #: Seconds: the telephone lies on a table until it is taken, and the way leads past the car.
 TAKEN, CAR = 8.0, (28.0, 33.0)
 #: What may differ from walk to walk besides the noise and the gyroscope's bias.

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .converter import ConverterFigure
     from .explorer import SequenceExplorer
     from .figure import MovingFigure
+    from .gate import GateFigure
     from .gimbal import GimbalFigure
     from .graph import GraphFigure
     from .hands import HandsFigure
@@ -31,6 +32,7 @@ _MODULES = {
     "ConverterFigure": "converter",
     "SequenceExplorer": "explorer",
     "MovingFigure": "figure",
+    "GateFigure": "gate",
     "GimbalFigure": "gimbal",
     "GraphFigure": "graph",
     "HandsFigure": "hands",
@@ -59,6 +61,7 @@ __all__ = [
     "BeltFigure",
     "ChallengeFigure",
     "ConverterFigure",
+    "GateFigure",
     "GimbalFigure",
     "GraphFigure",
     "HandsFigure",

@@ -64,6 +64,14 @@ LABELS = (
     "15",
     "20",
     "90",
+    # The axes of a walk past a car.
+    r"\mathrm{error\ of\ the\ heading\ (degrees)}",
+    r"\mathrm{car}",
+    "-60",
+    "-30",
+    "30",
+    "40",
+    "60",
 )
 
 

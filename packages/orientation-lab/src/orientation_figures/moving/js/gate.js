@@ -1,0 +1,37 @@
+import { picture } from './gate_picture.js';
+import { change, choice, element, follow, liveText, onceAFrame, open, plain, put, Sheet, slider, stage } from './shared.js';
+
+const percent = (share) => `${plain(100 * share, 1)}\u00a0%`;
+
+// A walk past a car: the reader moves the steel and the gate, and sees where the heading goes.
+export function render({ model, el }) {
+  const { steels, rejected, rows } = model.get('table');
+  const sheet = new Sheet({ name: '', bounds: [-180, -130, 180, 130] });
+  // A plot has one view; the controls below do what arrow keys would.
+  sheet.look = () => {};
+  sheet.svg.removeAttribute('tabindex');
+  sheet.svg.removeAttribute('aria-roledescription');
+  put(sheet.svg, 'role', 'img');
+  put(sheet.svg, 'class', 'sheet plot');
+  put(sheet.svg, 'aria-label', 'The error of the heading over time, in degrees, for five walks past a car. The text below gives the numbers.');
+  const redraw = onceAFrame(draw);
+  const nearest = (value) => steels.reduce((best, steel) => (Math.abs(steel - value) < Math.abs(best - value) ? steel : best));
+  const steel = slider({ symbol: 'Steel', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 20,
+    more: () => '', change: (value) => change(model, { steel: nearest(value) }) });
+  const gate = choice({ name: 'The gate rejects, of honest looks', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
+    change: (value) => change(model, { gate: Number(value) }) });
+  const text = liveText();
+  open(el, stage(sheet, text), element('div', { class: 'controls' }, steel.element, gate.element));
+
+  function draw() {
+    const walks = rows[steels.indexOf(model.get('steel'))][rejected.indexOf(model.get('gate'))];
+    steel.show(model.get('steel'));
+    gate.show(String(model.get('gate')));
+    sheet.draw(() => picture(sheet, walks.curves));
+    text.say(`Of a hundred walks half end within ${plain(walks.middle, 1)}° of the true heading, the worst ${plain(walks.worst, 1)}° off. `
+      + `${percent(walks.rejected)} of all looks at the field were rejected. Drawn: five of the walks.`);
+  }
+
+  draw();
+  return follow(model, ['steel', 'gate'], redraw);
+}

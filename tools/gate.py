@@ -1,0 +1,56 @@
+"""Compute what the figure of the gate shows, with the filter that chapter 19 prints.
+
+``python -m tools.gate`` writes it to ``gate.json`` beside the figure: a minute or two.
+"""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from orientation_recordings.walks import STEP, TAKEN, walks
+
+ROOT = Path(__file__).parents[1]
+TABLE = ROOT / "src" / "orientation_figures" / "moving" / "gate.json"
+STEELS = (0, 1, 2, 4, 7, 10, 20)  # microtesla
+#: Shares of an honest filter's looks that a gate rejects; 0 is no gate.
+REJECTED = (0, 0.001, 0.01, 0.1, 0.5, 0.9)
+CURVES = 5
+
+
+def chapter():
+    """The functions of the chapter's cell, without what it prints."""
+    book = json.loads((ROOT / "chapters" / "orientation-filters.ipynb").read_text("utf8"))
+    sources = ("".join(cell["source"]) for cell in book["cells"])
+    [cell] = [source for source in sources if "def follow(" in source]
+    names = {"np": np}
+    exec("from orientation import *\n" + cell[: cell.index("car, no_car =")], names)
+    return names
+
+
+def table(count=100):
+    """For each steel and each gate five curves, and the middle and worst end of all walks."""
+    names, rows = chapter(), []
+    for steel in STEELS:
+        walk, row = walks(count, 1, steel=steel), []
+        for share in REJECTED:
+            gate = -2 * np.log(share) if share else np.inf
+            estimate, predictions, looks = names["follow"](walk, gate)
+            errors = names["of_the_filter"](walk, estimate, predictions)
+            ends = np.sqrt((errors[:, -round(3 / STEP) :] ** 2).mean(axis=1))
+            accepted = np.array([look.accepted for look in looks])
+            every = round(1 / STEP)
+            row.append(
+                {
+                    "curves": errors[:CURVES, ::every].round(1).tolist(),
+                    "middle": round(float(np.median(ends)), 1),
+                    "worst": round(float(ends.max()), 1),
+                    "rejected": round(float(1 - accepted.mean()), 2),
+                }
+            )
+        rows.append(row)
+    return {"start": TAKEN, "steels": STEELS, "rejected": REJECTED, "rows": rows}
+
+
+if __name__ == "__main__":
+    TABLE.write_text(json.dumps(table(), separators=(",", ":")) + "\n", "utf8")
