@@ -220,7 +220,7 @@ def test_the_page_gives_the_filter_to_somebody_who_has_not_seen_its_code():
 def test_a_gate_keeps_the_heading_past_a_car_in_every_draw():
     rows = {
         line[:27].strip(): np.reshape(numbers(line[27:]), (5, 2))
-        for line in found("def follow", FILTERS)[1].splitlines()[1:]
+        for line in found(r"def follow\(walk", FILTERS)[1].splitlines()[1:]
     }
     middle, worst = rows["no gate"].T
     assert middle.min() > 10 and worst.min() > 35
