@@ -11,7 +11,7 @@ import numpy as np
 from orientation_recordings.walks import STEP, TAKEN, walks
 
 ROOT = Path(__file__).parents[1]
-TABLE = ROOT / "src" / "orientation_figures" / "moving" / "gate.json"
+TABLE = ROOT / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "gate.json"
 STEELS = (0, 1, 2, 4, 7, 10, 20)  # microtesla
 #: Shares of an honest filter's looks that a gate rejects; 0 is no gate.
 REJECTED = (0, 0.001, 0.01, 0.1, 0.5, 0.9)
