@@ -11,8 +11,10 @@ import numpy as np
 from orientation_recordings.walks import STEP, TAKEN, walks
 
 ROOT = Path(__file__).parents[1]
-TABLE = ROOT / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "gate.json"
-STEELS = (0, 1, 2, 4, 7, 10, 20)  # microtesla
+TABLE = (
+    ROOT / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "gate.json"
+)
+STEELS = (0, 2, 4, 6, 8, 10, 12)  # microtesla
 #: Shares of an honest filter's looks that a gate rejects; 0 is no gate.
 REJECTED = (0, 0.001, 0.01, 0.1, 0.5, 0.9)
 CURVES = 5

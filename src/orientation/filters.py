@@ -126,7 +126,7 @@ class MultiplicativeKalmanFilter:
     Notes
     -----
     Source: Lefferts, Markley and Shuster (1982); Markley (2003).
-    In the book: :eq:`equation-filter-predict` and :eq:`equation-filter-update`.
+    In the book: :eq:`equation-filter-turn` and :eq:`equation-filter-observe`.
     """
 
     def __init__(

@@ -168,55 +168,6 @@ def test_a_reset_keeps_a_filter_honest_and_the_whole_rotation_longest():
         assert (none > 6 and whole < 3.4) if degrees == 12 else True
 
 
-def test_the_page_gives_the_filter_to_somebody_who_has_not_seen_its_code():
-    """The fourteen lines in another style: active rotations of SciPy, the error of Sola."""
-    random = np.random.default_rng(3)
-    R, b = Rotation.random(random_state=4), np.zeros(3)
-    P = np.diag([0.04] * 3 + [0.0025] * 3)
-    estimate = MultiplicativeKalmanFilter(R.as_matrix().T, P, 0.01, 0.002)
-    directions = np.array([[0, 0, 1.0], [0.6, 0, -0.8]])
-
-    def cross(v):
-        return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-    def update(P, R, b, nu, H, V):
-        S = H @ P @ H.T + V
-        square = nu @ np.linalg.solve(S, nu)
-        if square > 9.21:
-            return P, R, b, square
-        K = P @ H.T @ np.linalg.inv(S)
-        dx = K @ nu
-        P = P - K @ H @ P
-        G = np.eye(6)
-        G[:3, :3] += cross(dx[:3]) @ cross(dx[:3]) / 6 - cross(dx[:3]) / 2
-        return G @ P @ G.T, R * Rotation.from_rotvec(dx[:3]), b + dx[3:], square
-
-    for k in range(120):
-        rate, h = random.normal(size=3), 0.02
-        turn = Rotation.from_rotvec((rate - b) * h)
-        R = R * turn
-        F = np.eye(6)
-        F[:3, :3], F[:3, 3:] = turn.as_matrix().T, -h * np.eye(3)
-        P = F @ P @ F.T + np.diag([0.01**2 * h] * 3 + [0.002**2 * h] * 3)
-        estimate.turn(rate, h)
-        for n in directions:
-            y = R.inv().apply(n) + 0.05 * random.normal(size=3)
-            y /= np.linalg.norm(y)
-            H = np.hstack([cross(R.inv().apply(n)), np.zeros((3, 3))])
-            P, R, b, square = update(P, R, b, y - R.inv().apply(n), H, 0.05**2 * np.eye(3))
-            innovation = estimate.observe(y, n, 0.05, gate=9.21)
-            assert innovation.normalised_square == pytest.approx(square, rel=1e-6)
-        if k % 40 == 39:
-            star = R * Rotation.from_rotvec(0.01 * random.normal(size=3))
-            nu = (R.inv() * star).as_rotvec()
-            V, H = 1e-4 * np.diag([1, 2, 3.0]), np.eye(3, 6)
-            P, R, b, _ = update(P, R, b, nu, H, V)
-            estimate.observe_dcm(star.as_matrix().T, V, gate=9.21)
-    assert np.abs(estimate.dcm - R.as_matrix().T).max() < 1e-9
-    assert np.abs(estimate.bias - b).max() < 1e-9
-    np.testing.assert_allclose(estimate.covariance, P, rtol=1e-6, atol=1e-12)
-
-
 def test_a_gate_keeps_the_heading_past_a_car_in_every_draw():
     rows = {
         line[:27].strip(): np.reshape(numbers(line[27:]), (5, 2))

@@ -22,8 +22,9 @@ KINDS = sorted(FIGURES)
 CHANGES = {
     "belt": ("angle", 0.3, "theta, turn of the plate in degrees", 17.19),
     "challenge": ("turns", (("z", 0.3),), "Angle of the last turn in degrees", 17.19),
+    "cloud": ("large", 0.3, "Error about z in degrees", 17.19),
     "converter": ("quaternion", (1.0, 0.0, 0.0, 0.0), None, None),
-    "gate": ("steel", 20, "Steel of the car in microtesla", 20),
+    "gate": ("steel", 4, "Steel of the car in microtesla", 4),
     "gimbal": ("angles", (0.3, 0.2, 0.1), "psi in degrees", 17.19),
     "graph": (
         "edges",

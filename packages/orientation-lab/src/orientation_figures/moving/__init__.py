@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from .belt import BeltFigure
     from .challenge import ChallengeFigure
+    from .cloud import CloudFigure
     from .converter import ConverterFigure
     from .explorer import SequenceExplorer
     from .figure import MovingFigure
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "BeltFigure": "belt",
     "ChallengeFigure": "challenge",
+    "CloudFigure": "cloud",
     "ConverterFigure": "converter",
     "SequenceExplorer": "explorer",
     "MovingFigure": "figure",
@@ -60,6 +62,7 @@ def __getattr__(name: str) -> type:
 __all__ = [
     "BeltFigure",
     "ChallengeFigure",
+    "CloudFigure",
     "ConverterFigure",
     "GateFigure",
     "GimbalFigure",

@@ -23,7 +23,7 @@ class GateFigure(MovingFigure):
     Attributes
     ----------
     steel : int
-        Microtesla that the car adds to the field: 0, 1, 2, 4, 7, 10 or 20.
+        Microtesla that the car adds to the field: an even number from 0 to 12.
     gate : float
         Share of an honest filter's looks at the field that the gate rejects: 0 (no gate), 0.001,
         0.01, 0.1, 0.5 or 0.9.
@@ -41,7 +41,7 @@ class GateFigure(MovingFigure):
 
     kind = "gate"
     sheet = (-180, -130, 180, 130)
-    room = (430, 590)
+    room = (430, 470)
     steel = traitlets.Enum(tuple(computed()["steels"]), 10).tag(sync=True, state=True)
     gate = traitlets.Enum(tuple(computed()["rejected"]), 0).tag(sync=True, state=True)
     table = traitlets.Dict().tag(sync=True, told=True)

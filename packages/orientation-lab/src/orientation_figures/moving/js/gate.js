@@ -15,13 +15,13 @@ export function render({ model, el }) {
   put(sheet.svg, 'class', 'sheet plot');
   put(sheet.svg, 'aria-label', 'The error of the heading over time, in degrees, for five walks past a car. The text below gives the numbers.');
   const redraw = onceAFrame(draw);
-  const nearest = (value) => steels.reduce((best, steel) => (Math.abs(steel - value) < Math.abs(best - value) ? steel : best));
-  const steel = slider({ symbol: 'Steel', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 20,
-    more: () => '', change: (value) => change(model, { steel: nearest(value) }) });
+  const steel = slider({ symbol: '', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 12, step: 2,
+    more: () => '', change: (value) => { change(model, { steel: 2 * Math.round(value / 2) }); redraw(); } });
   const gate = choice({ name: 'The gate rejects, of honest looks', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
     change: (value) => change(model, { gate: Number(value) }) });
   const text = liveText();
-  open(el, stage(sheet, text), element('div', { class: 'controls' }, steel.element, gate.element));
+  open(el, stage(sheet, text), element('div', { class: 'controls' },
+    element('div', { class: 'named' }, element('span', { 'aria-hidden': 'true' }, 'Steel'), steel.element), gate.element));
 
   function draw() {
     const walks = rows[steels.indexOf(model.get('steel'))][rejected.indexOf(model.get('gate'))];

@@ -36,6 +36,6 @@ export function picture(sheet, curves) {
   sheet.layer = 1;
   for (const curve of curves) {
     const points = enumerate(curve).map(([second, error]) => [across(FIRST + second), down(error)]);
-    sheet.path('M' + 'L'.repeat(points.length - 1), points, 'axis D');
+    sheet.path('M' + 'L'.repeat(points.length - 1), points, 'D');
   }
 }

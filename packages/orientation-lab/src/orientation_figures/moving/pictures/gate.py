@@ -36,7 +36,7 @@ def picture(sheet, curves):
     sheet.layer = 1
     for curve in curves:
         points = [[across(FIRST + second), down(error)] for second, error in enumerate(curve)]
-        sheet.path("M" + "L" * (len(points) - 1), points, "axis D")
+        sheet.path("M" + "L" * (len(points) - 1), points, "D")
 
 
 def drawing(figure, Sheet):
