@@ -18,12 +18,10 @@ from trial_course import CELLS, PINNED, PROJECT, made_in, write_source
 
 import coursework
 from coursework.__main__ import main
-from coursework.authoring import selftest
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
 from coursework.authoring.packing import DISTRIBUTIONS, archive, next_version, wheel
 from coursework.authoring.release import release
-from coursework.authoring.source import measured_strengths
 from coursework.authoring.trial import trial
 from coursework.checking.update import update
 
@@ -288,10 +286,7 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
     """
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
-    (course / "solutions" / "strengths.json").unlink(missing_ok=True)
-    (course / "solutions" / "strengths.json").symlink_to("nowhere/strengths.json")
     monkeypatch.chdir(course)
-    monkeypatch.setattr(selftest, "BUDGET", 64)  # what is found within all of it is kept
     with pytest.raises(SystemExit, match="selftest.html cannot be written.*--page"):
         main(["selftest"])
     with pytest.raises(SystemExit, match="try.html cannot be written.*--page"):
@@ -299,70 +294,47 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
     for command in ("new", "wheels"):
         with pytest.raises(SystemExit, match=f"^coursework {command}: Not a directory: .*build"):
             main([command, "build/inside"])
-    main(["selftest", "--page", str(tmp_path / "page.html"), "--budget", "64"])
+    main(["selftest", "--page", str(tmp_path / "page.html")])
     assert (
         "Every question passed." in capsys.readouterr().out and (tmp_path / "page.html").is_file()
     )
 
 
-def test_a_release_says_how_hard_each_question_is_to_guess_and_what_may_be_done(
-    statics, tmp_path, monkeypatch, capsys
-):
-    """The deflection of a beam, with numbers of one's own: an
-    ordinary question, and soon guessed.
-    """
+def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, monkeypatch, capsys):
     course = shutil.copytree(statics, tmp_path / "course")
-    answer = (
-        "### BEGIN SOLUTION\ndeflection = 450 * 2**3 / (3 * 2000)\n### END SOLUTION\n"
-        "check('beam/tip', deflection)\n"
-    )
-    hidden = (
-        "### BEGIN HIDDEN TESTS\nquestion('beam/tip', kind='expression', worth=3)\n"
-        "### END HIDDEN TESTS"
-    )
-    text = (
-        "The load is 450 N, the length 2 m, and EI is 2000 N m2. "
-        "Give the deflection F l^3 / 3EI as `deflection`."
-    )
+
+    def asked(name, kind, answer, about, worth):
+        return (
+            "code",
+            f"### BEGIN SOLUTION\n{name} = {answer}\n### END SOLUTION\n"
+            f"check('beam/{name}', {name})\n### BEGIN HIDDEN TESTS\n"
+            f"question('beam/{name}', kind='{kind}', worth={worth}{about})\n"
+            "### END HIDDEN TESTS",
+        )
+
     cells = [
-        ("code", "import sympy as sm\nfrom coursework import check"),
-        ("markdown", text),
-        ("code", answer + hidden),
+        ("code", "from coursework import check"),
+        ("markdown", "Four questions about one beam."),
+        asked("support", "choice", "'left'", ", options=['left', 'right']", 3),
+        asked("bent", "expression", "0.6", "", 2),
+        asked("loads", "vector", "[1, 0, -2]", ", length=3", 2),
+        asked("ends", "truth values", "[True, False]", ", length=2, exam=True", 1),
     ]
     write_source(course / "solutions", *cells, name="beam")
     monkeypatch.chdir(course)
-    known = {"format": 1, "tries": {"first-steps/area": 20, "beam/root": 3, "gone/one": 7}}
-    (course / "solutions" / "strengths.json").write_text(json.dumps(known), "utf8")
     main(["release", "beam"])
     said = capsys.readouterr().out
-    tries = int(re.search(r"beam/tip, 3 points: found after (\d+) slow hashes", said)[1])
-    assert tries < 1000 and re.search("beam/tip, 3 points, found .* exam=True", said), said
-    assert "0% of 3 points are behind" in said and "first-steps" not in said
-    assert measured_strengths(course / "solutions") == {"first-steps/area": 20, "beam/tip": tries}
-    kept = (course / "solutions" / "strengths.json").read_bytes()
-    monkeypatch.setattr(
-        selftest, "attack", lambda *_: pytest.fail("what is known is not tried again")
-    )
-    main(["release", "beam"])
-    assert f"beam/tip, 3 points: found after {tries} slow hashes" in capsys.readouterr().out
-    assert (course / "solutions" / "strengths.json").read_bytes() == kept
-    monkeypatch.undo()
-    monkeypatch.chdir(course)
-    main(["selftest", "beam"])
-    assert "0% of 3 points are behind more than" in (course / "build" / "selftest.html").read_text(
-        "utf8"
-    )
-    source = course / "solutions" / "beam.ipynb"
-    source.write_text(source.read_text("utf8").replace("worth=3", "exam=True, worth=3"), "utf8")
-    main(["release", "beam"])
-    assert "beam/tip, 3 points: there is nothing to try a guess on" in capsys.readouterr().out
+    assert "beam/support, 3 points: one of 2 answers." in said
+    assert "beam/loads, 2 points: one of 125 answers." in said
+    assert "5 of 8 points have a closed answer" in said and "beam/bent" not in said
+    assert "8 of 8 points in exercise notebooks have one answer for everybody." in said
 
 
 def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):
     course = shutil.copytree(statics, tmp_path / "course")
     shutil.copy(EXAMPLE / "solutions" / "moments.ipynb", course / "solutions")
     monkeypatch.chdir(course)
-    main(["selftest", "first-steps", "--budget", "64"])
+    main(["selftest", "first-steps"])
     text = (course / "build" / "selftest.html").read_text("utf8")
     assert "first-steps/" in text and "moments/" not in text
     with pytest.raises(SystemExit, match="There is no levers.ipynb"):

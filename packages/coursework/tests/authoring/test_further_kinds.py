@@ -14,7 +14,7 @@ from sympy.physics import units
 from trial_course import made_in, write_source
 
 from coursework.authoring import author
-from coursework.authoring.attack import attack
+from coursework.authoring.closed import possible_answers
 from coursework.authoring.release import release
 from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
@@ -144,19 +144,15 @@ def test_a_number_with_its_unit(answer, expected):
 
 def test_a_number_with_its_unit_is_tried_as_others_are():
     question = make("measurement", (sm.Rational(3517, 83), "N m"), symbols={})
-    found = try_question(question, budget=0, against_sealed=False)
+    found = try_question(question, against_sealed=False)
     assert found.faults == [] and len(found.forms) > 6 and "kg" not in str(question.public)
     x = sm.Symbol("x")
     exact = make("measurement", (3 * x**2, "N m"), symbols={"x": (1, 2)})
-    assert try_question(exact, budget=0, against_sealed=False).faults == []
+    assert try_question(exact, against_sealed=False).faults == []
     assert (
         outcome(exact, (3000 * x**2, "N mm"))[0] == "correct"
         and outcome(exact, (3 * x**2, "N"))[0] == "wrong"
     )
-    easy = attack(make("measurement", (12, "N m")), "A force of 3 N at 4 m")
-    assert easy.way.startswith("one small formula, in usual units") and easy.tries < 5000
-    hard = make("measurement", (sm.Rational(3517, 83), "N m"), tolerance=1e-6)
-    assert not attack(hard, "", 2000).way
 
 
 @pytest.mark.parametrize(
@@ -202,12 +198,12 @@ PLANETS = ["Mercury", "Venus", "Earth", "Mars", "Jupiter"]
 
 def test_an_order():
     question = make("order", PLANETS, options=sorted(PLANETS), partial=True)
-    assert try_question(question, budget=0, against_sealed=False).faults == []
+    assert try_question(question, against_sealed=False).faults == []
     assert outcome(question, [" " + name.upper() for name in PLANETS]) == ("correct", "")
     assert outcome(question, PLANETS[::-1]) == ("wrong", "turned round")
     assert outcome(question, ["Venus", "Mercury", *PLANETS[2:]]) == ("wrong", "two interchanged")
     assert outcome(question, [PLANETS[0], *PLANETS[:4]]) == ("invalid", "shape")
-    assert attack(question).way.startswith("all orders")
+    assert possible_answers(question) == 120
 
 
 def share(question, answer):

@@ -21,6 +21,7 @@ LEVER = {
 }  # fmt: skip
 MARK = {"outcome": "wrong", "note": "", "messages": [], "points": 0, "worth": 2}
 RECORD = {
+    "format": 3,
     "student": "ann",
     "assignment": "levers",
     "notebooks": [],

@@ -8,12 +8,7 @@ from .mistakes import DEEDS
 #: What the notebooks import.
 PACKAGES = ("orientation", "orientation_figures", "orientation_recordings")
 
-#: What the public functions of the module are told in words, by the name of the argument.
-WORDS = {
-    "sequence": "zxy zyx xyz zxz zyz xzy yxz yzx xyx xzx yxy yzy".split(),
-    "axis": ["x", "y", "z"],
-}
-#: How many numbers an answer of each kind is compared by.
-SIZES = {"direction cosine matrix": 9, "quaternion": 4, "Euler angles": 9, "axis and angle": 9}
+#: How many answers a question of a kind allows, where they are few.
+CLOSED = {"sequence": 12}
 
-__all__ = ["DEEDS", "KINDS", "PACKAGES", "SIZES", "WORDS"]
+__all__ = ["CLOSED", "DEEDS", "KINDS", "PACKAGES"]

@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-from coursework.authoring.course import find_course
-from coursework.authoring.source import measured_questions, share_beyond
 from coursework.grading import sample_class
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
@@ -16,31 +14,6 @@ from coursework.grading.judging.ledger import Ledger
 from coursework.grading.store import Store
 
 PAGE = Path(__file__).parents[4] / "appendix" / "instructors.md"
-
-
-@pytest.mark.long  # it is quick, but whoever adds a question is not held up by it
-def test_the_instructors_page_says_what_was_measured_of_the_questions():
-    """What is wrong here is to be put there: no other place of the book says these numbers."""
-    notebooks = {}
-    for name, one in measured_questions(find_course().sources).items():
-        notebooks.setdefault(name.partition("/")[0], {})[name] = one
-    whole = {name: one for some in notebooks.values() for name, one in some.items()}
-    rows = "".join(_row(f"of *{name}*", some) for name, some in notebooks.items())
-    heavy = {name: one for name, one in whole.items() if one["worth"] > 1}
-    rows = _row("all", whole) + _row("those worth more than a point", heavy) + rows
-    assert HEAD + rows in PAGE.read_text("utf8")
-
-
-HEAD = """| questions | points | sets of numbers | not found |
-|---|---:|---:|---:|
-"""
-
-
-def _row(name, measured):
-    tries = [count for one in measured.values() for count in one["tries"]]
-    assert None not in tries, f"{name} was not measured whole: coursework selftest"
-    points = sum(one["worth"] for one in measured.values())
-    return f"| {name} | {points:g} | {len(tries)} | {100 * share_beyond(measured):.0f} % |\n"
 
 
 @pytest.mark.long
@@ -52,7 +25,7 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     manual = PAGE.read_text("utf8")
     report = (tmp_path / "out" / "report.html").read_text("utf8")
     for line in said.getvalue().splitlines():
-        if line.startswith(("196 to grade", "Isolation:", "homework:")):
+        if line.startswith(("196 to grade", "Isolation:")):
             assert line.partition("(")[0] in manual
     (figure,) = re.findall(r'aria-label="(Number of students by points[^"]*)"', report)
     assert figure in manual

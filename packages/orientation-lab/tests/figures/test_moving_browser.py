@@ -464,8 +464,7 @@ def test_nine_numbers_leaves_alone_what_is_being_typed(open_figure):
     assert field.input_value() != "99"
 
 
-# How fast a drag is answered is measured by `python -m tools.benchmarks.moving`.
-# What makes it fast is tested here.
+# What makes a dragged figure fast is tested here.
 MOVES = """async ({ pictures, moves }) => {
   const control = document.querySelector('.live input[type=range], .live input, .live textarea');
   const [low, high] = control.type === 'range' ? [Number(control.min), Number(control.max)] : [-1, 1];

@@ -1,5 +1,5 @@
-"""The commands of authors: ``coursework new``, ``release``, ``publish``,
-``try``, ``selftest`` and ``wheels``.
+"""The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``ask``,
+``selftest`` and ``wheels``.
 """
 
 from __future__ import annotations
@@ -55,6 +55,14 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="NOTEBOOK/QUESTION",
         help="a question, or a notebook for all of its questions",
     )
+    ask = commands.add_parser(
+        "ask", help="print a notebook's questions as text, for a language model to answer"
+    )
+    ask.add_argument("notebook", type=Path, metavar="NOTEBOOK.ipynb")
+    ask.add_argument("--answers", type=Path, metavar="REPLY", help="its reply, to be read back in")
+    ask.add_argument(
+        "--to", type=Path, metavar="FILE.ipynb", help="where the answered notebook goes"
+    )
     wheels = commands.add_parser(
         "wheels", help="write the packages of coursework, to be installed elsewhere"
     )
@@ -69,12 +77,6 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--sources",
         type=Path,
         help="folder of the notebooks with solutions (default: as course.toml says)",
-    )
-    selftest.add_argument(
-        "--budget",
-        type=int,
-        default=2**16,
-        help="how many slow hashes the attack on one question may need (default: %(default)s)",
     )
     for parser, page in ((trial, "try"), (selftest, "selftest")):
         parser.add_argument(
@@ -108,16 +110,16 @@ def release(
     exercises: Path | None,
     sealed: Path | None,
 ) -> None:
+    from .closed import counted
     from .packing import archive
     from .release import release as make
-    from .selftest import measure
 
     course = _course(sources, exercises, sealed)
     names = make(course, only)
     print(f"{len(names)} {'notebook' if len(names) == 1 else 'notebooks'} released.")
     if not no_archive:
         print(f"For students: {archive(course)}")
-    print(*measure(course, names), sep="\n")
+    print(*counted(course, names), sep="\n")
 
 
 def publish(site: Path | None, room: bool) -> None:
@@ -164,12 +166,30 @@ def trial(name: str, page: str | None) -> None:
     )
 
 
-def selftest(only: Sequence[str], page: str | None, budget: int, sources: Path | None) -> None:
+def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
+    from .asking import as_text, with_answers
+    from .author import AuthorError
+
+    if (answers is None) != (to is None):
+        raise AuthorError("to read a reply back in, give both --answers and --to")
+    if answers is None or to is None:
+        print(as_text(notebook))
+        return
+    try:
+        reply = answers.read_text("utf8")
+    except OSError as error:
+        raise AuthorError(f"{answers} cannot be read: {error.strerror}") from None
+    print(
+        f"{to} answers {', '.join(with_answers(notebook, reply, to))}. `coursework grade` marks it."
+    )
+
+
+def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> None:
     from .selftest import selftest as try_all
 
     course = _course(sources)
     place = _writable(page or course.archive.with_name("selftest.html"))
-    faults = try_all(course, place, budget, only)
+    faults = try_all(course, place, only)
     print(f"The page: {place}")
     if faults:
         sys.exit("\n".join(faults))
@@ -193,6 +213,7 @@ RUNS: dict[str, Callable[..., None]] = {
     "release": release,
     "publish": publish,
     "try": trial,
+    "ask": ask,
     "selftest": selftest,
     "wheels": wheels,
 }

@@ -343,7 +343,7 @@ def _release_variant(
     if not (kept.exists() and answers.exists()):
         source = read_source(path, number, course.edition)
         for name, question in source.questions.items():
-            faults = try_question(question, budget=0, against_sealed=False).faults
+            faults = try_question(question, against_sealed=False).faults
             if faults:
                 raise AuthorError(
                     f"{name}, variant {number}, {dict(question.public.given)}: {faults[0]}"

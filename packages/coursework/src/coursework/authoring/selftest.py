@@ -1,17 +1,14 @@
 """Questions tried before students get them: right forms pass, each
 mistake has its message, nothing leaks.
 
-The result is a page for the author: what each question recognises, how hard it is to guess, and
-what is wrong with it, if anything is.
+The result is a page for the author: what each question recognises, how many answers it allows where
+they are few, and what is wrong with it, if anything is.
 """
 
 import base64
 import concurrent.futures
 import contextlib
-import functools
-import hashlib
 import html
-import importlib.util
 import io
 import json
 import os
@@ -27,47 +24,32 @@ from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
-from ..checking.plugins import kinds, plugins
+from ..checking.plugins import kinds
 from ..checking.questions import judge, notebook_questions
 from ..checking.reply import Reply, to_html
-from ..checking.variants import shown
-from . import typed
-from .attack import BUDGET, CODE, VERSION, Found, attack
 from .author import AuthoredQuestion, AuthorError
+from .closed import possible_answers
 from .course import Course
 from .forms import another_answer, equivalent_forms
 from .source import (
     CHAPTERS,
-    FORMAT_OF_MEASURED,
     HIDDEN,
-    MEASURED,
     SOLUTION,
-    Measured,
     Source,
     blank,
-    cells_needed,
-    measured_questions,
     notebooks_in,
     read_source,
-    said_beyond,
 )
-from .variation import VARIANTS
 
-#: Seconds that one try costs, as measured on one core of a common machine; see the slow hash.
-SECONDS_PER_TRY = 0.012
 #: Forms that a right answer is tried in, where algebra gives that many.
 FORMS = 6
-#: Of a question of an exam, or one that a person reads.
-NOTHING = Found(0, "")
-#: Points of a question up to which it does not matter that it can be guessed.
-LIGHT = 1
 COLUMNS = (
     "Question",
     "Kind",
     "Forms that pass",
     "Mistakes named",
     "Mistakes that change nothing here",
-    "To guess it",
+    "Possible answers",
     "Faults",
 )
 #: On a narrow screen each question stands by itself, and each cell says what it is of.
@@ -104,7 +86,7 @@ class Finding(NamedTuple):
     forms: list[str]
     mistakes: list[tuple[str, str]]  # the note, and what is said
     unmoved: list[str]
-    attack: Found
+    possible: int | None
     worth: float
     faults: list[str]
 
@@ -122,26 +104,14 @@ class Cell(TypedDict):
     source: str | list[str]
 
 
-def try_question(
-    question: AuthoredQuestion,
-    text: str = "",
-    budget: int = BUDGET,
-    against_sealed: bool = True,
-    found: Found | None = None,
-) -> Finding:
-    """Try one question as students will, right and wrong, and as somebody does who guesses.
+def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Finding:
+    """Try one question as students will, right and wrong.
 
     Parameters
     ----------
     question : AuthoredQuestion
-    text : str
-        What is asked, in words.
-    budget : int
-        How many slow hashes the attack may need.
     against_sealed : bool
         Whether to try what was released of it too.
-    found : Found, optional
-        What came of the attack, where it is known.
 
     Answers are compared with what is sealed before the slow hash locks it up: that the locks hold
     the same is shown by the right answer here, and for the rest by the release, which makes the
@@ -183,15 +153,13 @@ def try_question(
     reply = Reply(question.name, "wrong") if other is None else question.reply_to(other)
     if reply.outcome == "correct" or reply.outcome == "wrong" and reply.note:
         faults.append(f'Another answer gets "{reply.outcome}", {reply.note!r}.')
-    if found is None:
-        found = NOTHING if question.public.exam else attack(question, text, budget)
     return Finding(
         question.name,
         question.public.kind,
         [form for form, _ in forms],
         named,
         unmoved,
-        found,
+        possible_answers(question),
         question.worth,
         faults,
     )
@@ -210,7 +178,7 @@ def _try_text(question: AuthoredQuestion) -> Finding:
     if not question.rubric:
         faults.append("Nothing says what a person looks for: give a `rubric`.")
     name, kind = question.name, question.public.kind
-    return Finding(name, kind, [], [], [], NOTHING, question.worth, faults)
+    return Finding(name, kind, [], [], [], None, question.worth, faults)
 
 
 def _judge(question: AuthoredQuestion, answer: object) -> Reply:
@@ -451,7 +419,6 @@ def found_in(texts: Mapping[str, str], secrets: Secrets) -> list[Leak]:
 def selftest(
     course: Course,
     page: str | Path | None = None,
-    budget: int = BUDGET,
     only: Collection[str] = (),
 ) -> list[str]:
     """Try all questions of a course, or of the notebooks that are named,
@@ -469,272 +436,36 @@ def selftest(
     """
     paths = notebooks_in(course.sources, only)
     with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
-        tried = list(pool.map(_try_notebook, paths, [course] * len(paths), [budget] * len(paths)))
-    findings = [finding for found, *_ in tried for finding in found]
-    measured = {name: known for _, some, _ in tried for name, known in some.items()}
+        tried = list(pool.map(_try_notebook, paths, [course] * len(paths)))
+    findings = [finding for found, _ in tried for finding in found]
     if not findings:
         raise AuthorError(f"The notebooks in {course.sources} ask no question.")
     texts = released_texts(course.exercises, course.sealed, course.archive)
-    leaked = [leak for *_, secrets in tried for leak in found_in(texts, secrets)]
+    leaked = [leak for _, secrets in tried for leak in found_in(texts, secrets)]
     if page:
         Path(page).parent.mkdir(parents=True, exist_ok=True)
-        Path(page).write_text(write_page(findings, leaked, measured=measured), "utf8")
-    if budget == BUDGET:
-        # In a checkout that belongs to somebody else it is not kept.
-        with contextlib.suppress(OSError):
-            write_measured(course.sources, paths, measured)
+        Path(page).write_text(write_page(findings, leaked), "utf8")
     return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
         f"{what} stands in {place}" for what, place in leaked
     ]
 
 
-def measure(
-    course: Course,
-    only: Collection[str] = (),
-    all_variants: bool = False,
-    budget: int = BUDGET,
-) -> list[str]:
-    """Attack the questions of some notebooks, and write down what was found beside the sources.
-
-    What was measured of the same question by the same attack is not measured again.
-
-    Parameters
-    ----------
-    course : Course
-    only : sequence of str
-    all_variants : bool
-        Whether every variant is attacked, or the first alone.
-    budget : int
-
-    Returns
-    -------
-    list of str
-        A line for each question, one for each that counts much and is soon guessed, and the share
-        of the points.
-    """
-    paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
-        sources = [course] * len(paths), [all_variants] * len(paths), [budget] * len(paths)
-        measured: dict[str, Measured] = {}
-        for path, some in zip(paths, pool.map(_measured_in, paths, *sources), strict=True):
-            # What is known is kept, should somebody have no time for the rest.
-            write_measured(course.sources, [path], some)
-            measured |= some
-    weakest = {name: (known["worth"], weakest_of(known)) for name, known in measured.items()}
-    return [
-        *(f"{name}, {_of(worth, 'point')}: {found}" for name, (worth, found) in weakest.items()),
-        *(
-            proposal(name, worth, found)
-            for name, (worth, found) in weakest.items()
-            if found.way and worth > LIGHT
-        ),
-        f"{said_beyond(measured)}.",
-    ]
-
-
-def _measured_in(
-    path: Path, course: Course, all_variants: bool = False, budget: int = BUDGET
-) -> dict[str, Measured]:
+def _try_notebook(path: Path, course: Course) -> tuple[list[Finding], Secrets]:
+    """Try the questions of a notebook; give what was found of them, and the notebook's secrets."""
     source = read_source(path, edition=course.edition)
-    return measured_of(source, course, source.questions, all_variants, budget)
-
-
-def measured_of(
-    source: Source,
-    course: Course,
-    names: Iterable[str],
-    all_variants: bool = False,
-    budget: int = BUDGET,
-) -> dict[str, Measured]:
-    """What the attack finds of some questions of a notebook, by name: what is
-    known of them is not tried again.
-
-    Of each its points, a digest of all that the attack depends on, after how many tries each
-    variant was found, 0 where it was not and ``None`` where it was not attacked, and by what way
-    the weakest.
-    """
-    known = measured_questions(course.sources) if budget == BUDGET else {}
-    measured: dict[str, Measured] = {}
-    for name in names:
-        question = source.questions[name]
-        count = source.rules[name].count if name in source.rules else 1
-        digest = digest_of_question(source, course, name)
-        of_this = known.get(name)
-        if of_this is None or (
-            of_this["digest"] != digest or len(of_this["tries"]) not in (0, count)
-        ):
-            of_this = Measured(worth=0, digest=digest, tries=[None] * count, way="")
-        of_this["worth"] = question.worth
-        measured[name] = of_this
-        if _says_nothing(question):
-            of_this["tries"] = []
-            continue
-        for number in range(count if all_variants else 1):
-            if of_this["tries"][number] is None:
-                attack_variant(source, course, name, number, of_this, budget)
-    return measured
-
-
-def attack_variant(
-    source: Source,
-    course: Course,
-    name: str,
-    number: int,
-    measured: Measured,
-    budget: int = BUDGET,
-) -> None:
-    """Attack a variant of a question, and write into ``measured`` what came of it."""
-    if number:
-        source = read_source(
-            course.sources / f"{source.name}.ipynb", number, course.edition, only=[name]
-        )
-    question = source.questions[name]
-    found, before = (
-        attack(question, text_of(source, question, course), budget),
-        weakest_of(measured),
-    )
-    measured["tries"][number] = found.tries if found.way else 0
-    if found.way and (not before.way or found.tries < before.tries):
-        measured["way"] = found.way
-
-
-def weakest_of(measured: Measured, budget: int = BUDGET) -> Found:
-    """What was found of the weakest variant of a question that was measured."""
-    tries = [count for count in measured["tries"] if count]
-    if tries:
-        return Found(min(tries), measured["way"])
-    return Found(budget, "") if measured["tries"] else NOTHING
-
-
-def digest_of_question(source: Source, course: Course, name: str) -> str:
-    """A text that follows from what the attack on a question depends on: its
-    cells, with the text, and the attack.
-    """
-    cells, needed = source.notebook.cells, sorted(cells_needed(source.notebook, [name]))
-    digest = hashlib.sha256(f"{digest_of_attack()} {course.edition} {name}".encode())
-    for number in needed:
-        above = number
-        while above and cells[above - 1].cell_type == "markdown":
-            above -= 1
-        for cell in cells[above : number + 1]:
-            digest.update(cell.source.encode())
-    if source.name == CHAPTERS:
-        digest.update(text_of(source, source.questions[name], course).encode())
-    return digest.hexdigest()[:16]
-
-
-@functools.cache
-def digest_of_attack() -> str:
-    """A text that follows from the attack: which versions of it there
-    are, and what functions it applies.
-    """
-    modules = [f"{plugin.__name__}.attack" for plugin in plugins()]
-    own = [importlib.import_module(name) for name in modules if importlib.util.find_spec(name)]
-    versions = [VERSION, *(getattr(module, "VERSION", 0) for module in own)]
-    known = json.dumps([versions, [step.name for step in typed.public_functions()]])
-    return hashlib.sha256(known.encode()).hexdigest()
-
-
-def proposal(name: str, worth: float, found: Found) -> str:
-    """What an author may do of a question that counts much and is soon guessed."""
-    return (
-        f"{name}, {_of(worth, 'point')}, {found}. "
-        "To carry them, ask for several parts in one answer, for a function, or say exam=True: "
-        "then nothing is sealed, and the grader marks it."
-    )
-
-
-def write_measured(
-    sources: str | Path, paths: Iterable[Path], measured: Mapping[str, Measured]
-) -> None:
-    """Write down what was measured of the questions of some notebooks;
-    what is known of the others stays.
-    """
-    tried, there = {path.stem for path in paths}, {path.stem for path in notebooks_in(sources)}
-    questions = {
-        name: known
-        for name, known in measured_questions(sources).items()
-        if name.partition("/")[0] in there - tried
-    } | dict(measured)
-    lines = ",\n".join(
-        f"  {json.dumps(name)}: {json.dumps(known, sort_keys=True)}"
-        for name, known in sorted(questions.items())
-    )
-    text = f'{{\n "format": {FORMAT_OF_MEASURED},\n "questions": {{\n{lines}\n }}\n}}\n'
-    Path(sources, MEASURED).write_text(text, "utf8")
-
-
-def _try_notebook(
-    path: Path, course: Course, budget: int
-) -> tuple[list[Finding], dict[str, Measured], Secrets]:
-    """What was found of the questions of a notebook, what was measured of them, and its secrets."""
-    source = read_source(path, edition=course.edition)
-    measured = measured_of(source, course, source.questions, True, budget) if budget else {}
     secrets = secrets_of(source)
     findings: list[Finding] = []
-    for name, question in source.questions.items():
-        found = weakest_of(measured[name], budget) if measured else NOTHING
-        finding = try_question(question, found=found)
+    for question in source.questions.values():
+        finding = try_question(question)
         findings.append(finding._replace(faults=[*finding.faults, *told_openly(question, secrets)]))
-    return findings, measured, {} if source.name == CHAPTERS else secrets
-
-
-def _says_nothing(question: AuthoredQuestion) -> bool:
-    """Whether a question has nothing to try a guess on."""
-    return bool(question.public.exam) or kinds()[question.public.kind].by_a_person
-
-
-def text_of(source: Source, question: AuthoredQuestion, course: Course) -> str:
-    """The text of a question, that of its variant or the Markdown above its
-    check, and the open code of its cell.
-
-    Where a question stands in a chapter, its text stands there, and not in the source.
-    """
-    if source.name == CHAPTERS:
-        for path in sorted((course.root / CHAPTERS).glob("*.ipynb")):
-            checked = _above_check(json.loads(path.read_text("utf8"))["cells"], question)
-            if checked:
-                return f"{checked[0]}{CODE}{checked[1]}"
-    cells: list[Cell] = [
-        {"cell_type": cell.cell_type, "source": cell.source} for cell in source.notebook.cells
-    ]
-    text, _ = _above_check(cells, question) or ("", "")
-    if question.public.variant:
-        text = shown(question.public.variant.text, question.public.variant.shown)
-    return f"{text}{CODE}{_open_code(source, question)}"
-
-
-def _above_check(cells: Iterable[Cell], question: AuthoredQuestion) -> tuple[str, str] | None:
-    """The Markdown above the cell that checks a question, and that
-    cell; ``None`` where none does.
-    """
-    above = ""
-    for cell in cells:
-        said = "".join(cell["source"])
-        if cell["cell_type"] == "markdown":
-            above = said
-        elif f"check({question.name!r}" in said.replace('"', "'"):
-            return above, said
-    return None
-
-
-def _open_code(source: Source, question: AuthoredQuestion) -> str:
-    """The code that students get of the cell in which a question is answered."""
-    for cell in source.notebook.cells:
-        if cell.cell_type == "code" and re.search(
-            rf"^\s*{question.variable}\b|def {question.variable}\b", cell.source, re.M
-        ):
-            return VARIANTS.sub("", HIDDEN.sub("", SOLUTION.sub("", cell.source)))
-    return ""
+    return findings, {} if source.name == CHAPTERS else secrets
 
 
 def write_page(
     findings: Sequence[Finding],
     leaked: Sequence[Leak] | None,
     before: str = "",
-    measured: Mapping[str, Measured] | None = None,
 ) -> str:
-    share = said_beyond(measured) if measured else ""
     rows = []
     for finding in findings:
         said_of = Counter((note, to_html(said)) for note, said in finding.mistakes)
@@ -749,7 +480,7 @@ def write_page(
             _folded(len(finding.forms), html.escape(", ".join(finding.forms))),
             _folded(len(finding.mistakes), f"<ul>{mistakes}</ul>"),
             html.escape(", ".join(dict.fromkeys(finding.unmoved))) or "none",
-            html.escape(str(finding.attack)),
+            f"{finding.possible:,}" if finding.possible else "not counted",
             f"<ul>{faults}</ul>" if faults else "ready",
         )
         rows.append(
@@ -773,12 +504,9 @@ def write_page(
         f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; "
         f"{sum(bool(f.faults) for f in findings)} with "
         f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
-        "<p>What can be checked without a server can also be tried without one. The last but one "
-        "column says how many "
-        f"slow hashes, of {SECONDS_PER_TRY * 1000:.0f} ms each, an attack with what a student has "
-        "needed to find the "
-        "answer. Not found means not found by this attack: somebody may have a better idea."
-        f"{f' {share}.' if share else ''}</p>"
+        "<p>The last but one column counts the answers that a question allows, where they are few "
+        "words, an order or small whole numbers: a program tries them all. A program that builds "
+        "formulas finds more.</p>"
         f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"

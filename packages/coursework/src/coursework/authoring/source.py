@@ -19,10 +19,9 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NamedTuple, TypedDict
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import coursework
-from coursework.checking import fields
 from coursework.checking.plugins import folders_of, packages
 from coursework.checking.question import Variant
 from coursework.checking.variants import Given, image, names_of_variants, packed, shown
@@ -47,11 +46,6 @@ MOST_PLACES = 10
 PI_ROUNDED = re.compile(r"(?<![\w.])3\.14(?:1(?:5(?:9\d{0,9})?|6)?)?(?![\w.])")
 #: Characters of a parameter up to which it is a word, and not a part of the text.
 LONGEST_WORD = 40
-#: The file beside the sources in which the selftest writes after how many tries
-#: each question was guessed, if it was.
-MEASURED = "strengths.json"
-FORMAT_OF_MEASURED = 2
-
 SOLUTION = re.compile(
     r"^[ \t]*### BEGIN SOLUTION[ \t]*\n(.*?)^[ \t]*### END SOLUTION[ \t]*\n?", re.M | re.S
 )
@@ -99,17 +93,6 @@ class Source(NamedTuple):
     asks_who: bool
 
 
-class Measured(TypedDict):
-    """What was measured of a question: after how many tries the attack guessed
-    each variant, if it did, and how.
-    """
-
-    worth: float
-    digest: str
-    tries: list[int | None]
-    way: str
-
-
 def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     """The notebooks with solutions of a folder, or those of them that are named.
 
@@ -134,7 +117,7 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
 
 @functools.cache
 def digest_of_code() -> str:
-    """A text that follows from the code that reads, attacks and seals
+    """A text that follows from the code that reads and seals
     questions, ours and that of plug-ins.
     """
     digest = hashlib.sha256()
@@ -155,112 +138,6 @@ def names_asked(path: str | Path) -> dict[str, str]:
     # Not with nbformat, which takes a second to be imported, and this is looked up at each start.
     cells = json.loads(Path(path).read_text("utf8"))["cells"]
     return checked_in("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
-
-
-def measured_strengths(sources: str | Path) -> dict[str, int]:
-    """After how many tries the attack guessed each question in its weakest
-    variant, by name: 0 where it did not.
-
-    A question that is not named there has not been attacked yet.
-
-    Raises
-    ------
-    AuthorError
-        The file is of another version of coursework.
-    """
-    measured = measured_questions(sources)
-    return {
-        name: min((count for count in one["tries"] if count), default=0)
-        for name, one in measured.items()
-    }
-
-
-def share_beyond(measured: Mapping[str, Measured]) -> float:
-    """The share of the points that the attack has not found, of what was
-    measured: every variant counts alike.
-    """
-    points = sum(one["worth"] for one in measured.values())
-    beyond = 0.0
-    for one in measured.values():
-        tries = [count for count in one["tries"] if count is not None]
-        beyond += one["worth"] * (tries.count(0) / len(tries) if tries else 1)
-    return beyond / max(1, points)
-
-
-def said_beyond(measured: Mapping[str, Measured]) -> str:
-    """That share in words, for authors and for instructors; and how many
-    variants it is of, where there are any.
-
-    >>> arm, plain = {"worth": 1, "tries": [0, 20, None]}, {"worth": 2, "tries": [0]}
-    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[:62]
-    '83% of 3 points are behind more than 65,536 tries of a script,'
-    >>> said_beyond({"levers/arm": arm, "levers/plain": plain})[63:]
-    'as far as 3 of 4 variants were attacked'
-    """
-    from .attack import BUDGET  # needed here alone: it brings NumPy
-
-    points = sum(one["worth"] for one in measured.values())
-    tries = [count for one in measured.values() for count in one["tries"]]
-    known = len(tries) - tries.count(None)
-    attacked = (
-        f", over all {known} variants"
-        if known == len(tries)
-        else f", as far as {known} of {len(tries)} variants were attacked"
-    )
-    return (
-        f"{share_beyond(measured):.0%} of {points:g} {'point' if points == 1 else 'points'} are "
-        f"behind more than {BUDGET:,} tries of a "
-        f"script{attacked if any(len(one['tries']) > 1 for one in measured.values()) else ''}"
-    )
-
-
-def said_found(one: Measured) -> str:
-    """What was measured of a question in words, for a table.
-
-    >>> [said_found({"tries": tries}) for tries in ([0, 2000, 31, None], [4], [0])]
-    ['after 31 tries, 2 of 3 variants', 'after 4 tries', 'not found']
-    """
-    tries = [count for count in one["tries"] if count is not None]
-    found = [count for count in tries if count]
-    if not found:
-        return "not found" if tries else "nothing to try"
-    said = f"after {min(found):,} {'try' if min(found) == 1 else 'tries'}"
-    return f"{said}, {len(found)} of {len(tries)} variants" if len(tries) > 1 else said
-
-
-def measured_questions(sources: str | Path) -> dict[str, Measured]:
-    """What was measured of each question by name, as
-    :func:`coursework.authoring.selftest.measured_of` gives it.
-    """
-    file = Path(sources, MEASURED)
-    if not file.is_file():
-        return {}
-    measured = json.loads(file.read_text("utf8"))
-    # Of the first variant alone, by an attack that nobody knows any more.
-    if measured.get("format") == 1:
-        return {
-            name: {"worth": 1, "digest": "", "tries": [count], "way": ""}
-            for name, count in measured["tries"].items()
-        }
-    if measured.get("format") != FORMAT_OF_MEASURED:
-        raise author.AuthorError(
-            f"{file} is of another version of coursework: delete it, and release anew."
-        )
-    return fields.by_name(_measured)(measured["questions"], str(file))
-
-
-def _measured(found: object, where: str) -> Measured:
-    about = fields.Fields(found, where)
-    tries = about.get(
-        "tries",
-        fields.many(lambda count, where: None if count is None else fields.whole(count, where)),
-    )
-    return {
-        "worth": about.get("worth", fields.number),
-        "digest": about.get("digest", fields.text),
-        "tries": list(tries),
-        "way": about.get("way", fields.text),
-    }
 
 
 def read_source(

@@ -12,7 +12,7 @@ from ..checking.variants import text_of as whole_text
 from .author import AuthoredQuestion, AuthorError, to_page
 from .course import Course
 from .release import shows_variants
-from .selftest import measured_of, try_question, weakest_of, write_page
+from .selftest import try_question, write_page
 from .source import Source, answered_in, read_source
 
 
@@ -48,12 +48,9 @@ def trial(course: Course, name: str, page: str | Path) -> str | Path:
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
-    measured = measured_of(source, course, [question.name for question in chosen])
-    findings = [
-        try_question(question, found=weakest_of(measured[question.name])) for question in chosen
-    ]
+    findings = [try_question(question) for question in chosen]
     Path(page).parent.mkdir(parents=True, exist_ok=True)
-    Path(page).write_text(_with_mathematics(write_page(findings, None, texts, measured)), "utf8")
+    Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
     return page
 
 

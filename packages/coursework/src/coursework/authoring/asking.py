@@ -1,0 +1,78 @@
+"""The questions of an exercise notebook as plain text, and answers to them read back in.
+
+So an instructor can find out what a language model of today makes of them: paste the text, save the
+reply, and grade the notebook that comes of it as any other, in the sandbox.
+"""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+from .author import AuthorError
+
+ASK = (
+    "Answer every question of this notebook. For each one reply with a fenced block of Python that "
+    "assigns the answer to the name that the question gives."
+)
+PICTURE = re.compile(r"!\[([^\]]*)\]\([^)]*\)|<img[^>]*alt=\"([^\"]*)\"[^>]*>")
+BLOCK = re.compile(r"^```[ \t]*(?:python|py)?[ \t]*\n(.*?)^```", re.M | re.S | re.I)
+BLANK = re.compile(r"^(\w+) = \.\.\.|^def (\w+)", re.M)
+
+
+def as_text(path: str | Path) -> str:
+    """Give what stands in a notebook: its text, its code and what its questions print.
+
+    Of a picture its text alternative is given. A variant is everybody's, as it was released.
+    """
+    parts = [ASK]
+    for cell in _read(path)["cells"]:
+        source = "".join(cell["source"])
+        if cell["cell_type"] == "markdown":
+            parts.append(_without_pictures(source))
+        elif not source.lstrip().startswith("check("):
+            parts.append(f"```python\n{source}\n```")
+            for output in cell["outputs"]:
+                data = output.get("data", {})
+                shown = data.get("text/markdown", data.get("text/plain", output.get("text", "")))
+                parts.append(_without_pictures("".join(shown)))
+    return "\n\n".join(part for part in parts if part.strip()) + "\n"
+
+
+def with_answers(path: str | Path, reply: str, target: str | Path) -> list[str]:
+    """Write a notebook with the answers of a reply, and give the names that have one.
+
+    Raises
+    ------
+    AuthorError
+        No block of code in the reply gives an answer.
+    """
+    notebook, answered = _read(path), []
+    blocks = BLOCK.findall(reply)
+    for cell in notebook["cells"]:
+        blank = BLANK.search("".join(cell["source"]))
+        if not (blank and cell["metadata"].get("nbgrader", {}).get("solution")):
+            continue
+        name = blank[1] or blank[2]
+        gives = re.compile(rf"^(?:{name}\s*=|def {name}\b)", re.M)
+        block = next((block for block in reversed(blocks) if gives.search(block)), None)
+        if block is not None:
+            cell["source"], cell["outputs"] = block, []
+            answered.append(name)
+    if not answered:
+        raise AuthorError("No block of Python in the reply assigns an answer of this notebook.")
+    Path(target).parent.mkdir(parents=True, exist_ok=True)
+    Path(target).write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", "utf8")
+    return answered
+
+
+def _without_pictures(text: str) -> str:
+    return PICTURE.sub(lambda found: f"[Figure: {found[1] or found[2]}]", text)
+
+
+def _read(path: str | Path) -> dict[str, Any]:
+    try:
+        notebook: dict[str, Any] = json.loads(Path(path).read_text("utf8"))
+    except (OSError, ValueError) as error:
+        raise AuthorError(f"{path} is no notebook that can be read: {error}") from None
+    return notebook

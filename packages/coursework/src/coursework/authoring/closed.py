@@ -1,0 +1,114 @@
+"""Answers that trying finds: how many a question allows whose answer is closed.
+
+What can be checked without a server can be tried without one, at about a hundredth of a second a
+try. Where an answer is one of a few words, an order, or a handful of small whole numbers, trying
+them all finds it. This counts no more than that, so it understates what a script can build: most
+answers are formulas, and a script that knows the subject's formulas finds many of those too.
+"""
+
+import concurrent.futures
+import math
+import os
+from collections.abc import Collection
+from pathlib import Path
+from typing import NamedTuple
+
+from ..checking.kinds import Undecidable
+from ..checking.plugins import kinds, plugins
+from ..checking.reading import canonical, read
+from .author import AuthoredQuestion
+from .course import Course
+from .source import CHAPTERS, notebooks_in, read_source
+
+#: More possibilities than this are not closed: trying them takes more than a quarter of an hour.
+MOST = 2**16
+
+
+class Asked(NamedTuple):
+    """What matters of a question here: its points, its variants, and the possible answers."""
+
+    worth: float
+    variants: int
+    possible: int | None
+
+
+def possible_answers(question: AuthoredQuestion) -> int | None:
+    """How many answers a question allows at most; ``None`` where they are not closed.
+
+    Whole numbers count as closed where all entries are: each may be anything up to the largest.
+    """
+    public = question.public
+    if public.exam or kinds()[public.kind].by_a_person:
+        return None
+    options, length = len(public.options), public.length or 0
+    of_plugins = {
+        kind: count for plugin in plugins() for kind, count in getattr(plugin, "CLOSED", {}).items()
+    }
+    by_kind = {
+        "choice": options,
+        "words": options**length,
+        "truth values": 2**length,
+        "order": math.factorial(options),
+        **of_plugins,
+    }
+    count = by_kind.get(public.kind)
+    if public.kind in ("expression", "vector", "matrix") and not public.symbols:
+        count = _whole_numbers(question)
+    return count if count and count <= MOST else None
+
+
+def _whole_numbers(question: AuthoredQuestion) -> int | None:
+    try:
+        entries = [
+            float(entry)
+            for entry in canonical(question.public, read(question.public, question.plain))
+        ]
+    except (Undecidable, TypeError):
+        return None
+    if any(abs(entry - round(entry)) > 1e-9 for entry in entries):
+        return None
+    largest = max(1, *(abs(round(entry)) for entry in entries))
+    return int((2 * largest + 1) ** len(entries))
+
+
+def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
+    source = read_source(path, edition=course.edition)
+    return {
+        name: Asked(question.worth, question.public.variants, possible_answers(question))
+        for name, question in source.questions.items()
+    }
+
+
+def counted(course: Course, only: Collection[str] = ()) -> list[str]:
+    """Say what trying finds of the questions of some notebooks, and what a copy is worth.
+
+    Returns
+    -------
+    list of str
+        A line for each question with a closed answer that is worth more than a point, the points
+        behind closed answers, and the points with one answer for everybody.
+    """
+    paths = notebooks_in(course.sources, only)
+    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
+        found = list(pool.map(_asked_in, paths, [course] * len(paths)))
+    asked = {name: one for some in found for name, one in some.items()}
+    exercises = [one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS]
+    lines = [
+        f"{name}, {one.worth:g} points: one of {one.possible} answers. Trying them all finds it; "
+        "ask for several parts in one answer, for a function, or say exam=True."
+        for name, one in asked.items()
+        if one.possible and one.worth > 1
+    ]
+    closed = sum(one.worth for one in asked.values() if one.possible)
+    points = sum(one.worth for one in asked.values())
+    lines.append(
+        f"{closed:g} of {points:g} points have a closed answer, which trying finds within "
+        f"{MOST:,} tries. A script that builds formulas finds more."
+    )
+    if exercises:
+        fixed = sum(one.worth for one in exercises if one.variants == 1)
+        points = sum(one.worth for one in exercises)
+        lines.append(
+            f"{fixed:g} of {points:g} points in exercise notebooks have one answer for everybody."
+        )
+    return lines

@@ -1,0 +1,190 @@
+"""Whether wrong answers can pass the seals, and whether right ones always do."""
+
+import json
+import random
+from dataclasses import replace
+
+import pytest
+import sympy as sm
+from forms_by_chance import mutant, random_form, roots_for_cosines
+from seed import SEED
+from sympy.core.function import AppliedUndef
+from sympy.physics.mechanics import dynamicsymbols
+from test_release import COURSE
+
+from coursework.authoring import source as sources
+from coursework.authoring.author import question
+from coursework.authoring.forms import flat
+from coursework.checking.evaluate import MP
+from coursework.checking.plain import NotPlain, to_plain
+from coursework.checking.question import Question
+from coursework.checking.reading import calls_for
+from coursework.grading.judging import marking
+from coursework.grading.judging.contract import Asked
+from coursework.grading.record import Answer
+
+NAMES = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
+
+
+def with_formulas(names):
+    for name in names:
+        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
+            if one.public.symbols and not hasattr(one.answer, "to_matrix"):
+                yield one
+
+
+def differs(one, answer):
+    """Whether an answer is another one somewhere in its domain: by
+    SymPy's numbers, at points of its own.
+    """
+    first, second = (
+        [in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer)
+    )
+    chance = random.Random(one.name)
+    limits = one.public.symbols
+    for _ in range(25):
+        point = {
+            sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()
+        }
+        point |= {
+            symbol: point[sm.Symbol(symbol.name)]
+            for symbol in unknown(first)
+            if symbol not in point
+        }
+        for group in one.public.unit:
+            length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
+            point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
+        values = [
+            [sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)
+        ]
+        signs = (1, -1) if one.public.either_sign else (1,)
+        if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
+            return True
+    return False
+
+
+def in_symbols(entry):
+    """An expression with its functions of time, and their derivatives, as
+    the symbols that stand for them.
+    """
+    rates = {rate: sm.Symbol(f"{rate.expr.func.__name__}'") for rate in entry.atoms(sm.Derivative)}
+    entry = entry.xreplace(rates)
+    return entry.xreplace(
+        {part: sm.Symbol(part.func.__name__) for part in entry.atoms(AppliedUndef)}
+    )
+
+
+def unknown(entries):
+    return {symbol for entry in entries for symbol in entry.free_symbols}
+
+
+def accepted(one, answer):
+    try:
+        return one.reply_to(one.to_plain(answer)).outcome == "correct"
+    except NotPlain:
+        return False
+
+
+def test_functions_of_time_are_told_apart():
+    x, dx = dynamicsymbols("x"), dynamicsymbols("x", 1)
+    one = question("trial/rates", "expression", x * dx, symbols={"x": (-2, 2), "x'": (-2, 2)})
+    assert differs(one, x * dx / 2) and differs(one, x * x) and not differs(one, (x + x) * dx / 2)
+
+
+def try_roots(names):
+    tried = 0
+    for one in with_formulas(names):
+        for name, wrong in roots_for_cosines(one.answer):
+            if accepted(one, wrong):
+                assert not differs(one, wrong), f"{one.name} takes {name}"
+            tried += 1
+    return tried
+
+
+@pytest.mark.long
+def test_no_root_passes_for_a_cosine():
+    """These agree where the cosine is
+    positive, and the points were there only.
+    """
+    assert try_roots(["cases-from-practice", "orientation-in-motion"]) >= 10
+
+
+@pytest.mark.long
+def test_no_root_passes_for_a_cosine_in_any_question():
+    assert try_roots(NAMES) >= 150
+
+
+def try_mutants(names, each):
+    tried, passed = 0, []
+    for one in with_formulas(names):
+        chance = random.Random(f"{SEED} {one.name}")
+        for _ in range(each):
+            wrong = mutant(one.answer, chance)
+            tried += 1
+            if accepted(one, wrong) and differs(one, wrong):
+                passed.append((one.name, wrong))
+    assert not passed, f"BOOK_TEST_SEED={SEED}"
+    return tried
+
+
+def test_no_mutant_of_an_answer_passes():
+    assert try_mutants(["simple-orientations", "axis-and-angle"], 12) >= 24
+
+
+@pytest.mark.long
+def test_no_mutant_of_any_answer_passes():
+    assert try_mutants(NAMES, 102) >= 6600
+
+
+def try_forms(names, number):
+    """Check right answers in many forms, and mark them at the points of a
+    secret too; gives how many were tried.
+    """
+    tried, secretly = 0, 0
+    for name in names:
+        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
+            chance = random.Random(f"{SEED} {one.name}")
+            known = marking.contract_of(one, f"a secret of {SEED}".encode())
+            secretly += known.secret is not None
+            for _ in range(number if not hasattr(one.answer, "to_matrix") else 1):
+                form = random_form(one.public, one.answer, chance)
+                plain = one.to_plain(form)
+                reply = one.reply_to(plain)
+                assert reply.outcome == "correct", (one.name, form, reply, f"BOOK_TEST_SEED={SEED}")
+                said = Answer("recorded", json.loads(json.dumps(plain)))
+                if known.secret and known.secret.calls:
+                    calls = calls_for(known.secret.of(one.public))
+                    said = replace(
+                        said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest}
+                    )
+                found = marking.mark(one.name, Asked(known), said)
+                assert found.points == one.worth, (one.name, form, found, f"BOOK_TEST_SEED={SEED}")
+                tried += 1
+    assert secretly
+    return tried
+
+
+def test_forms_of_right_answers_pass_and_lose_nothing_by_the_secret():
+    assert try_forms(["axis-and-angle"], 4) >= 20
+
+
+@pytest.mark.long
+def test_every_form_of_every_right_answer_passes():
+    assert try_forms(NAMES, 45) >= 6000
+
+
+@pytest.mark.parametrize("salt", range(12))
+def test_every_angle_is_tried_in_all_four_quadrants(salt):
+    from coursework.checking.points import points
+
+    names = "alpha beta gamma psi".split()
+    found = points(Question("expression", f"{salt}", symbols={name: [-3, 3] for name in names}))
+    signs = []
+    for name in names:
+        quadrants = {(MP.sin(point[name]) > 0, MP.cos(point[name]) > 0) for point in found}
+        assert len(quadrants) == 4
+        for function in (MP.sin, MP.cos):
+            column = tuple(function(point[name]) > 0 for point in found)
+            signs.append(tuple(sign == column[0] for sign in column))
+    # So the root of a product of two squares does not pass for the product either.
+    assert len(set(signs)) == len(signs)
