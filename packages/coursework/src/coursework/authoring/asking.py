@@ -4,10 +4,11 @@ So an instructor can find out what a language model of today makes of them: past
 reply, and grade the notebook that comes of it as any other, in the sandbox.
 """
 
-import json
 import re
 from pathlib import Path
-from typing import Any
+
+import nbformat
+from nbformat import NotebookNode
 
 from .author import AuthorError
 
@@ -27,15 +28,14 @@ def as_text(path: str | Path) -> str:
     """
     parts = [ASK]
     for cell in _read(path)["cells"]:
-        source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
-            parts.append(_without_pictures(source))
-        elif not source.lstrip().startswith("check("):
-            parts.append(f"```python\n{source}\n```")
+            parts.append(_without_pictures(cell["source"]))
+        elif not cell["source"].lstrip().startswith("check("):
+            parts.append(f"```python\n{cell['source']}\n```")
             for output in cell["outputs"]:
                 data = output.get("data", {})
                 shown = data.get("text/markdown", data.get("text/plain", output.get("text", "")))
-                parts.append(_without_pictures("".join(shown)))
+                parts.append(_without_pictures(shown))
     return "\n\n".join(part for part in parts if part.strip()) + "\n"
 
 
@@ -50,7 +50,7 @@ def with_answers(path: str | Path, reply: str, target: str | Path) -> list[str]:
     notebook, answered = _read(path), []
     blocks = BLOCK.findall(reply)
     for cell in notebook["cells"]:
-        blank = BLANK.search("".join(cell["source"]))
+        blank = BLANK.search(cell["source"])
         if not (blank and cell["metadata"].get("nbgrader", {}).get("solution")):
             continue
         name = blank[1] or blank[2]
@@ -62,7 +62,7 @@ def with_answers(path: str | Path, reply: str, target: str | Path) -> list[str]:
     if not answered:
         raise AuthorError("No block of Python in the reply assigns an answer of this notebook.")
     Path(target).parent.mkdir(parents=True, exist_ok=True)
-    Path(target).write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", "utf8")
+    nbformat.write(notebook, target)
     return answered
 
 
@@ -70,9 +70,9 @@ def _without_pictures(text: str) -> str:
     return PICTURE.sub(lambda found: f"[Figure: {found[1] or found[2]}]", text)
 
 
-def _read(path: str | Path) -> dict[str, Any]:
+def _read(path: str | Path) -> NotebookNode:
     try:
-        notebook: dict[str, Any] = json.loads(Path(path).read_text("utf8"))
-    except (OSError, ValueError) as error:
+        notebook: NotebookNode = nbformat.read(path, as_version=4)
+    except (OSError, ValueError) as error:  # nbformat's own errors are of values
         raise AuthorError(f"{path} is no notebook that can be read: {error}") from None
     return notebook
