@@ -7,6 +7,8 @@ answers are formulas, and a script that knows the subject's formulas finds many 
 """
 
 import concurrent.futures
+import contextlib
+import io
 import math
 import os
 from collections.abc import Collection
@@ -72,7 +74,9 @@ def _whole_numbers(question: AuthoredQuestion) -> int | None:
 
 
 def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
-    source = read_source(path, edition=course.edition)
+    # What a solution prints is for its author.
+    with contextlib.redirect_stdout(io.StringIO()):
+        source = read_source(path, edition=course.edition)
     return {
         name: Asked(question.worth, question.public.variants, possible_answers(question))
         for name, question in source.questions.items()
