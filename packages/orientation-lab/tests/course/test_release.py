@@ -270,8 +270,7 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
 
 @needs_solutions
 def test_nothing_is_committed_that_has_no_source():
-    # And what moved.
-    assert sorted({path.stem for path in COURSE.sealed.glob("*.json")} - {"moved"}) == COMMITTED
+    assert sorted(path.stem for path in COURSE.sealed.glob("*.json")) == COMMITTED
     assert sorted(path.stem for path in COURSE.exercises.glob("*.ipynb")) == sorted(
         {*COMMITTED} - {release.CHAPTERS}
     )
