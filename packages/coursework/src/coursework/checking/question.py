@@ -29,8 +29,7 @@ from .fields import (
     written,
 )
 
-#: Of the files with sealed questions. Format 3, which called a mistake by its
-#: place in a catalogue, is read, too.
+#: Of the files with sealed questions.
 FORMAT = 4
 #: What an answer that a question knows may be, by its number in a locker.
 OUTCOMES = ("correct", "mistake")
