@@ -273,7 +273,7 @@ def jacobian(
 
     >>> from orientation import body_fixed_from_dcm, dcm_from_body_fixed, jacobian
     >>> D_C_A = dcm_from_body_fixed((0.1, 0.2, 0.3), 'zxy')
-    >>> jacobian(body_fixed_from_dcm, D_C_A, 'zxy')[:, 1].round(12).tolist()
+    >>> (jacobian(body_fixed_from_dcm, D_C_A, 'zxy')[:, 1].round(12) + 0.0).tolist()
     [0.0, 0.0, 1.0]
 
     Notes

@@ -121,7 +121,7 @@ def check_dcm(dcm: Values) -> None:
     ------
     ValueError
         With the worst entry and its likely cause, if a shape is wrong, an entry is not finite, the
-        matrix is not orthogonal to ``1e-9``, or it is left-handed.
+        matrix is not orthogonal to ``1e-9`` (``4e-6`` in single precision), or it is left-handed.
 
     Examples
     --------
@@ -291,6 +291,10 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     if numpy.any(excess <= 0):
         worst = numpy.unravel_index(numpy.argmin(excess), gap.shape)
         where = f" (item {[int(k) for k in worst]})" if worst else ""
+        if scales[worst][0] == 0:
+            raise ValueError(
+                f"every entry of matrix{where} is zero, so all orientations are equally near to it"
+            )
         raise ValueError(
             f"several direction cosine matrices are equally near to matrix{where}: its singular "
             f"values are {', '.join(f'{scale:z.6f}' for scale in scales[worst])} and its "

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from .axis_angle import dcm_from_axis_angle
 from .comparison import same_orientation
 from .direction_cosines import check_dcm, simple_dcm
-from .euler_angles import dcm_from_body_fixed
+from .euler_angles import dcm_from_body_fixed, dcm_from_space_fixed
 from .numbers_and_symbols import is_symbolic, number_array, symbol_components
 from .quaternions import dcm_from_quaternion
+from .rotation_vector import dcm_from_rotation_vector
 
 if TYPE_CHECKING:
     import sympy
     from sympy.physics.mechanics import ReferenceFrame
 
-    from ._types import Array, Matrix, Values
+    from ._types import Array, Matrix, Symbolic, Values
 
 
 #: One angle, or those of a batch.
@@ -42,6 +43,13 @@ class _AxisTurn(NamedTuple):
     def back(self) -> _AxisTurn:
         return self._replace(angle=-self.angle)
 
+    def subs(self, values: Mapping[Symbolic, object]) -> _AxisTurn:
+        if not self.is_symbolic():
+            return self
+        import sympy
+
+        return self._replace(angle=sympy.sympify(self.angle).subs(values))
+
     def described(self) -> str:
         return rf"{self.axis},\ {_latex(self.angle)}"
 
@@ -66,6 +74,13 @@ class _MatrixTurn(NamedTuple):
     def back(self) -> _MatrixTurn:
         transposed = self.matrix.T if self.is_symbolic() else self.matrix.swapaxes(-1, -2)
         return _MatrixTurn(transposed, self.words + r",\ \text{back}")
+
+    def subs(self, values: Mapping[Symbolic, object]) -> _MatrixTurn:
+        if not self.is_symbolic():
+            return self
+        import sympy
+
+        return self._replace(matrix=sympy.Matrix(self.matrix).subs(values))
 
     def described(self) -> str:
         return self.words
@@ -112,6 +127,13 @@ class Frames:
 
     def __init__(self) -> None:
         self._edges: tuple[_Edge, ...] = ()
+        # The edges at each frame, walked away from it: they make a path quick to find.
+        self._leaving: dict[str, tuple[_Edge, ...]] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of all frames, in the order in which they came."""
+        return tuple(self._leaving)
 
     def orient_axis(self, frame: str, reference: str, axis: str | Values, angle: Values) -> Frames:
         r"""Return frames with ``frame`` turned in ``reference`` about one axis through ``angle``.
@@ -175,9 +197,60 @@ class Frames:
             frame, reference, _MatrixTurn(dcm_from_quaternion(quaternion), r"\text{quaternion}")
         )
 
+    def orient_space_fixed(
+        self, frame: str, reference: str, angles: Values, sequence: str
+    ) -> Frames:
+        """Return frames with ``frame`` turned in ``reference`` about axes that stay.
+
+        Parameters are those of :func:`orientation.dcm_from_space_fixed`.
+        """
+        dcm_from_space_fixed(angles, sequence)  # refuses what is not valid, before it is stored
+        own = _own(angles, (3,), "angles", is_symbolic(angles))
+        # Turns about axes that stay are body fixed turns in the other order.
+        turns = zip(sequence[::-1], own[::-1])
+        return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in turns))
+
+    def orient_rotation_vector(self, frame: str, reference: str, vector: Values) -> Frames:
+        """Return frames with ``frame`` turned in ``reference`` by a rotation vector, in radians."""
+        words = r"\text{rotation vector}"
+        return self._with(frame, reference, _MatrixTurn(dcm_from_rotation_vector(vector), words))
+
+    def without(self, frame: str, reference: str) -> Frames:
+        """Return frames without the orientation that connects these two, to give another one.
+
+        Raises
+        ------
+        ValueError
+            If no single orientation connects them.
+        """
+        edges = self._edges_between(frame, reference)
+        if len(edges) != 1:
+            raise ValueError(
+                f"no orientation connects {frame} and {reference} directly: the path is "
+                f"{self.path(frame, reference)}"
+            )
+        return self._of(
+            edge for edge in self._edges if {edge.frame, edge.reference} != {frame, reference}
+        )
+
+    def subs(self, values: Mapping[Symbolic, object]) -> Frames:
+        """Return frames with values in place of symbols, as SymPy's ``subs`` puts them in."""
+        return self._of(
+            edge._replace(turns=tuple(turn.subs(values) for turn in edge.turns))
+            for edge in self._edges
+        )
+
+    def _of(self, edges: Iterable[_Edge]) -> Frames:
+        new = Frames()
+        new._edges = tuple(edges)
+        for edge in new._edges:
+            for step in (edge, edge.back()):
+                new._leaving[step.reference] = (*new._leaving.get(step.reference, ()), step)
+        return new
+
     def _with(self, frame: str, reference: str, *turns: _Turn) -> Frames:
         for name in (frame, reference):
-            if not isinstance(name, str) or not name.isidentifier():
+            if not isinstance(name, str) or not name.strip():
                 raise ValueError(f"a frame is named by a string such as 'A', not {name!r}")
         if frame == reference:
             raise ValueError(f"{frame} cannot be oriented with respect to itself")
@@ -186,6 +259,9 @@ class Frames:
         if edges is None:
             new = Frames()
             new._edges = (*self._edges, edge)
+            new._leaving = dict(self._leaving)
+            for step in (edge, edge.back()):
+                new._leaving[step.reference] = (*new._leaving.get(step.reference, ()), step)
             return new
         if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
@@ -202,23 +278,19 @@ class Frames:
         reached: dict[str, tuple[_Edge, ...]] = {source: ()}
         waiting = [source]
         for name in waiting:
-            for edge in self._edges:
-                step = (
-                    edge if edge.reference == name else edge.back() if edge.frame == name else None
-                )
-                if step and step.frame not in reached:
+            for step in self._leaving.get(name, ()):
+                if step.frame not in reached:
                     reached[step.frame] = (*reached[name], step)
                     waiting.append(step.frame)
         return reached.get(target)
 
     def _edges_between(self, target: str, source: str) -> tuple[_Edge, ...]:
-        known = {name for edge in self._edges for name in (edge.frame, edge.reference)}
         for name in (target, source):
-            if name not in known:
-                raise ValueError(
-                    f"there is no frame {name!r} here; there are "
-                    f"{', '.join(sorted(known)) or 'none'}"
+            if name not in self._leaving:
+                known = (
+                    f"it has {', '.join(sorted(self.names))}" if self.names else "it is still empty"
                 )
+                raise ValueError(f"no frame named {name!r} in this Frames(): {known}")
         edges = self._walk(target, source)
         if edges is None:
             raise ValueError(f"no path of orientations connects {target} and {source}")
@@ -245,6 +317,51 @@ class Frames:
         """
         turns = [turn for edge in self._edges_between(target, source) for turn in edge.turns]
         return _product(turns or [_AxisTurn("x", self._zero())])
+
+    def express(self, vector: Values, target: str, source: str) -> Array | Matrix:
+        r"""Components of a vector along ``target``, from those along ``source``.
+
+        .. math::
+
+           [\mathbf{v}]_A = {}^A\mathbf{C}^N\,[\mathbf{v}]_N
+
+        Parameters
+        ----------
+        vector : SymPy expressions, or array of shape ``(3,)`` or ``(..., 3)``
+        target, source : str
+
+        Returns
+        -------
+        SymPy column of three, or array of shape ``(..., 3)``
+
+        Raises
+        ------
+        ValueError
+            As :meth:`dcm`.
+        """
+        dcm = self.dcm(target, source)
+        if is_symbolic(vector) or is_symbolic(dcm):
+            import sympy
+
+            return sympy.Matrix(dcm) * sympy.Matrix(symbol_components(vector, (3,), "vector"))
+        components: Array = (dcm @ number_array(vector, (3,), "vector")[..., None])[..., 0]
+        return components
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the same frames are connected in the same pairs by the same orientations."""
+        if not isinstance(other, Frames):
+            return NotImplemented
+        pairs, others = (
+            {frozenset((edge.frame, edge.reference)) for edge in frames._edges}
+            for frames in (self, other)
+        )
+        return pairs == others and all(
+            _same(edge.turns, other._edges_between(edge.frame, edge.reference)[0].turns)
+            for edge in self._edges
+        )
+
+    # Equality is by numbers that may differ by rounding, so there is no hash that agrees with it.
+    __hash__ = None  # type: ignore[assignment]
 
     def _zero(self) -> Angle:
         """The angle of a frame in itself: of the kind that these frames hold."""
@@ -386,7 +503,10 @@ def _latex(value: Angle) -> str:
 
 
 def _symbol(target: str, source: str) -> str:
-    target, source = (name.replace("_", r"\_") for name in (target, source))
+    target, source = (
+        name.replace("_", r"\_") if name.isidentifier() else rf"\text{{{name}}}"
+        for name in (target, source)
+    )
     return rf"{{}}^{{{target}}}\mathbf{{C}}^{{{source}}}"
 
 

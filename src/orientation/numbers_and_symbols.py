@@ -43,6 +43,8 @@ Nested: TypeAlias = "float | tuple[Nested, ...]"
 
 #: Largest departure from orthogonality, or from unit length, that still counts as rounding.
 TOLERANCE = 1e-9
+#: The same for numbers of a narrower type, in units of their last place.
+ROUNDINGS = 32
 
 #: Items of a batch that are worked on together, so that their components stay in the cache.
 BLOCK = 8192
@@ -223,12 +225,35 @@ def _evaluate_what_is_read(
             return value.slopes_of(formula, shape, arguments, guard)
     single = [one_item(value, item, name) for name, value, item in arguments]
     given = [entries for entries in single if entries is not None]
+    kind = _narrow_type(arguments, guard) if guard else None
+    tolerance = TOLERANCE
+    if kind:
+        from numpy import finfo
+
+        tolerance = ROUNDINGS * float(finfo(kind).eps)
+    result: Scalars
     if len(given) == len(single):
-        return _evaluate_item(
-            formula, shape, [entry for entries in given for entry in entries], guard
-        )
-    arrays = [number_array(value, item, name) for name, value, item in arguments]
-    return _evaluate_batch(formula, shape, arrays, arguments, guard)
+        entries = [entry for entries in given for entry in entries]
+        result = _evaluate_item(formula, shape, entries, guard, tolerance)
+    else:
+        arrays = [number_array(value, item, name) for name, value, item in arguments]
+        result = _evaluate_batch(formula, shape, arrays, arguments, guard, tolerance)
+    # What passed as valid to a few digits only is valid to no more, and its type says so.
+    return result.astype(kind) if kind and hasattr(result, "astype") else result
+
+
+def _narrow_type(arguments: Sequence[Argument], guard: Guard) -> str | None:
+    """The narrowest type, of NumPy or another library, in which something comes that is guarded.
+
+    What is not guarded is taken as exact, however few digits it has.
+    """
+    names: list[str] = []
+    size = 0
+    for _, value, item in arguments:
+        if guard.size is None or size < guard.size:
+            names.append(str(getattr(value, "dtype", "")).rpartition(".")[2])
+        size += math.prod(item)
+    return next((kind for kind in ("float16", "float32") if kind in names), None)
 
 
 def _evaluate_symbols(
@@ -257,11 +282,15 @@ def _guard_exact_numbers(components: Sequence[Expression], guard: Guard) -> None
 
 
 def _evaluate_item(
-    formula: NumberFormula, shape: tuple[int, ...], components: Sequence[float], guard: Guard | None
+    formula: NumberFormula,
+    shape: tuple[int, ...],
+    components: Sequence[float],
+    guard: Guard | None,
+    tolerance: float = TOLERANCE,
 ) -> Scalars:
     if guard:
         looked_at = components[: guard.size]
-        if not guard.excess(NUMBERS, *looked_at) <= TOLERANCE:
+        if not guard.excess(NUMBERS, *looked_at) <= tolerance:
             guard.explain([float(entry) for entry in looked_at], "")
     result = formula(NUMBERS, *components)
     if not shape:
@@ -314,6 +343,7 @@ def _evaluate_batch(
     arrays: list[Array],
     arguments: Sequence[Argument],
     guard: Guard | None,
+    tolerance: float,
 ) -> Array:
     import numpy
 
@@ -327,7 +357,7 @@ def _evaluate_batch(
             for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
         ]
         if guard:
-            demand(guard, components, batch, start)
+            demand(guard, components, batch, start, tolerance)
         block = result[start : start + BLOCK]
         # Written one after another, and turned around at once.
         rows = numpy.empty(block.shape[::-1])
@@ -339,14 +369,18 @@ def _evaluate_batch(
 
 
 def demand(
-    guard: Guard, components: Sequence[Array], batch: tuple[int, ...], start: int = 0
+    guard: Guard,
+    components: Sequence[Array],
+    batch: tuple[int, ...],
+    start: int = 0,
+    tolerance: float = TOLERANCE,
 ) -> None:
     """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
     import numpy
 
     with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
         size = guard.excess(array_functions(), *components[: guard.size])
-    if not (size <= TOLERANCE).all():
+    if not (size <= tolerance).all():
         worst = int(numpy.argmax(size))
         index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
         where = f" (item {index})" if batch else ""
@@ -417,6 +451,10 @@ def _tuples(value: object, name: str, whole: object) -> Nested:
         value = _floats(_listed(value), name)
     elif hasattr(value, "tolist"):  # an array, or a number of NumPy
         value = _unmasked(value).tolist()
+    elif hasattr(value, "__array__"):  # a table of another library
+        from numpy import asarray
+
+        value = asarray(value).tolist()
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return tuple(_tuples(entry, name, whole) for entry in value)
     if not isinstance(value, numbers.Real) or isinstance(value, bool):

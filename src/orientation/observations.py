@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Sine of the angle below which two directions count as one.
 PARALLEL = 1e-6
+#: Share of the largest singular value below which another one is rounding.
+ROUNDING = 1e-13
 
 
 def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
@@ -152,10 +154,12 @@ def dcm_from_directions(
 
     observed, reference, weights = _weighted(observed, reference, deviations)
     fitted, scales, gap = nearest_by_scales((weights * observed).swapaxes(-1, -2) @ reference)
-    # How far the least of the three turns would have to be wrong before
-    # another orientation fits as well.
-    margin = gap / scales[..., 0]
-    if not numpy.all(margin > PARALLEL):
+    # How far the least of the three turns would have to be wrong before another orientation fits as
+    # well, as a share of what these weights allow: beside a star tracker, a magnetometer counts for
+    # a millionth, and fixes the turn around the star all the same.
+    allowed = weights.sum() - weights.max()
+    margin = gap / max(allowed, numpy.finfo(float).tiny)
+    if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):
         raise ValueError(
             f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie "
             "along one line, or observed and reference are mirror images of each other. "

@@ -90,8 +90,9 @@ def dcm_from_quaternion(quaternion: Values) -> Array | Matrix:
     Raises
     ------
     ValueError
-        If numbers are not of unit length to ``1e-9``: the matrix would be :math:`|q|^2` times an
-        orthogonal one. Also if a shape is wrong or a number is not finite.
+        If numbers are not of unit length to ``1e-9`` (``4e-6`` in single precision): the matrix
+        would be :math:`|q|^2` times an orthogonal one. Also if a shape is wrong or a number is not
+        finite.
 
     Examples
     --------

@@ -206,7 +206,6 @@ def test_a_scaled_matrix_gives_its_orientation():
     [
         np.diag((1.0, 1.0, -1.0)),
         -np.eye(3),
-        np.zeros((3, 3)),
         np.ones((3, 3)),
         np.diag((1.0, 0.0, 0.0)),
     ],

@@ -651,12 +651,6 @@ def test_which_of_two_is_no_orientation_is_told(function, good, said):
             function(*(one[1] for one in pair))
 
 
-def test_single_precision_is_rounding_and_is_told_as_such():
-    with pytest.raises(ValueError, match="Were its entries rounded or measured"):
-        check_dcm(composed((0.3, 0.4, 0.5), "zxy").astype(np.float32))
-    check_dcm(nearest_dcm(composed((0.3, 0.4, 0.5), "zxy").astype(np.float32)).dcm)
-
-
 def test_symbolic_matrices_that_are_no_orientation():
     with pytest.raises(ValueError, match="dcm at random values of its symbols is not orthogonal"):
         check_dcm(composed(SYMBOLS, "zxy") + sm.eye(3))

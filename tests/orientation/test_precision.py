@@ -1,0 +1,86 @@
+"""Arrays of narrower types, tables of other libraries, and numbers at the edge of their range."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import orientation as o
+
+DCM = o.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
+
+
+class Table:
+    """As a DataFrame: it has a shape, and becomes an array when it is asked to."""
+
+    def __init__(self, values):
+        self.values = np.asarray(values, dtype=float)
+        self.shape, self.ndim = self.values.shape, self.values.ndim
+
+    def __array__(self, dtype=None, copy=None):
+        return self.values
+
+
+@pytest.mark.parametrize("batch", [(), (4,)])
+def test_single_precision_stays_itself_and_is_accepted(batch):
+    """Rotations from torch, glTF and ROS are float32, and were refused at 1e-9."""
+    dcm = np.broadcast_to(DCM, (*batch, 3, 3)).astype(np.float32)
+    quaternion = o.quaternion_from_dcm(dcm)
+    back = o.dcm_from_quaternion(quaternion)
+    assert quaternion.dtype == back.dtype == np.float32
+    np.testing.assert_allclose(back, dcm, atol=3e-7)
+    angles = o.body_fixed_from_dcm(back, "zxy")
+    np.testing.assert_allclose(angles, np.broadcast_to((0.1, 0.2, 0.3), angles.shape), atol=1e-6)
+
+
+def test_random_orientations_survive_single_precision():
+    dcms = o.random_orientations(2000, np.random.default_rng(8)).astype(np.float32)
+    o.check_dcm(dcms)
+    o.check_dcm(o.dcm_from_quaternion(o.quaternion_from_dcm(dcms)))
+
+
+def test_single_precision_is_held_to_its_own_digits():
+    with pytest.raises(ValueError, match="not orthogonal: row . has length 1.0000100"):
+        o.check_dcm((DCM * 1.00001).astype(np.float32))
+    # Widened, they claim digits that they do not have.
+    with pytest.raises(ValueError, match="Were its entries rounded or measured"):
+        o.check_dcm(DCM.astype(np.float32).astype(float))
+    o.check_dcm(o.nearest_dcm(DCM.astype(np.float32)).dcm)
+
+
+def test_tables_are_read_as_arrays_are():
+    np.testing.assert_array_equal(o.quaternion_from_dcm(Table(DCM)), o.quaternion_from_dcm(DCM))
+    angles = np.array([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]])
+    np.testing.assert_array_equal(
+        o.dcm_from_body_fixed(Table(angles), "zxy"), o.dcm_from_body_fixed(angles, "zxy")
+    )
+
+
+@pytest.mark.parametrize(
+    "conversion, vector",
+    [
+        (o.dcm_from_rodrigues, (1e200, 0, 0)),
+        (o.dcm_from_rodrigues, (3e160, -4e160, 1.0)),
+        (o.dcm_from_rotation_vector, (0, 1e160, 1e160)),
+    ],
+)
+def test_a_batch_gives_what_one_item_gives(conversion, vector):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        np.testing.assert_allclose(conversion([vector] * 2)[1], conversion(vector), atol=1e-12)
+
+
+def test_a_matrix_of_zeros_is_called_one():
+    with pytest.raises(ValueError, match="every entry of matrix is zero"):
+        o.nearest_dcm(np.zeros((3, 3)))
+
+
+def test_a_star_tracker_and_a_magnetometer_fix_an_orientation():
+    """Weights in the ratio of two millions, which is no reason to refuse."""
+    dcm = o.dcm_from_body_fixed((0.3, -1.1, 2.0), "zxy")
+    reference = np.array([[1, 0, 0], [0.2, 0.9, 0.3]])
+    fitted = o.dcm_from_directions(reference @ dcm.T, reference, [2.4e-5, 0.035])
+    assert o.angle_between(fitted, dcm) < 1e-14
+    with pytest.raises(ValueError, match="they lie along one line"):
+        along = np.array([[1, 0, 0], [1, 1e-9, 0]])
+        o.dcm_from_directions(along @ dcm.T, along, [2.4e-5, 0.035])
