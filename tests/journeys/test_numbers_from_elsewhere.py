@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from places import REPOSITORY
 
 
 def explained(*arguments):
@@ -86,3 +87,52 @@ def test_one_special_pose_decides_nothing():
         "array([ 9.91411844e-01,  1.04139110e-04, -1.30774311e-01,  7.89487983e-04])",
     )
     assert code == 2 and "cannot decide" in answer
+
+
+def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
+    code, answer = explained(
+        "w 0.7304\nx 0.3604\ny 0.2402\nz 0.5284", "0.3604 0.2402 0.5284 0.7304"
+    )
+    assert code == 1 and "scalar part stands last" in answer
+    code, answer = explained("qw: 0.782240  qx: 0.589819  qy: 0.199939  qz: 0.000000",
+                             "qw: 0.000000  qx: 0.782240  qy: 0.589819  qz: 0.199939")  # fmt: skip
+    assert code == 2 and "has length 0.999881: it was taken for one of length 1" in answer
+
+
+def bench(*arguments):
+    done = subprocess.run(
+        [sys.executable, "-m", "orientation_workbench", "recording", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+    )
+    return done.returncode, done.stdout + done.stderr
+
+
+#: A trajectory as TUM's benchmark prints it: positions and quaternions, and no instrument.
+TUM = "\n".join(
+    f"{1305031102.1758 + 0.01 * k:.4f} {1.3405 + 0.01 * k:.4f} 0.6266 1.6575 0.6574 0.6126 -0.2949 "
+    "-0.3248"
+    for k in range(60)
+)
+
+
+def test_a_trajectory_is_taken_for_no_instrument_and_the_answer_to_the_question_is_heard(tmp_path):
+    file = tmp_path / "groundtruth.txt"
+    file.write_text(TUM)
+    code, answer = bench(file, "--quick")
+    assert code == 3 and "which columns are an instrument's" in answer and "--columns" in answer
+    assert "1.3405 0.6266 1.6575" in answer  # its first rows are shown
+    code, answer = bench(file, "--quick", "--columns", "time=1 gyroscope=2-6")
+    assert code == 3 and "a vector has three" in answer
+
+
+@pytest.mark.long
+def test_of_the_public_disagreements_none_is_named_falsely():
+    done = subprocess.run(
+        [sys.executable, "-m", "tools.disagreements"],
+        capture_output=True,
+        text=True,
+        cwd=REPOSITORY,
+    )
+    score = done.stdout.strip().splitlines()[-1]
+    assert "right" in score and "FALSE" not in score and "not read" not in score, done.stdout

@@ -110,6 +110,16 @@ def _add_recording(commands):
         "--rate", type=float, help="samples per second, where the file only counts them"
     )
     parser.add_argument(
+        "--json", action="store_true", help="give each answer with its evidence as JSON"
+    )
+    parser.add_argument(
+        "--columns",
+        default="",
+        metavar="WHAT",
+        help="what the columns are, where the file does not say it, counted from 1, such as "
+        "'time=1 gyroscope=2-4:rad/s accelerometer=5-7'",
+    )
+    parser.add_argument(
         "--html", type=Path, metavar="REPORT", help="write the report with its plots as one page"
     )
     parser.add_argument(

@@ -15,7 +15,7 @@ from ..programs import expected_of, program_named
 from . import search, table
 from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
-from .text import Poses, read_poses
+from .text import SLACK, Poses, read_poses
 
 #: Of so many chains, and of so many readings of the first side, it is seen whether a further pose
 #: tells the chains apart; more are told apart by a pose of three turns.
@@ -53,6 +53,7 @@ class Explanation(NamedTuple):
     mirrored: str
     names: tuple = ()
     question: str = ""
+    remarks: tuple[str, ...] = ()
 
     @property
     def has_line(self) -> bool:
@@ -161,7 +162,9 @@ def explain(
         return Explanation("unrelated", (), None, (), "", counts[0], mirrored)
     best = classes[0]
     chance = _chance(best, one, tried)
-    if best.faults == 0 and (noise == 0 or chance < search.BY_CHANCE):
+    # Of a special pose some sequence nearly always says the same.
+    exact = noise == 0 or chance < search.BY_CHANCE
+    if best.faults == 0 and exact and not (special and best.words(ways)):
         verdict = "same"
     elif len(classes) > 1 or special or chance >= search.BY_CHANCE:
         verdict = "undecided"
@@ -179,8 +182,22 @@ def explain(
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
     return Explanation(
         verdict, tuple(best.words(ways)), residual, tuple(classes), further, counts[0], mirrored,
-        names, _question(names, best)
+        names, _question(names, best), _normalised(sides)
     )  # fmt: skip
+
+
+def _normalised(sides):
+    """A word for each side whose quaternions are not quite of length 1."""
+    remarks = []
+    for name, (poses, _) in zip(("first", "second"), sides, strict=True):
+        lengths = np.linalg.norm(poses.numbers, axis=1)
+        worst = float(lengths[np.argmax(np.abs(lengths - 1))])
+        if poses.kinds == ("quaternion",) and abs(worst - 1) > SLACK + 2 * poses.half:
+            remarks.append(
+                f"A quaternion of the {name} side has length {worst:.6g}: it was taken for one of "
+                "length 1."
+            )
+    return tuple(remarks)
 
 
 #: A reading that leaves so many times what the best leaves, and more than a thousandth, is put
@@ -461,6 +478,7 @@ def sentences(explanation):
                 "and no rotation."
             )
         return
+    yield from explanation.remarks
     if explanation.names:
         yield (
             f"The numbers fit {len(explanation.names)} descriptions, and only you can say which is "

@@ -60,6 +60,8 @@ _NAMES = (
 #: How far the length of a quaternion, or of a row, may be from 1 besides
 #: rounding: more is another mistake.
 SLACK = 1e-4
+#: So far the length of a quaternion may be from 1: then it is normalised, and that is said.
+NORMALISED = 1e-3
 
 
 class Poses(NamedTuple):
@@ -426,7 +428,8 @@ def _kinds(numbers, kind, doubt, name):
             )
         kinds = (kind,)
     elif count == 4:
-        kinds = ("quaternion",) if _all_unit(numbers, doubt) else ("axis and angle",)
+        unit = _all_unit(numbers, doubt + NORMALISED / 2)
+        kinds = ("quaternion",) if unit else ("axis and angle",)
     else:
         kinds = ("matrix",) if count == 9 else ("Euler angles", "rotation vector")
     if kinds == ("matrix",):

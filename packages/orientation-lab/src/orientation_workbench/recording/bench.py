@@ -41,6 +41,7 @@ def examine(
     source: Source,
     name: str | None = None,
     rate: float | None = None,
+    columns: str = "",
     judged: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> Examined:
@@ -54,6 +55,9 @@ def examine(
         What to call it.
     rate : float, optional
         Samples per second, where the file only counts them.
+    columns : str
+        What the columns are, where the file does not say it: see
+        :func:`~orientation_workbench.recording.content.read_content`.
     judged : bool
         Whether to run the filter, which takes longer than all the rest.
     progress : callable, optional
@@ -68,7 +72,7 @@ def examine(
     RecordingError
         If the file cannot be read, or holds no instrument.
     """
-    content = read_content(source, name, rate)
+    content = read_content(source, name, rate, columns)
     bench = _Bench(
         content, name or (str(source) if not isinstance(source, (bytes, list)) else "recording")
     )
@@ -76,6 +80,7 @@ def examine(
     bench.gyroscope()
     bench.accelerometer()
     bench.magnetometer()
+    bench.timing()
     bench.orientation()
     if judged:
         bench.filter(progress)
@@ -220,6 +225,7 @@ class _Bench:
             self.say("gyroscope", UNKNOWN, "there is none in the file")
             return
         group, raw = self.content.groups["gyroscope"], self.raw["gyroscope"]
+        self._saturation("gyroscope")
         said = _said_unit(group.names)
         fits, vectors = {}, {}
         for kind in ("accelerometer", "magnetometer"):
@@ -280,16 +286,21 @@ class _Bench:
                     "unit of the gyroscope", GREEN, names[unit], {"scale": round(fit.scale, 5)}
                 )
         else:
-            fast = np.percentile(np.linalg.norm(raw, axis=1), 95)
-            unit = DEGREES[said] if said else (1.0 if fast < 40 else DEGREES["°/s"])
-            why = (
-                "by its heading" if said else f"by its size: 95 in 100 values are below {fast:.3g}"
-            )
+            if not said:
+                self.say(
+                    "unit of the gyroscope",
+                    UNKNOWN,
+                    "no heading says it, and it turns too little to tell",
+                    {},
+                    "Say it: --columns 'gyroscope=2-4:deg/s', or turn it about all axes.",
+                )
+                return
+            unit = DEGREES[said]
             self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
-                f"{names[unit]}, {why}",
-                {"95 %": float(fast)},
+                f"{names[unit]} by its heading; it turns too little to try that",
+                {},
                 "Turn it about all axes.",
             )
         self.facts["unit of the gyroscope"] = unit
@@ -303,6 +314,25 @@ class _Bench:
                 "size of the gyroscope", RED, words, {}, "Is it another column, or another unit?"
             )
         self._axes(fits, raw * unit)
+
+    def _saturation(self, kind: str) -> None:
+        """Whether a sensor stays at its largest value, as when driven past its range."""
+        raw = self.raw[kind]
+        for k, letter in enumerate("xyz"):
+            column = raw[:, k]
+            for end, where in ((column.max(), "above"), (column.min(), "below")):
+                flat = np.abs(column - end) <= 1e-4 * np.abs(end)
+                lasting = int((flat[1:] & flat[:-1]).sum())
+                if lasting >= 4 and np.abs(end) > 3 * np.abs(np.median(column)) + 1e-9:
+                    self.say(
+                        f"range of the {kind}",
+                        RED,
+                        f"{letter} stays at {end:.6g} for {lasting + 1} samples: what was {where} "
+                        "that was cut off",
+                        {"samples": lasting + 1},
+                        "Choose a larger range. What was cut off, no correction brings back.",
+                    )
+                    return
 
     def _quiet(self, raw: Array) -> slice | None:
         """Samples in which the numbers of a gyroscope vary least, whatever their unit."""
@@ -407,8 +437,7 @@ class _Bench:
                 YELLOW,
                 "it is never still. "
                 f"From {self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s it is held: "
-                f"{np.degrees(one.deviation):.1f} °/s, each value like the one before "
-                f"({one.likeness:.2f})",
+                f"it wavers by {np.degrees(one.deviation):.1f} °/s, and slowly, as a hand does",
                 {
                     "deviation (°/s)": round(float(np.degrees(one.deviation)), 2),
                     "likeness": round(one.likeness, 2),
@@ -463,9 +492,9 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
-                f"there are {len(poses)} poses between which gravity could be carried",
+                f"{len(poses)} poses, too few or too much alike to carry gravity through",
                 {},
-                "Hold it still in four poses or more, well away from each other.",
+                "Hold it still in four poses that lean well away from each other.",
             )
         if bias is None:
             self.say(
@@ -482,7 +511,8 @@ class _Bench:
                 RED if most > 1 and sure else YELLOW if most > 0.3 else GREEN if sure else UNKNOWN
             )
             words = f"{np.degrees(bias).round(3).tolist()} ± {np.degrees(spread.max()):.2g} °/s"
-            advice = "Subtract it." if light in (RED, YELLOW) else ""
+            drifts = self._drift(lying)
+            advice = "Subtract it." if light in (RED, YELLOW) and not drifts else ""
             self.say(
                 "bias of the gyroscope",
                 light,
@@ -496,6 +526,31 @@ class _Bench:
         self.facts["multiplied"] = scale
         if scale != 1.0:
             self.still = stretches(self.time, self.rates)
+
+    def _drift(self, lying: Sequence[Stretch]) -> bool:
+        """Whether the bias is another one each time it lies still."""
+        if len(lying) < 2 or self.rates is None:
+            return False
+        means, doubts = [], []
+        for one in lying:
+            part = self.rates[one.first : one.last]
+            means.append(np.median(part, axis=0))
+            doubts.append(1.25 * part.std(axis=0) / np.sqrt(len(part)))
+        change = np.ptp(means, axis=0)
+        worst = int(np.argmax(change / np.max(doubts, axis=0)))
+        if change[worst] < max(8 * np.max(doubts, axis=0)[worst], np.radians(0.05)):
+            return False
+        first, last = np.degrees([means[0][worst], means[-1][worst]])
+        self.say(
+            "drift of the bias",
+            RED if change[worst] > np.radians(0.3) else YELLOW,
+            f"the bias about {'xyz'[worst]} is {first:.2f} °/s when it first lies still and "
+            f"{last:.2f} °/s when it last does",
+            {"°/s": np.degrees(means).round(3).tolist()},
+            "One number subtracted from all does not mend that: let the filter estimate the bias, "
+            "or subtract a line between the still stretches. Did it warm up?",
+        )
+        return True
 
     def _noise(self, one: Stretch) -> None:
         """What the Allan deviation of the longest still stretch says."""
@@ -532,6 +587,7 @@ class _Bench:
             self.say("accelerometer", UNKNOWN, "there is none in the file")
             return
         raw = self.raw["accelerometer"]
+        self._saturation("accelerometer")
         quiet = (
             np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
         )
@@ -629,6 +685,19 @@ class _Bench:
             {"length": round(length, 3)},
         )
         corrected = (raw - fit.offset) @ fit.shape.T
+        # The dip against gravity was not used to fit: a correction that widens it is none.
+        as_it_came, afterwards = self._dips(raw), self._dips(corrected)
+        if as_it_came and afterwards and afterwards[1] > 1.2 * as_it_came[1] + 0.5:
+            self.say(
+                "offset of the magnetometer",
+                UNKNOWN,
+                f"the correction that fits best widens the spread of the dip from "
+                f"{as_it_came[1]:.1f}° to {afterwards[1]:.1f}°: it is not applied",
+                {},
+                "Turn it slowly through all directions, far from iron.",
+            )
+            self.field = raw / float(np.median(np.linalg.norm(raw, axis=1)))
+            return
         self.field = corrected / fit.strength
         plain = ASSIGNMENTS[np.argmax(np.einsum("kij,ij->k", ASSIGNMENTS, fit.axes))]
         aside = np.degrees(np.arccos(np.clip((np.trace(plain.T @ fit.axes) - 1) / 2, -1, 1)))
@@ -756,6 +825,45 @@ class _Bench:
             found.append(np.degrees(np.arcsin(np.clip(sine, -1, 1))))
         return float(np.median(found)), float(np.percentile(found, 95) - np.percentile(found, 5))
 
+    # --- whether all look at the same moment ----------------------------------------------------
+
+    def timing(self) -> None:
+        """Delays between the sensors, and samples that are missing where time was counted on."""
+        if self.rates is None or self.content.counted or len(self.time) < 200:
+            return
+        step = float(np.median(np.diff(self.time)))
+        seen = {kind: self.raw[kind] for kind in self.raw if kind != "gyroscope"}
+        late = {kind: lag_of(self.rates, values, step) for kind, values in seen.items()}
+        late = {kind: lag for kind, lag in late.items() if abs(lag) >= max(2, round(0.03 / step))}
+        if late and len(late) == len(seen) > 1 and np.ptp(list(late.values())) <= 3:
+            late = {"gyroscope": -float(np.mean(list(late.values())))}
+        for kind, lag in late.items():
+            others = "others" if len(seen) > 1 or kind == "gyroscope" else "gyroscope"
+            self.say(
+                f"delay of the {kind}",
+                RED,
+                f"what it says fits the turns of the {others} best {1000 * abs(lag) * step:.0f} ms "
+                f"{'earlier' if lag > 0 else 'later'}: it comes {'late' if lag > 0 else 'early'}",
+                {"seconds": round(lag * step, 3)},
+                f"Move its times {'back' if lag > 0 else 'forward'} by that much, before all else.",
+            )
+        if late or not seen:
+            return
+        leaps = np.ones(len(self.time) - 1, dtype=bool)
+        for values in seen.values():
+            leaps &= _leaps(self.rates, values, step)
+        if leaps.sum() and len(seen) > 1:
+            first = float(self.time[1:][leaps][0])
+            self.say(
+                "missing samples",
+                RED,
+                f"at {int(leaps.sum())} places, the first at {first:.2f} s, gravity and field leap "
+                "by more than any turn between two samples: samples are missing there, and time "
+                "was counted on as if none were",
+                {"places": int(leaps.sum())},
+                "Record the instrument's own time with each sample. No filter knows what happened.",
+            )
+
     # --- the orientation ------------------------------------------------------------------------
 
     def orientation(self) -> None:
@@ -880,15 +988,16 @@ class _Bench:
     # --- the filter -----------------------------------------------------------------------------
 
     def filter(self, progress: Callable[[float], None] | None) -> None:
-        if self.rates is None or self.forces is None or self.content.counted:
-            self.say("filter", UNKNOWN, "it needs a gyroscope and an accelerometer, and a clock")
-            return
         if self.time[-1] - self.time[0] < 1 or len(self.time) < 20:
             self.say(
                 "filter",
                 UNKNOWN,
                 f"{len(self.time)} samples in {self.time[-1]:.2g} s are too few to judge it",
             )
+            return
+        if self.rates is None or self.forces is None or self.content.counted:
+            words = "it needs a gyroscope of known unit, an accelerometer, and a clock"
+            self.say("filter", UNKNOWN, words)
             return
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         field = None if "field" in trouble else self.field
@@ -921,21 +1030,15 @@ class _Bench:
             for name in self.judgements[0].likeness
         }
         worst, high = too_sure(self.judgements)
-        light = (
-            RED
-            if worst > 5 or high > 5
-            else YELLOW
-            if worst > 2 or high > 2 or max(alike.values()) > 0.5
-            else GREEN
-        )
+        light = RED if worst > 5 or high > 5 else YELLOW if worst > 3 or high > 3 else GREEN
         advice = ""
         if light == RED:
-            advice = f"It is too sure of itself by {max(worst, np.sqrt(high)):.0f} times: "
-            advice += "tell it of larger deviations, and use fewer samples as evidence."
-        elif light == YELLOW:
-            advice = (
-                "Successive surprises are alike: what the sensors do wrong lasts for more than one "
-                "sample."
+            advice = f"Its errors are {max(worst, np.sqrt(high)):.0f} times what it claims. "
+            advice += (
+                f"First mend what is wrong above: {', '.join(sorted(trouble))}."
+                if trouble
+                else "First rule out lost samples, delays and a wrong clock; only then raise its "
+                "noise."
             )
         evidence = {
             "claimed (°)": round(claimed, 3),
@@ -961,6 +1064,49 @@ class _Bench:
             self.still,
             self.facts,
         )
+
+
+def lag_of(rates: Array, vectors: Array, step: float) -> int:
+    """By how many samples vectors that stand still in the world come later than the turns; 0 where
+    that does not show.
+
+    With a constant ``c`` that belongs to the instrument, ``dm/dt = -w x (m - c)``.
+    """
+    half, most = max(1, round(0.04 / step)), round(0.4 / step)
+    slopes = (vectors[2 * half :] - vectors[: -2 * half]) / (2 * half * step)
+    window = np.ones(2 * half + 1) / (2 * half + 1)
+    turning, mean = (
+        np.stack([np.convolve(column, window, "valid") for column in values.T], axis=1)
+        for values in (rates, vectors)
+    )
+    count = len(slopes) - 2 * most
+    if count < 100:
+        return 0
+    lags, left = range(-most, most + 1), []
+    inner = slice(most, most + count)
+    for lag in lags:
+        w = turning[most - lag : most - lag + count]
+        rest = slopes[inner] + np.cross(w, mean[inner])
+        across = np.cross(w[:, None, :], np.eye(3)).swapaxes(-1, -2).reshape(-1, 3)
+        squares, slope = across.T @ across, across.T @ rest.ravel()
+        left.append(np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope))
+    best = int(np.argmin(left))
+    # Neighbours share their noise: so many values tell as much as if each stood for itself.
+    alone = 3 * count / (2 * half)
+    clear = left[most] > (1 + 60 / alone) * left[best]
+    clear &= left[best] < 0.6 * np.sum(slopes[inner] ** 2)
+    return lags[best] if clear else 0
+
+
+def _leaps(rates: Array, vectors: Array, step: float) -> Array:
+    """Where vectors that stand still in the world change from one sample to the next as no turn
+    explains.
+    """
+    mean = (vectors[1:] + vectors[:-1]) / 2
+    turns = (rates[1:] + rates[:-1]) / 2
+    left = np.linalg.norm(np.diff(vectors, axis=0) + step * np.cross(turns, mean), axis=1)
+    usual = np.median(np.linalg.norm(vectors, axis=1))
+    return left > np.maximum(8 * np.median(left), 0.06 * usual)
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 from typing import Protocol
 
 from .bench import examine
+from .examined import as_data
 from .report import as_csv, as_html
 
 BAD_INPUT = 3
@@ -17,7 +19,9 @@ class Chosen(Protocol):
 
     files: list[str | Path]
     rate: float | None
+    columns: str
     quick: bool
+    json: bool
     html: Path | None
     csv: Path | None
     convention: str
@@ -40,10 +44,15 @@ def run(chosen: Chosen) -> int:
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
         name = ", ".join(Path(file).name for file in chosen.files)
-        examined = examine(source, name, chosen.rate, not chosen.quick, progress if shown else None)
+        examined = examine(
+            source, name, chosen.rate, chosen.columns, not chosen.quick, progress if shown else None
+        )
         if shown:
             print(f"\r{'':45}\r", end="", file=sys.stderr)
-        print(examined)
+        if chosen.json:
+            print(json.dumps(as_data(examined), indent=2, default=str))
+        else:
+            print(examined)
         if chosen.html:
             chosen.html.write_text(as_html(examined), "utf8")
         if chosen.csv:

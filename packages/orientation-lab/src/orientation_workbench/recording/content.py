@@ -5,12 +5,11 @@ their headings heard as witnesses only.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .motion import fit_axes
 from .table import RecordingError, Table, read_tables
 
 if TYPE_CHECKING:
@@ -24,10 +23,10 @@ HEADINGS = {
     "gravity": r"grav",
     "linear acceleration": r"^lin|user|without.?g",
     "magnetometer": r"mag(?!nitude)|field|compass|^[mbh]$",
-    "gyroscope": r"gyr|angular|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
-    "accelerometer": r"acc|force|^a\b|^fib|^f$",
+    "gyroscope": r"gyr|angular|ang.?vel|omega|rotation.?rate|^rate|rot.?rate|^w\b|^g$|^wib",
+    "accelerometer": r"acc|force|^g ?f$|^a\b|^fib|^f$",
     "something else": r"motor|servo|command|setpoint|debug|velocity|position|covar|stamp|seq|reset"
-    r"|gps|^axis [pid]",
+    r"|gps|^axis [pid]|bias|^b [aw]\b",
 }
 #: What a unit says of a sensor, where the heading says nothing else.
 UNITS = {
@@ -97,7 +96,9 @@ class Content(NamedTuple):
     unused: list[str]
 
 
-def read_content(source: Source, name: str | None = None, rate: float | None = None) -> Content:
+def read_content(
+    source: Source, name: str | None = None, rate: float | None = None, columns: str = ""
+) -> Content:
     """Read a recording and find out what its columns are.
 
     Parameters
@@ -107,6 +108,9 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     name : str, optional
     rate : float, optional
         Samples per second, where the file only counts them.
+    columns : str
+        What the columns are, where nothing in the file says it, such as
+        ``'time=1 gyroscope=2-4:deg/s accelerometer=5-7:g'``; columns count from 1.
 
     Returns
     -------
@@ -117,7 +121,7 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     RecordingError
         If the file cannot be read, or holds no instrument.
     """
-    tables = read_tables(source, name)
+    tables = [_told(table, columns) for table in read_tables(source, name)]
     groups: list[Group] = []
     clocks: list[tuple[str, bool]] = []
     unused: list[str] = []
@@ -129,7 +133,7 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
         column, time, clock, counted = _time(table)
         clocks.append((clock, counted))
         found, left = _groups(table, column, time)
-        groups += found if counted else _without_headings(found)
+        groups += found
         unused += left
     chosen = _roles(groups)
     for group in groups:
@@ -139,16 +143,8 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
         ):
             remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
     remarks += _with_gravity(chosen, groups)
-    # Three columns without a name can look like anything: a table of stars like the Earth's field.
-    alone = set(chosen) in ({"gyroscope"}, {"magnetometer"}) and not any(
-        group.called for group in chosen.values()
-    )
-    if alone or not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
-        raise RecordingError(
-            "no instrument is in this file: three columns that belong together and behave like a "
-            "gyroscope, an accelerometer or a magnetometer were sought among "
-            f"{', '.join(c for t in tables for c in t.columns)}"[:400]
-        )
+    if not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
+        raise RecordingError(_question(tables, chosen))
     used = {tuple(group.names) for group in chosen.values()}
     unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
@@ -174,6 +170,49 @@ def read_content(source: Source, name: str | None = None, rate: float | None = N
     start = min(group.time[0] for group in kinds.values())
     kinds = {kind: group._replace(time=group.time - start) for kind, group in kinds.items()}
     return Content(kinds, clock, counted and not rate, remarks, unused)
+
+
+#: One entry of what a reader says the columns are.
+_TOLD = re.compile(
+    r"(time|gyroscope|accelerometer|magnetometer|gravity|linear|quaternion|angles)=(\d+)(?:-(\d+))?(?::(\S+))?"
+)
+
+
+def _told(table: Table, columns: str) -> Table:
+    """A table under the headings that the reader has said."""
+    names = list(table.columns)
+    for entry in columns.split():
+        told = _TOLD.fullmatch(entry)
+        first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
+        if not told or not 1 <= first <= last <= len(names):
+            raise RecordingError(
+                f"{entry!r} says nothing of the {len(names)} columns: an entry is like "
+                "gyroscope=2-4 or gyroscope=2-4:rad/s"
+            )
+        axes = {1: [""], 3: ["_x", "_y", "_z"], 4: ["_w", "_x", "_y", "_z"]}.get(last - first + 1)
+        if axes is None:
+            raise RecordingError(f"{entry!r} has {last - first + 1} columns; a vector has three")
+        for column, axis in zip(range(first - 1, last), axes, strict=True):
+            names[column] = told[1] + axis + (f" ({told[4]})" if told[4] else "")
+    return table._replace(columns=names) if columns else table
+
+
+def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
+    """What to ask of a file that names no instrument, with its first rows."""
+    table = tables[0]
+    rows = [" ".join(f"{value:.6g}" for value in row[:16]) for row in table.values[:3]]
+    shown = "\n".join(f"    {row}" for row in [" ".join(table.columns[:16]), *rows])
+    trajectory = (
+        "It holds orientations, as a trajectory does: that is the result of instruments, and none "
+        "of them is here. "
+        if "quaternion" in chosen
+        else ""
+    )
+    return (
+        f"nothing in this file says which columns are an instrument's. {trajectory}Its headings "
+        f"and first rows are\n{shown}\nSay it, columns counted from 1: --columns 'time=1 "
+        "gyroscope=2-4:rad/s accelerometer=5-7'"
+    )
 
 
 def _unit(heading: str) -> str:
@@ -304,7 +343,7 @@ def _named(stem: str, table: Table, column: int) -> str:
     if _unit(table.columns[column]) in ("g", "mg"):
         unit, name = name, unit
     # An alpha with axes is an acceleration: the angle has none.
-    return ("" if stem == "alpha" else _called(stem)) or unit or name
+    return ("accelerometer" if stem == "alpha" else _called(stem)) or unit or name
 
 
 def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Group], list[str]]:
@@ -397,7 +436,10 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
             add(
                 "vector",
                 run[k : k + 3],
-                _called(" ".join(table.columns[c].lower() for c in run[k : k + 3])),
+                _called(" ".join(table.columns[c].lower() for c in run[k : k + 3]))
+                or (
+                    _called(table.name.lower()) if re.search("[a-z]{3}", table.name.lower()) else ""
+                ),
             )
     return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
 
@@ -438,41 +480,6 @@ def _is_unit(values: Array) -> bool:
     )
 
 
-def _without_headings(groups: Sequence[Group]) -> Sequence[Group]:
-    """Name what no heading names and its length alone does not tell:
-    gravity by itself, and what turns it.
-    """
-    unnamed = [k for k, group in enumerate(groups) if group.kind == "vector" and not group.called]
-    alone = [k for k in unnamed if _has_length_one(groups[k].values)]
-    changing = [
-        k
-        for k in unnamed
-        if not points_one_way(groups[k].values) and np.ptp(groups[k].values, axis=0).max() > 0
-    ]
-    steady = alone or [k for k in unnamed if points_one_way(groups[k].values)]
-    if (
-        len(changing) < 2
-        or not steady
-        or len(alone) > 2
-        or any(group.called == "gyroscope" for group in groups)
-    ):
-        return groups
-    groups, fixed, units = list(groups), groups[steady[0]].values, np.array([1.0, np.pi / 180])
-    fits = {
-        k: fit_axes(groups[k].time, groups[k].values, fixed, units, longest=20.0) for k in changing
-    }
-    turns = min(fits, key=lambda k: fits[k].shares.min())
-    groups[turns] = groups[turns]._replace(called="gyroscope")
-    if alone and alone[0] + 1 in changing:
-        groups[alone[0]] = groups[alone[0]]._replace(called="gravity")
-        groups[alone[0] + 1] = groups[alone[0] + 1]._replace(called="linear acceleration")
-        for k in set(unnamed) - {turns, alone[0], alone[0] + 1}:
-            low, high = FIELD["µT"]
-            field = low < np.median(np.linalg.norm(groups[k].values, axis=1)) < high
-            groups[k] = groups[k]._replace(called="magnetometer" if field else "something else")
-    return groups
-
-
 def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
     """Where acceleration and gravity stand in columns of their own, their
     sum is what an accelerometer feels.
@@ -499,23 +506,12 @@ def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str
     ]
 
 
-def _has_length_one(values: Array) -> bool:
-    lengths = np.linalg.norm(values, axis=1)
-    return bool(abs(np.median(lengths) - 1) < 1e-3 and np.ptp(lengths) < 1e-2)
-
-
 def points_one_way(values: Array) -> bool:
     """Whether vectors have nearly one length, as gravity and the Earth's field
     have, and a gyroscope's have not.
     """
     low, middle, high = np.percentile(np.linalg.norm(values, axis=1), (10, 50, 95))
     return bool(middle > 0 and low / middle > 0.6 and high / middle < 2.2)
-
-
-def _roughness(values: Array) -> float:
-    """How much of what a vector does it does from one sample to the next."""
-    changes = np.linalg.norm(np.diff(values, 2, axis=0), axis=1)
-    return float(np.median(changes) / np.median(np.linalg.norm(values, axis=1)))
 
 
 def _roles(groups: Sequence[Group]) -> dict[str, Group]:
@@ -539,9 +535,7 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
         if group.called not in ("gravity", "quaternion")
     ]
     vectors = [group for group in vectors if group.called != "linear acceleration"]
-    # Without a name, vectors of length one are rows of a matrix.
-    vectors = [group for group in vectors if group.called or not _has_length_one(group.values)]
-    vectors = [group for group in vectors if group.called != "something else"]
+    vectors = [group for group in vectors if group.called not in ("", "something else")]
     for group in list(vectors):
         if group.called == "angles":
             angles.append(group)
@@ -556,10 +550,6 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
     def length(group: Group) -> float:
         return float(np.median(np.linalg.norm(group.values, axis=1)))
 
-    def uneven(group: Group) -> float:
-        lengths = np.linalg.norm(group.values, axis=1)
-        return float(lengths.std() / lengths.mean())
-
     def as_gravity(group: Group) -> int:
         off = min(abs(np.log(length(group) / one)) for one in GRAVITY.values())
         alone = not any(low < length(group) < high for low, high in list(FIELD.values())[:4])
@@ -567,10 +557,7 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
         return 2 * named + (alone and bool(off < 0.06))
 
     if steady:
-        best = max(
-            steady,
-            key=lambda group: (as_gravity(group), not group.called and _roughness(group.values)),
-        )
+        best = max(steady, key=as_gravity)
         others = [group for group in steady if group is not best]
         like_a_field = best.called == "magnetometer" or any(
             low < length(best) < high for low, high in FIELD.values()
@@ -579,11 +566,9 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
             chosen["accelerometer"] = best
         else:
             chosen["magnetometer"] = best
-        field = [group for group in others if group.called in ("magnetometer", "")]
+        field = [group for group in others if group.called == "magnetometer"]
         if field:
-            chosen["magnetometer"] = max(
-                field, key=lambda group: (group.called == "magnetometer", -uneven(group))
-            )
+            chosen["magnetometer"] = field[0]
     if "accelerometer" not in chosen:
         shaken = [group for group in changing if group.called == "accelerometer"]
         if shaken:
@@ -595,9 +580,7 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
             chosen["magnetometer"] = disturbed[0]
             changing = [group for group in changing if group is not disturbed[0]]
     if changing:
-        chosen["gyroscope"] = max(
-            changing, key=lambda group: (group.called == "gyroscope", group.called == "")
-        )
+        chosen["gyroscope"] = max(changing, key=lambda group: group.called == "gyroscope")
     if quaternions:
         chosen["quaternion"] = quaternions[0]
     if angles:

@@ -100,7 +100,7 @@ class Examined(NamedTuple):
 
 
 def as_text(examined: Examined) -> str:
-    """The report as plain text: a line for each verdict, with its evidence and what to do."""
+    """The report as plain text: a sentence for each verdict, and what to do."""
     lines = [f"{examined.name}"]
 
     def add(words: str, first: str, rest: str) -> None:
@@ -110,12 +110,12 @@ def as_text(examined: Examined) -> str:
 
     for verdict in examined.verdicts:
         add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
-        if verdict.evidence and verdict.light != "as it should be":
-            add(
-                ", ".join(f"{name} {value}" for name, value in verdict.evidence.items()),
-                "       ",
-                "       ",
-            )
         if verdict.advice:
             add(verdict.advice, "  -> ", "     ")
     return "\n".join(lines)
+
+
+def as_data(examined: Examined) -> dict[str, object]:
+    """The report as plain data: what ``--json`` prints, in format 1."""
+    verdicts = [verdict._asdict() for verdict in examined.verdicts]
+    return {"format": 1, "recording": examined.name, "verdicts": verdicts}

@@ -69,7 +69,10 @@ def _link(name: str, kind: str, text: str, words: str) -> str:
 
 
 def judged(
-    source: str | Path = DROPPED, rate: float | None = None, convention: str = "wxyz"
+    source: str | Path = DROPPED,
+    rate: float | None = None,
+    convention: str = "wxyz",
+    columns: str = "",
 ) -> Judged:
     """Put what was dropped, or a file of one's own, on the bench.
 
@@ -81,6 +84,9 @@ def judged(
         Samples per second, where the file only counts them.
     convention : str
         Of the orientation in the corrected recording: ``wxyz``, ``xyzw`` or ``yaw-pitch-roll``.
+    columns : str
+        What the columns are, where the file does not say it, such as
+        ``'time=1 gyroscope=2-4:rad/s accelerometer=5-7'``.
 
     Returns
     -------
@@ -102,6 +108,8 @@ def judged(
         return Judged(words="no recording yet")
     name = ", ".join(file.name for file in files)
     try:
-        return Judged(examine(files if len(files) > 1 else files[0], name, rate), "", convention)
+        return Judged(
+            examine(files if len(files) > 1 else files[0], name, rate, columns), "", convention
+        )
     except RecordingError as error:
         return Judged(words=f"{name} cannot be judged: {error}")

@@ -6,7 +6,7 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmF
   dcmFromQuaternion, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
   SEQUENCES, transpose, unit } from './mathematics.js';
 
-const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, READ_AS = 60, SLACK = 1e-4;
+const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
@@ -237,7 +237,7 @@ function kindsOf(numbers, kind, doubt, name) {
   if (!kinds) {
     if (count === 9) kinds = ['matrix'];
     else if (count === 3) kinds = ['Euler angles', 'rotation vector'];
-    else kinds = isUnit(numbers, doubt) ? ['quaternion'] : ['axis and angle'];
+    else kinds = isUnit(numbers, doubt + NORMALISED / 2) ? ['quaternion'] : ['axis and angle'];
   }
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
   if (kinds[0] === 'quaternion' && !isUnit(numbers, Math.max(doubt, 0.01))) {
@@ -830,10 +830,15 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
   if (!chains.length) return { verdict: 'unrelated', mirrored, asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
   const [best] = chains, chance = chanceOf(best, one, tried);
   let verdict = chains.length > 1 || special || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
-  if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE)) verdict = 'same';
+  // Of a special pose some sequence nearly always says the same.
+  if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE) && !(special && wordsOf(best, table, ways).length)) verdict = 'same';
   if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], declared.map(({ order }) => order), ways, table);
   if (asked.names.length) verdict = 'undecided';
-  return { ...asked, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
+  const remarks = sides.flatMap(({ kinds: [kind], numbers, half }, k) => {
+    const worst = numbers.map(length).reduce((held, size) => (Math.abs(size - 1) > Math.abs(held - 1) ? size : held), 1);
+    return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion of the ${['first', 'second'][k]} side has length ${short(worst)}: it was taken for one of length 1.`] : [];
+  });
+  return { ...asked, remarks, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
     furtherPose: verdict !== 'undecided' || asked.names.length ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
 }

@@ -183,7 +183,8 @@ const linked = ([[section, title], ...questions]) => [element('a', { href: secti
 function wasRead(found, k, table) {
   const { kinds, numbers } = found.sides[k], reading = found.chains[0]?.[k ? 'second' : 'first'], choices = reading?.choices ?? {};
   const how = reading ? table.kinds[reading.kind].map(({ group }) => told(group, choices[group])).filter(Boolean).join(', ') : '';
-  return `Read as ${several(numbers.length, 'pose')}: ${reading?.kind ?? kinds.join(' or ')}${how && `, ${how}`}.`;
+  return [`Read as ${several(numbers.length, 'pose')}: ${reading?.kind ?? kinds.join(' or ')}${how && `, ${how}`}.`,
+    ...(found.remarks ?? []).filter((remark) => remark.includes(`the ${['first', 'second'][k]} side`))].join(' ');
 }
 
 const told = (group, value) => ({ order: () => [...value].join(' '), sequence: () => [...value].join('-'), places: () => (value === '123' ? '' : `printed ${[...value].join(', ')}`),
