@@ -834,9 +834,12 @@ class _Bench:
         step = float(np.median(np.diff(self.time)))
         seen = {kind: self.raw[kind] for kind in self.raw if kind != "gyroscope"}
         late = {kind: lag_of(self.rates, values, step) for kind, values in seen.items()}
-        late = {kind: lag for kind, lag in late.items() if abs(lag) >= max(2, round(0.03 / step))}
-        if late and len(late) == len(seen) > 1 and np.ptp(list(late.values())) <= 3:
-            late = {"gyroscope": -float(np.mean(list(late.values())))}
+        # A push that comes with each turn looks like a delay of the accelerometer, which
+        # therefore only confirms.
+        lag, other = late.get("magnetometer", 0), late.get("accelerometer", 0)
+        late = {"magnetometer": lag} if abs(lag) >= max(2, round(0.03 / step)) else {}
+        if late and abs(lag - other) <= 3:
+            late = {"gyroscope": -lag}
         for kind, lag in late.items():
             others = "others" if len(seen) > 1 or kind == "gyroscope" else "gyroscope"
             self.say(
