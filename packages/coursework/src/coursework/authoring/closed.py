@@ -6,11 +6,9 @@ them all finds it. This counts no more than that, so it understates what a scrip
 answers are formulas, and a script that knows the subject's formulas finds many of those too.
 """
 
-import concurrent.futures
 import contextlib
 import io
 import math
-import os
 from collections.abc import Collection
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +18,7 @@ from ..checking.plugins import kinds, plugins
 from ..checking.reading import canonical, read
 from .author import AuthoredQuestion
 from .course import Course
-from .source import CHAPTERS, notebooks_in, read_source
+from .source import CHAPTERS, notebooks_in, processes_for, read_source
 
 #: More possibilities than this are not closed: trying them takes more than a quarter of an hour.
 MOST = 2**16
@@ -93,7 +91,7 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
         behind closed answers, and the points with one answer for everybody.
     """
     paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
+    with processes_for(paths) as pool:
         found = list(pool.map(_asked_in, paths, [course] * len(paths)))
     asked = {name: one for some in found for name, one in some.items()}
     exercises = [one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS]

@@ -9,12 +9,10 @@ download.
 
 from __future__ import annotations
 
-import concurrent.futures
 import contextlib
 import copy
 import hashlib
 import json
-import os
 import platform
 import re
 import shutil
@@ -43,6 +41,7 @@ from .source import (
     names_asked,
     notebooks_in,
     posed,
+    processes_for,
     read_source,
 )
 from .variation import drawn_in
@@ -472,7 +471,7 @@ def release(
     paths = notebooks_in(course.sources, only)
     for folder in (course.exercises, course.sealed):
         folder.mkdir(parents=True, exist_ok=True)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
+    with processes_for(paths) as pool:
         made = list(pool.map(_release_one, paths, [course] * len(paths)))
         wanted = [
             (path, number, one.pages)

@@ -6,12 +6,10 @@ they are few, and what is wrong with it, if anything is.
 """
 
 import base64
-import concurrent.futures
 import contextlib
 import html
 import io
 import json
-import os
 import random
 import re
 import zipfile
@@ -38,6 +36,7 @@ from .source import (
     Source,
     blank,
     notebooks_in,
+    processes_for,
     read_source,
 )
 
@@ -435,7 +434,7 @@ def selftest(
         There is nothing to try, or a notebook cannot be read.
     """
     paths = notebooks_in(course.sources, only)
-    with concurrent.futures.ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1)) as pool:
+    with processes_for(paths) as pool:
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths)))
     findings = [finding for found, _ in tried for finding in found]
     if not findings:

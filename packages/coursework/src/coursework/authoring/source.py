@@ -13,9 +13,13 @@ import hashlib
 import io
 import itertools
 import json
+import multiprocessing
+import os
 import re
+import sys
 import textwrap
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -113,6 +117,16 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
         known = ", ".join(path.stem for path in found)
         raise author.AuthorError(f"There is no {unknown[0]}.ipynb in {folder}; there are {known}.")
     return [path for path in found if not only or path.stem in only]
+
+
+def processes_for(paths: Collection[Path]) -> ProcessPoolExecutor:
+    """Processes that share the notebooks among them.
+
+    On Linux they are forked, as Python did by itself until 3.13: so they have the plug-ins and
+    the settings of the process that asks.
+    """
+    context = multiprocessing.get_context("fork" if sys.platform == "linux" else None)
+    return ProcessPoolExecutor(min(len(paths), os.cpu_count() or 1), context)
 
 
 @functools.cache
