@@ -242,6 +242,8 @@ def _is_special(poses):
 #: A description that costs so much more than the simplest is left out; the second holds unless both
 #: sides are read otherwise in the same way.
 DEARER, DEARER_ON_ONE_SIDE = 1.15, 0.4
+#: The same where two quaternions exchange their orders.
+DEARER_CROSSED = 1.7
 _ORDERS = {"wxyz": "first", "xyzw": "last"}
 
 
@@ -251,8 +253,7 @@ def _names(best, others, ways):
     near = [
         chain
         for chain in others
-        if _dearness(chain) - _dearness(best)
-        <= (DEARER if _order_shared(chain) == _order_shared(best) else DEARER_ON_ONE_SIDE) + 1e-6
+        if _dearness(chain) - _dearness(best) <= _limit(chain, best) + 1e-6
     ]
     for chain in [best, *near]:
         swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
@@ -275,6 +276,13 @@ def _usual_order(chain, known):
         order is None or order == declared or (declared is None and order in _ORDERS)
         for order, declared in zip(orders, known, strict=True)
     )
+
+
+def _limit(chain, best):
+    if _order_shared(chain) != _order_shared(best):
+        return DEARER_ON_ONE_SIDE
+    crossed = not _order_shared(best) and set(best.kinds) == {"quaternion"}
+    return DEARER_CROSSED if crossed else DEARER
 
 
 def _order_shared(chain):

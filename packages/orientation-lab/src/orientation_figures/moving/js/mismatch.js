@@ -6,7 +6,7 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmF
   dcmFromQuaternion, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
   SEQUENCES, transpose, unit } from './mathematics.js';
 
-const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
+const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, DEARER_CROSSED = 1.7, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
 const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
@@ -740,6 +740,10 @@ export const wordsOf = (chain, table, ways = [null, null], which = 0) => [...ofB
   ...relationWords(chain, secondIsInverse(chain, ways)[which], table)];
 
 const ORDERS = { wxyz: 'first', xyzw: 'last' };
+const limitOf = (chain, best) => {
+  if (orderShared(chain) !== orderShared(best)) return DEARER_ON_ONE_SIDE;
+  return !orderShared(best) && best.first.kind === 'quaternion' && best.second.kind === 'quaternion' ? DEARER_CROSSED : DEARER;
+};
 const orderShared = ({ first, second }) => first.choices.order === second.choices.order;
 const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
 
@@ -747,7 +751,7 @@ const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (ch
 function namesOf(best, others, known, ways, table) {
   const names = [], seen = new Set();
   const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || order === known[k] || (!known[k] && order in ORDERS))
-    && dearness(chain) <= dearness(best) + (orderShared(chain) === orderShared(best) ? DEARER : DEARER_ON_ONE_SIDE) + 1e-6);
+    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6);
   for (const chain of [best, ...usual]) {
     const swaps = secondIsInverse(chain, ways);
     swaps.forEach((swapped, which) => {
