@@ -10,9 +10,7 @@ from coursework.checking import questions
 from coursework.checking.fields import Misread
 from coursework.checking.question import Locker, Question, Sealed
 from coursework.grading.judging.contract import Contract
-from coursework.grading.judging.ledger import Ledger
 from coursework.grading.record import Record
-from coursework.grading.store import Store
 
 LEVER = {
     "kind": "expression", "salt": "b", "symbols": {"F": [1, 5]}, "answer": "moment", "worth": 2,
@@ -28,10 +26,6 @@ RECORD = {
     "answers": {},
     "marks": {"levers/one": MARK},
 }
-DECISION = {
-    "id": "1", "when": "2026-10-05T12:00:00", "who": "Bea", "student": "ann",
-    "assignment": "levers", "question": "levers/one", "answer": "a", "credit": 0.5,
-}  # fmt: skip
 
 
 def test_a_sealed_question_is_written_as_it_was_read():
@@ -106,28 +100,3 @@ def test_a_student_whose_sealed_file_cannot_be_used_is_told_what_to_do(
     with pytest.raises(RuntimeError, match=said):
         questions.find_question("levers/one", "")
     questions.notebook_questions.cache_clear()
-
-
-def test_a_record_of_a_later_version_is_refused(tmp_path):
-    store = Store(tmp_path)
-    store.save(Record.from_json(RECORD, "here"))
-    path = store.place("ann", "levers")
-    path.write_text(json.dumps({**json.loads(path.read_text()), "format": 9}))
-    with pytest.raises(ValueError, match="of format 9.*reads format 3"):
-        store.read("ann", "levers")
-
-
-@pytest.mark.parametrize(
-    "change, said",
-    [
-        ({"credit": 2}, "'credit' should be a share from 0 to 1, and is 2"),
-        ({"who": 3}, "'who' should be a text, and is 3"),
-        ({"colour": "red"}, "without 'colour'"),
-        ({"rubric": ["Sign"], "points": []}, "those of 1 lines"),
-    ],
-)
-def test_a_line_of_the_ledger_that_is_none_says_why(tmp_path, change, said):
-    (tmp_path / "ledger.jsonl").write_text(json.dumps({**DECISION, **change}) + "\n")
-    with pytest.raises(ValueError, match="line 1: this is no decision") as error:
-        Ledger(tmp_path)
-    assert said in str(error.value)

@@ -5,14 +5,14 @@ is told, and nothing counts unseen.
 import csv
 import datetime
 import io
-import json
 import re
 import shutil
+from dataclasses import replace
 from urllib.parse import quote_plus
 
 import nbformat
 import pytest
-from grading_class import notebook, put
+from grading_class import notebook, put, write_term
 from test_review import Served
 
 from coursework.__main__ import main
@@ -20,15 +20,14 @@ from coursework.authoring.author import AuthorError
 from coursework.authoring.source import read_source
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.export import gradebooks
-from coursework.grading.grade import grade, regrade
+from coursework.grading.grade import bring_in_decisions, grade, regrade
 from coursework.grading.judging import secret
-from coursework.grading.judging.ledger import (
-    APPEALS,
-    FORMAT,
+from coursework.grading.judging.journal import (
     REJECTED,
     UNDER_REVIEW,
     Collision,
-    Ledger,
+    Journal,
+    Part,
 )
 from coursework.grading.review import Class
 from coursework.grading.store import Store
@@ -111,39 +110,39 @@ def cluster_of(store, question, student):
 
 
 def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
-    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
+    record, journal = out.read("ben", "essays"), Journal(out.folder)
     key = "ben", "essays", SUM
 
     def state():
-        return Ledger(out.folder).standing().appeals[key][-1]
+        return Journal(out.folder).standing().appeals[key][-1]
 
-    ledger.appeal(record, SUM, "But it is right.", who="Ann")
+    journal.appeal(record, SUM, "But it is right.", who="Ann")
     assert state().state == "raised" and state().is_open
     with pytest.raises(Collision, match="open already"):
-        ledger.appeal(record, SUM, "Again.", who="Ann")
+        journal.appeal(record, SUM, "Again.", who="Ann")
     first = state()
-    ledger.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
+    journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
     with pytest.raises(Collision, match="went on with the appeal"):  # upon what was seen before
-        ledger.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
+        journal.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
     with pytest.raises(ValueError, match="why it is rejected"):
-        ledger.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
-    ledger.appeal(
+        journal.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
+    journal.appeal(
         record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann"
     )
     assert state().state == "rejected" and not state().is_open
-    late = ledger.decision(record, SUM, 1, who="Ben", appeal=first.id)
+    late = journal.decision(record, SUM, 1, who="Ben", appeal=first.id)
     with pytest.raises(Collision, match="settled the appeal"):
-        ledger.append([late], collisions=True)
-    ledger.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
-    ledger.append([late], collisions=True)
-    assert state().state == "accepted" and Ledger(out.folder).current()[key].credit == 1
+        journal.append([late], collisions=True)
+    journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
+    journal.append([late], collisions=True)
+    assert state().state == "accepted" and Journal(out.folder).current()[key].credit == 1
     # Undo is real: the mark is what it was, and the appeal waits again.
-    ledger.take_back([record], SUM, "Ben")
-    assert state().state == "under review" and key not in Ledger(out.folder).current()
+    journal.take_back([record], SUM, "Ben")
+    assert state().state == "under review" and key not in Journal(out.folder).current()
     # Once it is closed, another one may be raised.
-    ledger.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
-    ledger.appeal(record, SUM, "I ask once more.", who="Ann")
-    assert [one.state for one in Ledger(out.folder).standing().appeals[key]] == [
+    journal.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
+    journal.appeal(record, SUM, "I ask once more.", who="Ann")
+    assert [one.state for one in Journal(out.folder).standing().appeals[key]] == [
         "rejected",
         "raised",
     ]
@@ -160,7 +159,8 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         f'"{name}",{number},,{name},x,\n' for number, name in enumerate(("ada", "ben", "cem"), 1)
     ))  # fmt: skip
     for name in ("ada", "ben", "cem"):
-        Ledger(out.folder).add(out.read(name, "essays"), ESSAY, 1, who="Ann")
+        Journal(out.folder).add(out.read(name, "essays"), ESSAY, 1, who="Ann")
+    bring_in_decisions(out.folder)
     command = ["export", str(out.folder), "--lms", str(book), "--filled", str(book)]
     main(command)
     cluster = cluster_of(out, SUM, "ben")
@@ -216,58 +216,66 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
 
 
 def test_a_mark_is_that_of_the_day_it_is_asked_for(out):
-    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
-    appeal = ledger.appeal(record, SUM, "Right!", who="Ann")
-    made = [
-        appeal._replace(when="2026-02-01T00:00:00.000000+00:00"),
-        ledger.decision(record, SUM, 1, who="Ann", appeal=appeal.id)._replace(
-            when="2026-03-01T00:00:00.000000+00:00"
-        ),
+    record, journal = out.read("ben", "essays"), Journal(out.folder)
+    day = datetime.datetime(2026, 1, 1, tzinfo=datetime.UTC)
+    given = [
+        replace(one, when=f"2026-01-0{number}T00:00:00.000000+00:00")
+        for number, one in enumerate(journal.events, 1)
     ]
-    ledger.path.unlink()
-    Ledger(out.folder).append(made)
-    for month, state in ((1, None), (2, "raised"), (3, "accepted")):
+    journal.path.unlink()
+    (ben,) = [one for one in given if one.student == "ben"]
+    appeal = journal.appeal(record, SUM, "Right!", who="Ann")
+    journal.path.unlink()
+    months = [f"2026-0{month}-01T00:00:00.000000+00:00" for month in (2, 3)]
+    decided = journal.decision(record, SUM, 1, who="Ann", appeal=appeal.id)
+    parts = {**ben.marks, SUM: Part(2, 2, "decided")}
+    events = [
+        *given,
+        replace(appeal, when=months[0]),
+        replace(decided, when=months[1]),
+        replace(ben, id="later", when=months[1], points=2, marks=parts),
+    ]
+    Journal(out.folder).append(events)
+    with pytest.raises(gradebooks.CannotExport, match="no marks"):
+        gradebooks.Marks(out, as_of=day - datetime.timedelta(days=1))
+    for month, is_open in ((1, False), (2, True), (3, False)):
         day = datetime.datetime(2026, month, 15, tzinfo=datetime.UTC)
         marks = gradebooks.Marks(out, as_of=day)
-        (found,) = [one for one in marks.records if one.student == "ben"]
-        appeals = found.marks[SUM].appeals
-        assert [one["state"] for one in appeals] == (
-            [state] if state else []
-        ) and found.points == 2 * (month == 3)
+        assert marks.appeals("ben") == ([SUM] if is_open else [])
+        assert marks.points("ben") == 2 * (month == 3)
 
 
 def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
-    table = (
+    path = out.folder.parent / "appeals.csv"
+    path.write_text(
         "student,question,words\n" + f'ben,{SUM},"=1+1 {SCRIPT}"\nnobody,{SUM},Why?\ncem,{SUM},\n'
     )
-    (out.folder / APPEALS).write_text(table)
-    for _ in range(2):
-        main(["regrade", str(out.folder), "--solutions", str(begun / "solutions"), "--yes"])
-    said = capsys.readouterr()
-    assert (
-        "line 3: there is no answer of 'nobody'" in said.err
-        and "1 appeal is open (ben)" in said.err
-    )
-    (appeals,) = Ledger(out.folder).standing().appeals.values()
+    for entered in (1, 0):
+        main(["merge", str(out.folder), str(path)])
+        said = capsys.readouterr()
+        assert f"{entered} lines of" in said.out and "line 3: there is no answer of" in said.out
+    assert "1 appeal is open (ben)" in said.err
+    (appeals,) = Journal(out.folder).standing().appeals.values()
     assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]
     for path in out.folder.rglob("*.csv"):
         cells = [cell for row in csv.reader(path.read_text().splitlines()) for cell in row]
-        assert path.name == APPEALS or not any(cell.startswith("=") for cell in cells)
+        assert not any(cell.startswith("=") for cell in cells)
     assert not any(SCRIPT in path.read_text() for path in out.folder.rglob("*.html"))
 
 
 def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out, tmp_path):
-    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
-    first = ledger.appeal(record, SUM, "Right!", who="Ann")
-    one = ledger.decision(record, SUM, 1, who="Ann", appeal=first.id)
-    ledger.append([one], collisions=True)
-    ledger.append([ledger.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
+    record, journal = out.read("ben", "essays"), Journal(out.folder)
+    first = journal.appeal(record, SUM, "Right!", who="Ann")
+    one = journal.decision(record, SUM, 1, who="Ann", appeal=first.id)
+    journal.append([one], collisions=True)
+    journal.append([journal.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
     options = {"solutions": begun / "solutions", "limits": LIMITS, "show": io.StringIO()}
-    grade(begun / "in", out.folder, roster=tmp_path / "roster.csv", **options)
+    write_term(out, tmp_path / "roster.csv", {"essays": ["essays"]})
+    grade(begun / "in", out.folder, **options)
     found = out.read("benjamin", "essays").marks[SUM]
     assert (found.points, [one["state"] for one in found.appeals]) == (1, ["accepted"])
-    again = Ledger(out.folder)
+    again = Journal(out.folder)
     again.take_back([out.read("benjamin", "essays")], SUM, "Ben")
     assert again.current()["benjamin", "essays", SUM].credit == 1
 
@@ -276,8 +284,8 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
 
 
 def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_path, capsys):
-    Ledger(out.folder).add(out.read("ben", "essays"), SUM, 1, who="Ann")
-    Ledger(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
+    Journal(out.folder).add(out.read("ben", "essays"), SUM, 1, who="Ann")
+    Journal(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
     options = {"solutions": begun / "solutions", "limits": LIMITS}
     regrade(out.folder, solutions=begun / "solutions", show=io.StringIO())
     # A word of the text is no other question.
@@ -373,13 +381,14 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
     # more than all, or less than nothing.
     mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
     found = regrade(out.folder, solutions=mended, dry_run=True)
-    assert {one.student: (one.before, one.after) for one in found.changes} == {
+    changes = [change for move in found.moves for change in move.changes]
+    assert {one.student: (one.before, one.after) for one in changes} == {
         "ada": (2.5, 3), "ben": (1, 0), "cem": (1.5, 1.25)
     }  # fmt: skip
     regrade(out.folder, solutions=mended, show=io.StringIO())
     assert points_of(out) == {"ada": 5, "ben": 0, "cem": 1.25}
     # Points that somebody gave by hand stay.
-    Ledger(out.folder).add(out.read("ada", "essays"), ESSAY, 1 / 3, who="Ben", rubric=[names])
+    Journal(out.folder).add(out.read("ada", "essays"), ESSAY, 1 / 3, who="Ben", rubric=[names])
     regrade(out.folder, solutions=solutions, show=io.StringIO())
     assert points_of(out)["ada"] == 3
 
@@ -393,64 +402,26 @@ def test_a_rubric_by_which_nobody_could_have_all_is_refused(tmp_path):
 # --- the file -----------------------------------------------------------------------------------
 
 
-def test_older_ledgers_are_read_and_newer_ones_refused(out):
-    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
-    ledger.add(record, SUM, 0.5, who="Ann")
-    line = json.loads(ledger.path.read_text())
-    assert line["format"] == FORMAT
-    first = (
-        "id",
-        "when",
-        "who",
-        "student",
-        "assignment",
-        "question",
-        "answer",
-        "credit",
-        "comment",
-        "rubric",
-        "why",
-    )
-    ledger.path.write_text(json.dumps({name: line[name] for name in first}) + "\n")
-    old = Ledger(out.folder)
-    assert old.current()["ben", "essays", SUM].credit == 0.5
-    old.take_back([record], SUM, "Ann")
-    assert Ledger(out.folder).current() == {}
-    whole = ledger.path.read_text()
-    ledger.path.write_text(
-        whole + json.dumps({**line, "format": FORMAT + 1, "event": "mood"}) + "\n"
-    )
-    with pytest.raises(ValueError, match="line 3: a later version"):
-        Ledger(out.folder)
-    for wrong in (
-        {"when": "yesterday"},
-        {"credit": 2},
-        {"event": "mood"},
-        {"student": 3, "id": None},
-    ):
-        ledger.path.write_text(json.dumps({**line, **wrong}) + "\n" + whole)
-        with pytest.raises(ValueError, match="line 1: this is no decision"):
-            Ledger(out.folder)
-
-
 def test_who_saw_another_decision_decided_later_whatever_the_clock_says(out):
-    record, ledger = out.read("ben", "essays"), Ledger(out.folder)
-    one = ledger.decision(record, SUM, 0.5, who="Ann")
-    other = ledger.decision(record, SUM, 1, who="Ben", after=one.id)._replace(
-        when="2020-01-01T00:00:00.000000+00:00"
+    record, journal = out.read("ben", "essays"), Journal(out.folder)
+    one = journal.decision(record, SUM, 0.5, who="Ann")
+    other = replace(
+        journal.decision(record, SUM, 1, who="Ben", after=one.id),
+        when="2020-01-01T00:00:00.000000+00:00",
     )
-    third = ledger.decision(record, SUM, 0, who="Cem", after=other.id)._replace(when=one.when)
+    third = replace(journal.decision(record, SUM, 0, who="Cem", after=other.id), when=one.when)
     for events, credit in (([one, other], 1), ([one, other, third], 0), ([third, other, one], 0)):
-        ledger.path.unlink(missing_ok=True)
-        Ledger(out.folder).append(events)
-        assert Ledger(out.folder).current()["ben", "essays", SUM].credit == credit
+        journal.path.unlink(missing_ok=True)
+        Journal(out.folder).append(events)
+        assert Journal(out.folder).current()["ben", "essays", SUM].credit == credit
 
 
 def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
-    other = Ledger(tmp_path)
+    other = Journal(tmp_path)
     other.add(out.read("ben", "essays"), SUM, 1, who="Ben")
-    (out.folder / APPEALS).write_text(f"student,question,words\nben,{SUM},Right!\n")
-    (out.folder / "decisions.csv").write_text(f"student,question,credit\ncem,{SUM},0.5\n")
+    Journal(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
+    appeals = tmp_path / "appeals.csv"
+    appeals.write_text(f"student,question,words\nben,{SUM},Right!\n")
     put(tmp_path / "in", "dan", answered("So.", 5), "essays.ipynb")
     made = (regrade_page := "regrade.html"), "regrade.csv", "whose.csv", "lock"
 
@@ -462,7 +433,7 @@ def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
         }
 
     before, solutions = contents(), ["--solutions", str(begun / "solutions")]
-    main(["merge", str(out.folder), str(other.path), "--dry-run"])
+    main(["merge", str(out.folder), str(other.path), str(appeals), "--dry-run"])
     main(["regrade", str(out.folder), *solutions, "--dry-run"])
     main(["grade", str(tmp_path / "in"), "--out", str(out.folder), *solutions, "--dry-run"])
     said = capsys.readouterr()

@@ -10,14 +10,14 @@ import zipfile
 import nbformat
 import pytest
 from attacks import answers, corpus, names
-from grading_class import handed_in, put, write_sources
+from grading_class import give, handed_in, put, write_sources
 
 from coursework.checking.evaluate import MP
 from coursework.checking.points import points
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade
 from coursework.grading.judging.marking import questions_of
-from coursework.grading.record import Identity, Record
+from coursework.grading.record import Identity, Mark, Record
 from coursework.grading.store import Store, file_name
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import Roster
@@ -151,28 +151,17 @@ def test_many_of_them_pass_the_check_that_a_student_has(records):
 # ---- names on the way out
 
 
-class Class:
+def marks_of(folder, **identities):
     """Marks of a class whose students are known by their folders alone, or
     by what a system or a roster says.
     """
-
-    def __init__(self, folder, **identities):
-        self.students, self.worth, self.store = identities, 6, Store(folder)
-
-    def identity(self, student):
-        return Identity.from_json(self.students[student], student)
-
-    def points(self, student):
-        return 6
-
-    def undecided(self, student):
-        return 0
-
-    def appeals(self, student):
-        return []
-
-    def excused(self, student):
-        return False
+    store = Store(folder)
+    for student, about in identities.items():
+        called = {kind: value for kind, value in about.items() if kind != "own"}
+        identity = Identity(called, tuple(about["own"]) if "own" in about else None)
+        marks = {"t/q": Mark("correct", points=6, worth=6)}
+        give(store, Record(student, "t", identity=identity, marks=marks))
+    return gradebooks.Marks(store)
 
 
 OF_CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,T (7)\nBob,2,,bob,,\nEve,3,,eve,,\n"
@@ -199,7 +188,7 @@ OF_MOODLE = (
 )
 def test_a_line_of_a_gradebook_is_filled_for_nobody_else(tmp_path, book, students, filled):
     (tmp_path / "book.csv").write_text(book, "utf8")
-    said = gradebooks.fill(tmp_path / "book.csv", Class(tmp_path, **students))
+    said = gradebooks.fill(tmp_path / "book.csv", marks_of(tmp_path, **students))
     after = (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[1:]
     changed = [
         line.lower() for line, old in zip(after, book.splitlines()[1:], strict=True) if line != old
@@ -240,7 +229,7 @@ def test_records_of_two_lie_in_two_places_on_every_system():
 
 def test_a_copy_of_a_record_counts_for_nobody(tmp_path):
     store = Store(tmp_path)
-    store.save(Record("bob", "turns"))
+    give(store, Record("bob", "turns"))
     (tmp_path / "records" / "eve").mkdir()
     shutil.copy(store.place("bob", "turns"), tmp_path / "records" / "eve" / "turns.json")
     assert [record.student for record in store.all()] == ["bob"]

@@ -12,7 +12,7 @@ from importlib import metadata
 
 import nbformat
 import pytest
-from grading_class import handed_in, write_sources
+from grading_class import handed_in, write_sources, write_term
 
 from coursework.__main__ import main
 from coursework.grading.export.gradescope import requirements
@@ -35,10 +35,12 @@ def machine(tmp_path_factory):
     home = place / "autograder"
     (place / "roster.csv").write_text("student,name,email\nann,Ann Right,ann@uni.example\n")
     solutions = write_sources(place / "solutions")
+    write_term(place / "marks", place / "roster.csv", {"homework": ["turns"]})
     main(
-        ["gradescope", "--out", str(place / "autograder.zip"), "--solutions", str(solutions)]
-        + ["--assignment", "homework=turns", "--roster", str(place / "roster.csv")]
+        ["gradescope", str(place / "marks"), "--out", str(place / "autograder.zip")]
+        + ["--solutions", str(solutions), "--assignment", "homework"]
     )
+    assert (place / "autograder.zip").stat().st_mode & 0o077 == 0
     with zipfile.ZipFile(place / "autograder.zip") as archive:
         archive.extractall(home / "source")
         modes = {one.filename: one.external_attr >> 16 & 0o777 for one in archive.infolist()}

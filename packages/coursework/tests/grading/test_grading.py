@@ -21,7 +21,16 @@ from html.parser import HTMLParser
 
 import nbformat
 import pytest
-from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
+from grading_class import (
+    RIGHT,
+    SETUP,
+    give,
+    handed_in,
+    notebook,
+    put,
+    write_sources,
+    write_term,
+)
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
@@ -34,8 +43,8 @@ from coursework.grading.execution.sandbox import (
     given_up,
 )
 from coursework.grading.export import gradebooks
-from coursework.grading.grade import NothingToGrade, grade, regrade
-from coursework.grading.judging.ledger import Ledger
+from coursework.grading.grade import NothingToGrade, bring_in_decisions, grade, regrade
+from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Answer, Identity
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
@@ -123,7 +132,7 @@ def course(tmp_path_factory):
     put(submissions, SCRIPT.replace("/", ""), "no notebook", "answers.pdf")
     (submissions / "refused" / "link.ipynb").symlink_to(submissions / "right" / "turns.ipynb")
     said = grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
-    assert said == {"graded": 15, "kept": 0, "refused": 3}
+    assert said == {"graded": 15, "kept": 0, "refused": 3, "held": 0}
     return place
 
 
@@ -427,13 +436,14 @@ def test_identical_wrong_answers_are_put_together(tmp_path, course):
             mark = replace(
                 found.marks["turns/sum"], outcome="wrong", note="", group=group, points=0
             )
-            store.save(
+            give(
+                store,
                 replace(
                     found,
                     student=f"student-{number}",
                     marks={**found.marks, "turns/sum": mark},
                     answers={**found.answers, "turns/sum": Answer("recorded", plain)},
-                )
+                ),
             )
         write_all(store)
         return (tmp_path / "report.html").read_text()
@@ -481,13 +491,14 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
         f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))"
     )
     running = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
-    while len(list((out / "records").glob("*/*.json"))) < 3:
+    while len(list((out / "waiting").glob("*/*.json"))) < 3:
         assert running.poll() is None, "it ended before it could be killed"
     running.send_signal(signal.SIGKILL)
     running.wait()
-    done = len(list((out / "records").glob("*/*.json")))
-    (out / "records" / "right").mkdir(exist_ok=True)
-    (out / "records" / "right" / ".half-written").write_text("{")
+    done = len(list((out / "waiting").glob("*/*.json")))
+    assert not list((out / "records").glob("*/*.json"))
+    (out / "waiting" / "right").mkdir(exist_ok=True)
+    (out / "waiting" / "right" / ".half-written").write_text("{")
     said = grade(
         course / "submissions",
         out,
@@ -495,7 +506,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
         limits=LIMITS,
         show=io.StringIO(),
     )
-    assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3}
+    assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3, "held": 0}
     lines = graded_lines(out)
     # The last one may have been recorded and not yet logged when the run was killed.
     assert len(set(lines)) == len(lines) and len(lines) in (14, 15)
@@ -514,7 +525,7 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
         limits=LIMITS,
         show=io.StringIO(),
     )
-    assert said == {"graded": 0, "kept": 15, "refused": 3}
+    assert said == {"graded": 0, "kept": 15, "refused": 3, "held": 0}
     assert contents(copied) == contents(course / "out")
 
 
@@ -524,7 +535,7 @@ def test_what_changed_is_graded_again(course, copied, tmp_path):
     said = grade(
         submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO()
     )
-    assert said == {"graded": 1, "kept": 14, "refused": 3}
+    assert said == {"graded": 1, "kept": 14, "refused": 3, "held": 0}
     assert Store(copied).read("right", "turns").points == 5
 
 
@@ -560,7 +571,7 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
         said = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     finally:
         versions.software.cache_clear()
-    assert said == {"graded": 1, "kept": 0, "refused": 0}
+    assert said == {"graded": 1, "kept": 0, "refused": 0, "held": 0}
 
 
 def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, tmp_path):
@@ -570,16 +581,14 @@ def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, t
         few,
         copied,
         solutions=course / "solutions",
-        assignments={"other": ["axes"]},
         limits=LIMITS,
         show=io.StringIO(),
     )
     assert said["graded"] == 1
-    assert regrade(copied, solutions=course / "solutions") == []
-    (copied / "course.json").unlink()
-    with pytest.raises(
-        NothingToGrade, match="does not say which notebooks make up 'other', 'turns'"
-    ):
+    assert regrade(copied, solutions=course / "solutions").moves == []
+    # What the term calls otherwise is another assignment.
+    write_term(copied, assignments={"other": ["turns"]})
+    with pytest.raises(NothingToGrade, match="no assignment 'axes'; there are other"):
         regrade(copied, solutions=course / "solutions")
 
 
@@ -610,18 +619,20 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     options = {"solutions": course / "solutions", "limits": LIMITS}
     grade(few, copied, show=io.StringIO(), **options)
     for name, credit in (("b", 0.5), ("c", 1)):
-        Ledger(copied).add(
+        Journal(copied).add(
             Store(copied).read(name, "turns"), "turns/sum", credit, who="Ann", why="appeal"
         )
     roster = tmp_path / "roster.csv"
     roster.write_text("student,name\nanother,c\nsomebody,b\n")
-    grade(few, copied, roster=roster, show=shown, **options)
+    write_term(copied, roster)
+    grade(few, copied, show=shown, **options)
     points = {row["student"]: row["points"] for row in rows_of(copied / "grades.csv")}
     assert "b" not in points and (points["somebody"], points["another"]) == ("5.5", "6")
     assert "'b' is now 'somebody'" in shown.getvalue() and "1 of the decisions" in shown.getvalue()
-    handed_on = {one.student: one for one in Ledger(copied).decisions}
+    handed_on = {one.student: one for one in Journal(copied).decisions}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
     assert handed_on["somebody"].when == handed_on["b"].when
+    (copied / "term.toml").unlink()
     # Folders that are renamed, too: nobody knows which is which.
     for name in ("b", "c"):
         (few / name).rename(few / f"{name}{name}")
@@ -634,10 +645,10 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     assert Store(copied).read("bb", "turns").points == 5
 
 
-def test_a_ledger_of_other_answers_is_said(course, copied, capsys, tmp_path):
+def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
     found = Store(copied).read("mistaken", "turns")
     (tmp_path / "other").mkdir()
-    other = Ledger(tmp_path / "other")
+    other = Journal(tmp_path / "other")
     other.add(found, "turns/sum", 1)
     other.add(replace(found, student="stranger"), "turns/sum", 1)
     other.add(replace(found, answers={}), "turns/about-x", 1)
@@ -677,12 +688,12 @@ def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypa
         "coursework.grading.grade.side_by_side", lambda *arguments: pytest.fail("it was run")
     )
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
+    write_term(tmp_path / "out", tmp_path / "roster.csv")
     shown = io.StringIO()
     grade(
         course / "submissions",
         tmp_path / "out",
         solutions=course / "solutions",
-        roster=tmp_path / "roster.csv",
         dry_run=True,
         show=shown,
     )
@@ -925,99 +936,80 @@ def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path
         ],
     )
     shutil.copy(course / "solutions" / ".grading-secret", changed)
-    moved = {one.student: (one.before, one.after) for one in regrade(copied, solutions=changed)}
-    assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and "blank" not in moved
-    assert "mistaken" in moved and regrade(copied, solutions=changed) == []
+    moved = {
+        one.student: (one.before, one.after) for one in regrade(copied, solutions=changed).moves
+    }
+    assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and moved["blank"] == (0, 0)
+    assert "mistaken" in moved and regrade(copied, solutions=changed).moves == []
     regrade(copied, solutions=course / "solutions")
     assert contents(copied / "records") == contents(course / "out" / "records")
 
 
-def test_a_person_decides_what_is_undecided(course, copied):
+@pytest.mark.parametrize(
+    "table, points, unused",
+    [
+        ("id,version,credit,comment\n{id},{version},0.5,Rounded.\n", 5.5, []),
+        ("ID;Version;Credit\r\n{id};{version};0,5\r\n", 5.5, []),
+        ("\ufeffid\tversion\tcredit\n{id}\t{version}\t1\n", 6, []),
+        (
+            "id,version,student,credit\nabc,{version},n\u200cerly,1\n",
+            5,
+            ["line 2, n\u200cerly: this answer is not here; perhaps it was handed in anew"],
+        ),
+    ],
+)
+def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(
+    copied, tmp_path, table, points, unused
+):
     lost, row = rows_of(copied / "undecided.csv")
     assert (lost["student"], lost["why"]) == ("endless", "lost to a limit")
     assert (row["student"], row["question"], row["credit"]) == ("nearly", "turns/sum", "")
-    row |= {"credit": "0.5", "comment": "Rounded."}
-    (copied / "decisions.csv").write_text(table(list(row), [list(row.values())]))
-    (moved,) = regrade(copied, solutions=course / "solutions")
-    assert (moved.student, moved.before, moved.after) == ("nearly", 5, 5.5)
-    mark = Store(copied).read("nearly", "turns").marks["turns/sum"]
-    assert (mark.outcome, mark.points, mark.messages) == ("decided", 0.5, ("Rounded.",))
-    assert [row["student"] for row in rows_of(copied / "undecided.csv")] == ["endless"]
-    (copied / "decisions.csv").write_text("student,question,credit\r\nnearly,turns/sum,much\r\n")
-    with pytest.raises(
-        ValueError, match="line 2: credit is a number from 0 to 1, and this is 'much'"
-    ):
-        regrade(copied, solutions=course / "solutions")
-
-
-@pytest.mark.parametrize(
-    "decisions, points, said",
-    [
-        ("student,question,credit\nnearly,turns/sum,0.5\n", 5.5, ""),
-        ("Student;Question;Credit\r\nnearly;turns/sum;0,5\r\n", 5.5, ""),
-        ("\ufeffID\tcredit\n{id}\t1\n", 6, ""),
-        ("id,student,question,credit\n{id},n\u200cearly,any,1\n", 6, ""),
-        ("student,question,credit\nnerly,turns/sum,1\nnearly,turns/summ,1\n", 5,
-         "line 2: .*'nerly'.*line 3: .*"),
-        # Every outcome can be overridden, also one that is right.
-        ("student,question,credit\nnearly,turns/doubled,0\nnearly,turns/sum,1\n", 3, ""),
-    ],
-)  # fmt: skip
-def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(
-    course, copied, capsys, decisions, points, said
-):
-    _, row = rows_of(copied / "undecided.csv")
-    (copied / "decisions.csv").write_text(decisions.format(id=row["id"]), "utf8")
-    regrade(copied, solutions=course / "solutions")
-    assert Store(copied).read("nearly", "turns").points == points
-    assert re.search(said, capsys.readouterr().err, re.S)
-    lines = (
-        (copied / "ledger.jsonl").read_text().splitlines()
-        if (copied / "ledger.jsonl").exists()
-        else []
-    )
-    assert regrade(copied, solutions=course / "solutions") == []
-    assert len(lines) == len((copied / "ledger.jsonl").read_text().splitlines() if lines else [])
-
-
-def test_a_table_without_the_columns_is_said(course, copied):
-    (copied / "decisions.csv").write_text("Name,Points\nnearly,1\n")
-    with pytest.raises(ValueError, match="has the columns credit and id"):
-        regrade(copied, solutions=course / "solutions")
+    path, store, journal = tmp_path / "decided.csv", Store(copied), Journal(copied)
+    path.write_text(table.format(**row), "utf8")
+    assert journal.take_in_table(path, store.all(), "Ann") == (not unused, unused)
+    assert journal.take_in_table(path, store.all(), "Ann") == (0, unused)  # once
+    bring_in_decisions(copied)
+    assert store.read("nearly", "turns").points == points
+    left = [row["student"] for row in rows_of(copied / "undecided.csv")]
+    assert left == (["endless", "nearly"] if unused else ["endless"])
+    path.write_text(table.format(**row).replace("0.5", "much").replace("0,5", "much"))
+    if "much" in path.read_text():
+        with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, .*'much'"):
+            journal.take_in_table(path, store.all())
 
 
 def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, tmp_path):
-    store, ledger = Store(copied), Ledger(copied)
+    store, journal = Store(copied), Journal(copied)
     found = store.read("mistaken", "turns")
-    ledger.add(found, "turns/sum", 1, who="Ann", comment="All right.", why="appeal")
-    before = ledger.path.read_bytes()
-    ledger.add(found, "turns/sum", 0.25, who="Bea", rubric=["Sign"])
-    assert ledger.path.read_bytes().startswith(before)
-    assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4.25]
+    journal.add(found, "turns/sum", 1, who="Ann", comment="All right.", why="appeal")
+    before = journal.path.read_bytes()
+    journal.add(found, "turns/sum", 0.25, who="Bea", rubric=["Sign"])
+    assert journal.path.read_bytes().startswith(before)
+    assert [one.after for one in regrade(copied, solutions=course / "solutions").moves] == [4.25]
     mark = store.read("mistaken", "turns").marks["turns/sum"]
     assert (
         mark.before.note == "opposite"
         and mark.decided["who"] == "Bea"
         and mark.messages == ("Sign",)
     )
-    Ledger(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
-    assert [one.after for one in regrade(copied, solutions=course / "solutions")] == [4]
-    ledger = Ledger(copied)
-    ledger.add(found, "turns/sum", 1, who="Ann")
-    assert len(ledger.path.read_text().splitlines()) == 4
+    Journal(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
+    assert [one.after for one in regrade(copied, solutions=course / "solutions").moves] == [4]
+    journal = Journal(copied)
+    journal.add(found, "turns/sum", 1, who="Ann")
+    assert [one.credit for one in journal.decisions] == [1, 0.25, None, 1]
     # Graded again with another answer, the decision on the old one does not count.
     again = tmp_path / "again"
     put(again, "mistaken", handed_in(sum="sine = 0"))
     grade(again, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
     assert store.read("mistaken", "turns").marks["turns/sum"].outcome == "wrong"
     with pytest.raises(ValueError, match="from 0 to 1"):
-        ledger.add(found, "turns/sum", 2)
+        journal.add(found, "turns/sum", 2)
 
 
 def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     found = Store(copied).read("mistaken", "turns")
     (tmp_path / "other").mkdir()
-    mine, other = Ledger(copied), Ledger(tmp_path / "other")
+    mine, other = Journal(copied), Journal(tmp_path / "other")
     mine.add(found, "turns/sum", 1, who="Ann")
     other.add(found, "turns/about-x", 1, who="Bea")
     assert mine.merge(other.path) == (other.events, []) and mine.merge(other.path) == ([], [])
@@ -1029,9 +1021,9 @@ def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     new, ((first, second),) = mine.merge(other.path)
     assert (len(new), first.who, second.who) == (1, "Ann", "Bea")
     other.path.write_text(other.path.read_text() + "{}\n")
-    with pytest.raises(ValueError, match="line 3: this is no decision"):
+    with pytest.raises(ValueError, match="line 3: this is not what was written"):
         mine.merge(other.path)
-    with pytest.raises(SystemExit, match="decided nothing yet has no ledger"):
+    with pytest.raises(SystemExit, match="decided nothing yet has no journal"):
         main(["merge", str(copied), str(other.path), str(tmp_path / "nothing.jsonl")])
 
 
@@ -1082,7 +1074,6 @@ def test_a_gradebook_is_filled_and_nothing_else_of_it_changes(
 ):
     path = tmp_path / "book.csv"
     path.write_bytes(before.encode())
-    (marks.store.folder / gradebooks.WRITTEN).unlink(missing_ok=True)
     said = gradebooks.fill(
         path, marks, overwrite={"mistaken", "broken"} & set(re.findall(r"\w+", before))
     )
@@ -1149,10 +1140,10 @@ def test_what_was_written_from_here_is_brought_up_to_date(marks, tmp_path):
         "Student,ID,SIS User ID,SIS Login ID,Section,Essay (5)\nA,1,,right,,\nB,2,,mistaken,,\n"
     )
     gradebooks.fill(path, marks)
-    known = marks.store.folder / gradebooks.WRITTEN
     # Later the same marks are others; what stands in the system is what
     # was written from here, or is not.
-    known.write_text(known.read_text().replace('"6"', '"5.5"'))
+    (*_, written) = marks.journal.events
+    marks.journal.append([replace(written, marks={"right": "5.5"})])
     path.write_text(
         path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3")
     )
@@ -1266,7 +1257,11 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
         stub = type(
             "Marks",
             (),
-            {"students": whose, "identity": lambda self, student: Identity(whose[student])},
+            {
+                "students": whose,
+                "missing": [],
+                "identity": lambda self, student: Identity(whose[student]),
+            },
         )()
         first = gradebooks._scale(book, layout.title(), 4)[1]
         found, several = gradebooks._match(book, layout.title(), stub, first)
@@ -1395,19 +1390,18 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
     (tmp_path / "gradebook.csv").write_text(gradebook)
     out, feedback = str(tmp_path / "out"), tmp_path / "feedback.zip"
     shutil.copytree(course / "out" / "questions", tmp_path / "out" / "questions")
+    write_term(tmp_path / "out", tmp_path / "gradebook.csv", {"turns": ["turns"]})
     main(
         [
             "grade",
             str(tmp_path / "submissions.zip"),
-            "--roster",
-            str(tmp_path / "gradebook.csv"),
             "--out",
             out,
         ]
         + ["--solutions", solutions]
     )
     (waiting,) = rows_of(tmp_path / "out" / "undecided.csv")
-    Ledger(tmp_path / "out").add(Store(out).read(waiting["student"], "turns"), "turns/sum", 0.5)
+    Journal(tmp_path / "out").add(Store(out).read(waiting["student"], "turns"), "turns/sum", 0.5)
     main(["regrade", out, "--solutions", solutions])
     for _ in range(2):
         main(["export", out, "--lms", str(tmp_path / "gradebook.csv"), "--feedback", str(feedback)])
@@ -1516,6 +1510,7 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
         ]
     )
     assert contents(tmp_path / "again") == made
+    write_term(tmp_path / "out", assignments={"homework": ["turns", "axes"]})
     main(
         [
             "grade",
@@ -1524,8 +1519,6 @@ def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
             str(tmp_path / "out"),
             "--solutions",
             solutions,
-            "--assignment",
-            "homework=turns,axes",
         ]
     )
     said = capsys.readouterr()
@@ -1560,13 +1553,14 @@ def test_what_is_missing_is_said(course, tmp_path):
     with pytest.raises(NothingToGrade, match="no notebook with solutions in"):
         grade(course / "submissions", tmp_path / "out", solutions=tmp_path, show=io.StringIO())
     with pytest.raises(NothingToGrade, match="no notebook with solutions 'turn'"):
+        write_term(tmp_path / "out", assignments={"x": ["turn"]})
         grade(
             course / "submissions",
             tmp_path / "out",
             solutions=course / "solutions",
-            assignments={"x": ["turn"]},
             show=io.StringIO(),
         )
+    (tmp_path / "out" / "term.toml").unlink()
     with pytest.raises(SystemExit, match="nothing at"):
         main(
             [

@@ -17,8 +17,8 @@ from grading_class import write_sources
 from coursework.checking.plain import NotPlain, to_plain
 from coursework.grading.judging import marking
 from coursework.grading.judging.cases import Contracts
+from coursework.grading.judging.journal import Journal
 from coursework.grading.judging.judge import Judge
-from coursework.grading.judging.ledger import Ledger
 from coursework.grading.record import Answer, Record
 from coursework.grading.store import Store
 
@@ -161,20 +161,21 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
 PROGRAM = """
 import io, json, os, select, signal, sys, time, traceback, warnings
 sys.path.insert(0, {tests!r})
-import test_grading_whole_terms as terms
+from without_a_sandbox import run_without_a_sandbox
 from coursework.__main__ import main
 from coursework.grading import grade as grading
-from coursework.grading.judging.ledger import Ledger
+from coursework.grading.judging.journal import Journal
 from coursework.grading.store import Store
 from pathlib import Path
 
 warnings.simplefilter("ignore")
-grading._here = terms.run_without_a_sandbox
+grading._here = run_without_a_sandbox
 
 def do(place, what):
     store, silent = Store(place / "out"), io.StringIO()
     if what == "grade":
-        grading.grade(place / "class", place / "out", solutions=place / "solutions", show=silent)
+        submitted = place / "handed-in" / "hw0"
+        grading.grade(submitted, place / "out", solutions=place / "solutions", show=silent)
     elif what == "regrade":
         grading.regrade(place / "out", solutions=place / "mended", show=silent)
     elif what == "bring in":
@@ -183,13 +184,13 @@ def do(place, what):
         table = str(place / "book.csv")
         main(["export", str(place / "out"), "--lms", table, "--assignment", "hw0"])
     else:
-        ledger = Ledger(store.folder)
+        journal = Journal(store.folder)
         for record in store.all():
             for name in record.marks:
-                print("id", ledger.add(record, name, 0.5, who="Ann").id, flush=True)
+                print("id", journal.add(record, name, 0.5, who="Ann").id, flush=True)
                 key = record.student, record.assignment, name
-                if not ledger.standing().appeals.get(key):
-                    print("id", ledger.appeal(record, name, "Again.", who="Ann").id, flush=True)
+                if not journal.standing().appeals.get(key):
+                    print("id", journal.appeal(record, name, "Again.", who="Ann").id, flush=True)
 
 for line in sys.stdin:
     place, what, killed_after = json.loads(line)
@@ -264,18 +265,23 @@ def _contents(folder):
 @pytest.fixture
 def whole(tmp_path):
     """A class and its sources, as they lie when nothing was graded yet."""
-    import test_grading_whole_terms as terms
+    from test_terms_as_stories import WEIGHTS, Story
 
-    term = terms.Term(tmp_path, random.Random("killed"), 12)
-    term.draw()
-    term.write()
-    terms.write_sources(tmp_path / "solutions")
-    terms.write_sources(tmp_path / "mended", {"hw0": (terms.WEIGHTS[1:], 3)})
-    lines = [
-        f'"{student}",{number},,{student},x,' for number, student in enumerate(term.students, 1)
-    ]
-    head = "Student,ID,SIS User ID,SIS Login ID,Section,hw0 (7)\n"
-    (tmp_path / "book.csv").write_text(head + "\n".join(lines) + "\n")
+    questions = tmp_path / "questions"
+    questions.mkdir()
+    story = Story(tmp_path, "killed", None, questions)
+    while len(story.attempts) < 6:
+        story.act_hand_in(None, [])
+    (tmp_path / "solutions").rename(tmp_path / "before")
+    story.asked["hw0"].weights, story.asked["hw0"].times = WEIGHTS[1:], 3
+    (tmp_path / "solutions").mkdir()
+    for name in story.asked:
+        story.write_source(name)
+    (tmp_path / "solutions").rename(tmp_path / "mended")
+    (tmp_path / "before").rename(tmp_path / "solutions")
+    shutil.copy(tmp_path / "solutions" / ".grading-secret", tmp_path / "mended")
+    (tmp_path / "marks" / "questions").unlink()
+    (tmp_path / "marks").rename(tmp_path / "out")
     return tmp_path
 
 
@@ -295,13 +301,13 @@ def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run
             assert _contents(other / "out") == _contents(whole / "out"), what
             continue
         # What somebody was told is there, once; a line that was cut off does not stop anything.
-        kept = [one.id for one in Ledger(other / "out").events]
+        kept = [one.id for one in Journal(other / "out").events]
         assert len(kept) == len(set(kept)) and set(said) <= set(kept)
-        whole_ledger = Ledger(whole / "out")
+        whole_ledger = Journal(whole / "out")
         assert [one.id for one in whole_ledger.events] == expected
         assert len(whole_ledger.decisions) == sum(
             len(record.marks) for record in Store(whole / "out").all()
         )
-        shutil.copy(whole / "out" / "ledger.jsonl", other / "out" / "ledger.jsonl")
-        (other / "out" / "ledger.cut").unlink(missing_ok=True)
+        shutil.copy(whole / "out" / "journal.jsonl", other / "out" / "journal.jsonl")
+        (other / "out" / "journal.cut").unlink(missing_ok=True)
     assert (other / "book-filled.csv").read_bytes() == (whole / "book-filled.csv").read_bytes()

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import sympy as sm
-from grading_class import notebook, put
+from grading_class import notebook, put, write_term
 
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
@@ -33,10 +33,10 @@ from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
 from coursework.grading.judging.contract import Asked, Contract
-from coursework.grading.judging.ledger import CUT, Collision, Ledger
+from coursework.grading.judging.journal import CUT, Collision, Journal
+from coursework.grading.judging.laboratory import BadPolicy
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
-from coursework.grading.reporting.laboratory import BadPolicy, Policies
 from coursework.grading.review import Class
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
@@ -131,13 +131,13 @@ def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp
     assert all(before[student].points == 2 for student in STUDENTS) and before["wrong"].points == 0
     taken_out = begun.own[STUDENTS[0]]
     left = [weight for weight in WEIGHTS if weight != taken_out]
-    moved = regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left))
+    moved = regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left)).moves
     assert moved == []
     # Who had it is judged by what was asked then, and everybody else by the question as it is now.
     mended = write_beams(tmp_path / "mended", left)
     text = (mended / "beams.ipynb").read_text().replace("2*beam.weight", "3*beam.weight")
     (mended / "beams.ipynb").write_text(text)
-    assert {one.student for one in regrade(out.folder, solutions=mended)} == {
+    assert {one.student for one in regrade(out.folder, solutions=mended).moves} == {
         student for student in STUDENTS if begun.own[student] != taken_out
     }
 
@@ -305,7 +305,8 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     roster.write_text(
         "student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6])
     )
-    grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), roster=roster, **options)
+    write_term(tmp_path / "out", roster, {"beams": ["beams"]})
+    grade(tmp_path / "in", tmp_path / "out", show=io.StringIO(), **options)
     assert {mark.points for mark in marks_of(Store(tmp_path / "out"), NAME).values()} == {2}
 
 
@@ -315,7 +316,7 @@ RECORD = Record("ann", "turns")
 
 
 def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
-    first, second = Ledger(tmp_path), Ledger(tmp_path)
+    first, second = Journal(tmp_path), Journal(tmp_path)
     one = first.decision(RECORD, "turns/sum", 0.5, who="Ann")
     first.append([one], collisions=True)
     with pytest.raises(Collision) as found:
@@ -328,59 +329,59 @@ def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
         first.append(
             [first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True
         )
-    (counts,) = Ledger(tmp_path).current().values()
+    (counts,) = Journal(tmp_path).current().values()
     assert (counts.who, counts.credit) == ("Ben", 1)
 
 
 def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(tmp_path):
-    ledger = Ledger(tmp_path)
-    ledger.add(RECORD, "turns/sum", 0.5, who="Ann")
-    ledger.add(RECORD, "turns/sum", 1, who="Ben")
+    journal = Journal(tmp_path)
+    journal.add(RECORD, "turns/sum", 0.5, who="Ann")
+    journal.add(RECORD, "turns/sum", 1, who="Ben")
     key = "ann", "turns", "turns/sum"
-    ledger.take_back([RECORD], "turns/sum", "Ben")
-    assert ledger.current()[key].who == "Ann"
+    journal.take_back([RECORD], "turns/sum", "Ben")
+    assert journal.current()[key].who == "Ann"
     with pytest.raises(Collision, match="no decision of yours"):
-        ledger.take_back([RECORD], "turns/sum", "Ben")
-    ledger.take_back([RECORD], "turns/sum", "Ann")
-    assert Ledger(tmp_path).current() == {} and len(Ledger(tmp_path).decisions) == 4
+        journal.take_back([RECORD], "turns/sum", "Ben")
+    journal.take_back([RECORD], "turns/sum", "Ann")
+    assert Journal(tmp_path).current() == {} and len(Journal(tmp_path).decisions) == 4
     # As it was written before one could tell whose: all earlier ones are taken back.
-    ledger.add(RECORD, "turns/sum", 1, who="Ann")
-    ledger.add(RECORD, "turns/sum", None, who="Ben")
-    lines = (tmp_path / "ledger.jsonl").read_text().splitlines()
+    journal.add(RECORD, "turns/sum", 1, who="Ann")
+    journal.add(RECORD, "turns/sum", None, who="Ben")
+    lines = (tmp_path / "journal.jsonl").read_text().splitlines()
     without = [
         {key: value for key, value in json.loads(line).items() if key not in ("undoes", "after")}
         for line in lines
     ]
-    (tmp_path / "ledger.jsonl").write_text(
+    (tmp_path / "journal.jsonl").write_text(
         "".join(json.dumps(line) + "\n" for line in without[-2:])
     )
-    assert Ledger(tmp_path).current() == {}
+    assert Journal(tmp_path).current() == {}
 
 
 @pytest.mark.parametrize("left", [1, 20, -1])
-def test_a_ledger_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
-    ledger = Ledger(tmp_path)
-    ledger.add(RECORD, "turns/sum", 0.5, who="Ann", why="für sich")
-    ledger.add(RECORD, "turns/sum", 1, who="Ben")
-    path = tmp_path / "ledger.jsonl"
+def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
+    journal = Journal(tmp_path)
+    journal.add(RECORD, "turns/sum", 0.5, who="Ann", why="für sich")
+    journal.add(RECORD, "turns/sum", 1, who="Ben")
+    path = tmp_path / "journal.jsonl"
     whole = path.read_bytes()
     second = whole.split(b"\n")[1]
     path.write_bytes(whole[: len(whole) - 1 - len(second)] + second[:left])
-    again = Ledger(tmp_path)
+    again = Journal(tmp_path)
     assert [one.who for one in again.decisions] == [
         "Ann"
     ] and "ends within a line" in again.said_of_cut()
     again.add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Ledger(tmp_path).decisions] == [
+    assert [one.who for one in Journal(tmp_path).decisions] == [
         "Ann",
         "Cem",
     ] and not again.said_of_cut()
     assert (tmp_path / CUT).read_bytes() == second[:left] + b"\n"
     # A line that only an editor left without its end is whole.
     path.write_bytes(whole[:-1])
-    assert len(Ledger(tmp_path).decisions) == 2 and not Ledger(tmp_path).said_of_cut()
-    Ledger(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Ledger(tmp_path).decisions] == ["Ann", "Ben", "Cem"]
+    assert len(Journal(tmp_path).decisions) == 2 and not Journal(tmp_path).said_of_cut()
+    Journal(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
+    assert [one.who for one in Journal(tmp_path).decisions] == ["Ann", "Ben", "Cem"]
 
 
 def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, out):
@@ -505,7 +506,7 @@ def test_a_picture_that_would_fill_the_memory_is_none():
     [
         ("damaged.zip", "out", "no zip archive, or a damaged one"),
         ("nothing", "out", "There is nothing in"),
-        ("class", "a-file", "Not a directory"),
+        ("class", "a-file", "File exists"),
     ],
 )
 def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, said):
@@ -535,9 +536,9 @@ def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begu
     (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
     options = {
         "solutions": begun.place / "solutions",
-        "roster": tmp_path / "roster.csv",
         "dry_run": True,
     }
+    write_term(tmp_path / "out", tmp_path / "roster.csv", {"beams": ["beams"]})
     said = io.StringIO()
     grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert "1 handed in nothing: dora." in said.getvalue()
@@ -638,9 +639,9 @@ def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_
     assert gaining <= {"wrong"}
     rows = (out.folder / "regrade.csv").read_text().splitlines()
     page = (out.folder / "regrade.html").read_text()
-    assert len(rows) == 1 + len(found.changes) and all(f">{student}<" in page for student in losing)
+    assert len(rows) == 1 + len(found.moves) and all(f">{student}<" in page for student in losing)
     # Without a yes nothing moves; with one what was said.
-    with pytest.raises(SystemExit, match="No mark has moved"):
+    with pytest.raises(SystemExit, match="No mark that was given before has moved"):
         main(["regrade", str(out.folder), "--solutions", str(solutions)])
     assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
     main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
@@ -648,7 +649,7 @@ def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_
     assert {one.student for one in out.all() if one.marks[NAME].points == 0} == losing | {
         "wrong"
     } - gaining
-    assert regrade(out.folder, solutions=solutions, dry_run=True).changes == []
+    assert regrade(out.folder, solutions=solutions, dry_run=True).moves == []
 
 
 @pytest.mark.parametrize("policy", ["never lower", "full credit", "taken out", "void"])
@@ -657,14 +658,16 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
     had = {student for student in STUDENTS if begun.own[student] == gone}
     left = [weight for weight in WEIGHTS if weight != gone]
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"), left)
-    policies = {
-        "never lower": Policies(never_lower=(NAME,)),
-        "full credit": Policies(full_credit=(NAME,)),
-        "taken out": Policies(full_credit=(f"{NAME}@taken-out",), never_lower=(NAME,)),
-        "void": Policies(void=(NAME,)),
+    questions = {
+        "never lower": f'never-lower = ["{NAME}"]',
+        "full credit": f'full-credit = ["{NAME}"]',
+        "taken out": f'full-credit = ["{NAME}@taken-out"]\nnever-lower = ["{NAME}"]',
+        "void": f'void = ["{NAME}"]',
     }[policy]
+    of_beams = {"beams": ["beams"]}
+    write_term(out, assignments=of_beams, text=f"[regrading]\n{questions}")
     before = marks_of(out, NAME)
-    regrade(out.folder, solutions=solutions, policies=policies)
+    regrade(out.folder, solutions=solutions)
     after = marks_of(out, NAME)
     for student, mark in after.items():
         expected = {
@@ -677,12 +680,13 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
             assert (mark.points, mark.worth) == expected, student
     # What was chosen holds from then on; and a person's decision stands above it.
     records = list(out.all())
-    assert regrade(out.folder, solutions=solutions) == [] and list(out.all()) == records
-    Ledger(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
+    assert regrade(out.folder, solutions=solutions).moves == [] and list(out.all()) == records
+    Journal(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
     regrade(out.folder, solutions=solutions)
     assert out.read(STUDENTS[0], "beams").marks[NAME].points == (0 if policy == "void" else 1)
     with pytest.raises(BadPolicy, match="no question 'beams/lode'"):
-        regrade(out.folder, solutions=solutions, policies=Policies(void=("beams/lode",)))
+        write_term(out, assignments=of_beams, text='[regrading]\nvoid = ["beams/lode"]')
+        regrade(out.folder, solutions=solutions)
 
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
@@ -699,7 +703,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     assert {one.student for one in found.again} == {
         *STUDENTS,
         "wrong",
-    } and "runs just these" in found.lines()[-1]
+    } and "runs just these" in "\n".join(found.lines())
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3

@@ -15,6 +15,7 @@ import pytest
 from grading_class import handed_in, notebook, put
 
 from coursework.grading.grade import Course, NothingToGrade, grade, sort_work
+from coursework.grading.judging.term import Assignment, Term
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import BadRoster, Roster
 
@@ -886,7 +887,9 @@ def test_the_date_that_brightspace_wrote_says_which_is_newer(tmp_path, course):
 
 def test_an_assignment_in_several_notebooks_is_one(folder, tmp_path, course):
     (folder / "neighbour" / "axes.ipynb").write_bytes(nbformat.writes(handed_in("axes")).encode())
-    both = Course(tmp_path / "solutions", {"homework": ["turns", "axes"]})
+    both = Course(
+        tmp_path / "solutions", Term(assignments={"homework": Assignment(("turns", "axes"))})
+    )
     assert sorted_work(folder, both)[0] == {
         ("neighbour", "homework"): (["neighbour/axes.ipynb", "neighbour/turns.ipynb"], [])
     }

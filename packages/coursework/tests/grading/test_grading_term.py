@@ -15,15 +15,15 @@ from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
-from grading_class import handed_in, put, write_sources
+from grading_class import give, handed_in, put, write_sources, write_term
 from nbformat import writes
 
 from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.export import gradebooks
-from coursework.grading.grade import grade
+from coursework.grading.grade import bring_in_decisions, grade
 from coursework.grading.judging import term
-from coursework.grading.judging.ledger import Ledger
+from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Answer, Identity, Mark, Record, RunNotebook
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
@@ -52,10 +52,10 @@ due = 2026-10-25T02:30:00
 
 @pytest.fixture
 def rules(tmp_path):
-    def read(text=RULES):
+    def read(text=RULES, roster=None):
         path = tmp_path / "term.toml"
-        path.write_text(text)
-        return term.read_rules(path)
+        path.write_text(f"roster = '{roster}'\n{text}" if roster else text)
+        return term.read_term(path)
 
     return read
 
@@ -203,26 +203,30 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         ("due = 2026-10-05T23:59:00", "due = 2026-10-05", "a date with a time.*2026-10-05"),
         ("due = 2026-10-05T23:59:00", "due = '5 October'", "a date with a time"),
         ("weight = 3", "wieght = 3", "what is 'wieght' in assignments.turns"),
-        ("[late]", "[extensions.ann]\ntruns = 'excused'\n[late]", "no assignment 'truns'"),
+        (
+            "[late]",
+            "[extensions.ann]\ntruns = 'excused'\n[late]",
+            "what is 'truns' in ext",
+        ),
         ("[late]", "[[drop]]\nof = ['turns']\n[late]", "a whole number below 1"),
         ("[late]", "[[drop]]\n[[drop]]\n[late]", "in two rules"),
         (
             "[late]",
             "[[drop]]\nof = 'turns'\n[late]",
-            "drop.of is a list of assignments, and this is 'turns'",
+            "drop.of is a list, and this is 'turns'",
         ),
         ("[late]", "[drop]\nof = ['turns']\n[late]", "drop is a list of tables"),
         (
             "weight = 3",
             "times = 3",
-            "assignments.turns.times is the name of a table, and this is 3",
+            "assignments.turns.times is a text, and this is 3",
         ),
         ('"Europe/Amsterdam"', "Europe", "line 3"),
     ],
 )
 def test_a_rule_that_is_misspelt_is_said(rules, before, after, says):
     assert before in RULES
-    with pytest.raises(term.BadRules, match=says):
+    with pytest.raises(term.BadTerm, match=says):
         rules(RULES.replace(before, after, 1))
 
 
@@ -241,10 +245,10 @@ def test_times_of_a_systems_table(rules, tmp_path):
         result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
     )
     (tmp_path / "worksheet.csv").write_text("username,timestamp\nann,yesterday\n")
-    with pytest.raises(term.BadRules, match="'ann': 'yesterday' is no time.* in English"):
+    with pytest.raises(term.BadTerm, match="'ann': 'yesterday' is no time.* in English"):
         rules(text)
     (tmp_path / "worksheet.csv").write_text("username,when\nann,yesterday\n")
-    with pytest.raises(term.BadRules, match="no column says when"):
+    with pytest.raises(term.BadTerm, match="no column says when"):
         rules(text)
 
 
@@ -341,13 +345,14 @@ def out(tmp_path_factory):
         "limits": limits,
         "show": io.StringIO(),
     }
-    grade(folder / "course", folder / "out", roster=folder / "roster.csv", **options)
+    write_term(folder / "out", folder / "roster.csv")
+    grade(folder / "course", folder / "out", **options)
     return folder / "out"
 
 
 def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     now = datetime.datetime(2026, 12, 1, tzinfo=UTC)
-    said = write_course(Store(out), rules(), now=now)
+    said = write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
     assert said == [
         "axes: of 1 nobody knows when they were handed in, and lateness cost nothing. A table of "
         "your system says it: "
@@ -366,7 +371,7 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
         assert (out / "course" / "students" / link).exists()
     # The same once more, and nothing of it depends on the time but what is due.
     before = (out / "course" / "course.csv").read_bytes()
-    write_course(Store(out), rules(), now=now)
+    write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
     assert (out / "course" / "course.csv").read_bytes() == before
 
 
@@ -405,12 +410,12 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
     page = (out / "course" / "statistics.html").read_text()
     assert "Autumn &lt;2025&gt;" in page and page.count("33 %") == 2  # the sum, now and then
     earlier.write_text("{}")
-    with pytest.raises(term.BadRules, match="holds no counts"):
+    with pytest.raises(term.BadTerm, match="holds no counts"):
         write_course(Store(out), rules(), earlier=[earlier])
 
 
 def test_an_extension_for_nobody_is_said(out, rules):
-    with pytest.raises(term.BadRules, match="'anne', and nobody in the course"):
+    with pytest.raises(term.BadTerm, match="'anne', and nobody in the course"):
         write_course(Store(out), rules(RULES + "[extensions.anne]\nturns = 'excused'\n"))
 
 
@@ -420,7 +425,7 @@ def test_names_and_answers_stay_text(rules, tmp_path):
     mark = Mark("wrong", worth=1, version="1", title=name)
     plain = {"value": ["text", "</code><script>alert(2)</script>"], "nodes": []}
     answers = {"turns/sum": Answer("recorded", plain)}
-    store.save(replace(record(0, 1), student=name, marks={"turns/sum": mark}, answers=answers))
+    give(store, replace(record(0, 1), student=name, marks={"turns/sum": mark}, answers=answers))
     write_course(store, rules())
     for path in (tmp_path / "out" / "course").rglob("*.html"):
         content = path.read_text()
@@ -449,8 +454,8 @@ def late(tmp_path):
     ):  # fmt: skip
         found = record(6, when=when, late=marked)
         mark = Mark("correct", points=6, worth=6, version="v", title="the sum")
-        store.save(replace(found, student=student, marks={"turns/sum": mark}))
-    (tmp_path / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
+        give(store, replace(found, student=student, marks={"turns/sum": mark}))
+    (store.folder / "term.toml").write_text(RULES + "[extensions.bob]\nturns = 'excused'\n")
     (tmp_path / "book.csv").write_text(BOOK)
     return store
 
@@ -464,44 +469,43 @@ def filled(store, *more):
 
 def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
     """The term gave 68.57 % and "excused", and the gradebook was filled with 18 and 21."""
-    rules = str(tmp_path / "term.toml")
+    rules = late.folder / "term.toml"
+    text = rules.read_text()
+    rules.unlink()
     assert filled(late) == ["6", "6", "6"]  # there are no rules yet
-    late.folder.joinpath(gradebooks.WRITTEN).unlink()
+    rules.write_text(text)
     before = sorted(late.folder.rglob("*"))
-    assert main(["term", str(late.folder), "--rules", rules, "--dry-run"]) in (None, 0)
+    assert main(["term", str(late.folder), "--dry-run"]) in (None, 0)
     assert (
         "Nothing was kept" in capsys.readouterr().out and sorted(late.folder.rglob("*")) == before
     )
-    assert main(["term", str(late.folder), "--rules", rules]) in (None, 0)
-    with pytest.raises(SystemExit, match="The term has rules"):
-        filled(late)
-    assert filled(late, "--as-graded") == ["6", "6", "6"]
-    late.folder.joinpath(gradebooks.WRITTEN).unlink()
-    assert filled(late, "--rules", rules) == ["4.8", "", "6"]
-    assert "Excused by the rules" in capsys.readouterr().out
-    main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv"), "--rules", rules])
+    assert filled(late) == ["4.8", "", "6"]
+    said = capsys.readouterr().out
+    assert "Excused by the term" in said and "of 1 nobody knows when they were handed in" in said
+    main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv")])
     assert '"6","1.2","4.8"' in (tmp_path / "n.csv").read_text()
 
 
-def test_a_decision_is_handed_on_also_before_it_is_in_the_pages(late, tmp_path):
+def test_a_decision_is_handed_on_once_it_is_in_the_marks(late, tmp_path, capsys):
+    (late.folder / "term.toml").unlink()
     found = late.read("ann", "turns")
-    Ledger(late.folder).add(found, "turns/sum", 0.5, who="Ann")
-    assert filled(late)[0] == "3"
+    Journal(late.folder).add(found, "turns/sum", 0.5, who="Ann")
+    assert filled(late)[0] == "6" and "is not in the marks yet" in capsys.readouterr().out
     with pytest.raises(SystemExit, match="Decisions on 1 records are not in the pages yet"):
         main(["export", str(late.folder), "--feedback", str(tmp_path / "pages.zip")])
+    bring_in_decisions(late.folder)
+    assert filled(late)[0] == "3"
 
 
 def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
     """Canvas marks a file as late and does not say when it came: that cost nothing."""
-    late.save(replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
-    rules = tmp_path / "term.toml"
-    with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
-        filled(late, "--rules", str(rules))
-    assert any(
-        "1 are marked as late" in line for line in write_course(late, term.read_rules(rules))
-    )
+    give(late, replace(late.read("carl", "turns"), notebooks=(RunNotebook(late=True),)))
+    rules = late.folder / "term.toml"
+    for command in (filled, lambda late: main(["term", str(late.folder)])):
+        with pytest.raises(SystemExit, match="1 are marked as late.*marked = 0.1"):
+            command(late)
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
-    assert filled(late, "--rules", str(rules)) == ["4.8", "", "4.5"]
+    assert filled(late) == ["4.8", "", "4.5"]
 
 
 def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp_path):
@@ -513,11 +517,14 @@ def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp
 
 
 def test_marks_are_handed_on_as_of_a_date(late):
-    found = late.read("ann", "turns")
-    ledger = Ledger(late.folder)
-    for month, credit in ((10, 0.5), (12, 1)):
-        made = ledger.decision(found, "turns/sum", credit, who="Ann")
-        ledger.append([made._replace(when=f"2026-{month}-20T12:00:00.000000+00:00")])
-    for day, points in (("2026-10-19", "6"), ("2026-10-21", "3"), ("2026-12-24", "6")):
-        late.folder.joinpath(gradebooks.WRITTEN).unlink(missing_ok=True)
+    path = late.folder / "journal.jsonl"
+    (ann,) = [one for one in Journal(late.folder).events if one.student == "ann"]
+    path.unlink()
+    days = (("2026-10-01", 6), ("2026-10-20", 3), ("2026-12-20", 5))
+    Journal(late.folder).append(
+        replace(ann, id=day, when=f"{day}T12:00:00.000000+00:00", points=points)
+        for day, points in days
+    )
+    (late.folder / "term.toml").unlink()
+    for day, points in (("2026-10-19", "6"), ("2026-10-21", "3"), ("2026-12-24", "5")):
         assert filled(late, "--as-of", day)[0] == points

@@ -18,13 +18,13 @@ from urllib.parse import quote
 
 import nbformat
 import pytest
-from grading_class import RIGHT, SETUP, handed_in, notebook, put, write_sources
+from grading_class import RIGHT, SETUP, give, handed_in, notebook, put, write_sources
 from trial_course import PROJECT
 
 from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade, regrade
-from coursework.grading.judging.ledger import Ledger
+from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Record, Remembered
 from coursework.grading.review import POLICY, Class, application, hints_of
 from coursework.grading.store import Store
@@ -167,9 +167,9 @@ def test_only_this_machine_this_name_and_this_page_are_heard(out):
             assert served.decide(cluster, **headers).status == 403
         body = served.ask(f"/{served.secret}/answer/{cluster}", "POST", "credit=1")[0]
         assert body.status == 403  # without an origin
-        assert Ledger(out).decisions == []
+        assert Journal(out).decisions == []
         assert served.decide(cluster).status == 303
-        assert len(Ledger(out).decisions) == 1
+        assert len(Journal(out).decisions) == 1
 
 
 def test_the_server_listens_on_this_machine_alone(out):
@@ -228,11 +228,11 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
             assert served.decide(cluster.id, body).status == status
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
         assert "by Ann" in page and "Copied?" in page and "appeal" in page
-    moved = {one.student: one.after for one in regrade(out, solutions=graded / "solutions")}
+    moved = {one.student: one.after for one in regrade(out, solutions=graded / "solutions").moves}
     assert moved == {"copies": 6, "was-copied": 5.5}
     mark = Store(out).read("was-copied", "turns").marks["turns/sum"]
     assert mark.messages == ("Copied?", "Half of it.") and mark.before.outcome == "wrong"
-    assert regrade(out, solutions=graded / "solutions") == []
+    assert regrade(out, solutions=graded / "solutions").moves == []
     page = (out / "feedback" / "was-copied" / "turns.html").read_text()
     assert (
         "Decided by a person" in page
@@ -245,7 +245,7 @@ def test_a_cluster_or_one_of_it_is_decided_and_regrading_keeps_it(graded, out):
         served.decide(cluster.id, "credit=back")
         served.decide(cluster.id, "credit=back")
         assert served.decide(cluster.id, "credit=back").status == 409
-    assert {one.after for one in regrade(out, solutions=graded / "solutions")} == {5}
+    assert {one.after for one in regrade(out, solutions=graded / "solutions").moves} == {5}
 
 
 def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
@@ -260,12 +260,12 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
         response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
         assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
-        assert {one.who for one in Ledger(out).decisions} == {"Ben"}
+        assert {one.who for one in Journal(out).decisions} == {"Ben"}
         # What Ben decided is not Ann's to take back; upon it she may decide.
         assert first.decide(name, "credit=back").status == 409
         assert first.decide(name, "credit=1").status == 303
         assert second.decide(name, "credit=back").status == 303
-        assert {one.who for one in Ledger(out).current().values()} == {"Ann"}
+        assert {one.who for one in Journal(out).current().values()} == {"Ann"}
 
 
 def test_hints_are_for_a_person_and_no_marks(out):
@@ -356,9 +356,9 @@ def test_the_commands(out, capsys, tmp_path, graded):
     other = tmp_path / "other"
     shutil.copytree(out, other)
     found = Store(out).read("copies", "turns")
-    Ledger(out).add(found, "turns/sum", 1, who="Ann")
-    Ledger(other).add(found, "turns/sum", 0, who="Bea")
-    main(["merge", str(out), str(other / "ledger.jsonl")])
+    Journal(out).add(found, "turns/sum", 1, who="Ann")
+    Journal(other).add(found, "turns/sum", 0, who="Bea")
+    main(["merge", str(out), str(other / "journal.jsonl")])
     assert "1 decisions" in capsys.readouterr().out.splitlines()[0]
     with pytest.raises(SystemExit, match="there is no .*decided nothing yet"):
         main(["merge", str(out), str(tmp_path / "none")])
@@ -370,10 +370,10 @@ def test_who_stops_judging_has_the_decisions_in_the_marks(out):
     hear = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, preexec_fn=hear) as page:
         assert "Open this address" in page.stdout.readline()
-        Ledger(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
+        Journal(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
         page.send_signal(signal.SIGINT)
         said = page.stdout.read()
-    assert "'rounded-1', turns: 5 -> 5.5" in said and "1 moved." in said
+    assert "'rounded-1', turns: 5 -> 5.5" in said and "0 moved." in said
     assert "Nearly." in (out / "feedback" / "rounded-1" / "turns.html").read_text()
 
 
@@ -526,7 +526,7 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
         one["student"] = f"student-{number:03}"
         one["marks"]["turns/sum"]["group"] = f"{number:016x}"
         one["answers"]["turns/sum"]["plain"]["nodes"][0][-1] = f"1.000{number:03}"
-        store.save(Record.from_json(one, "one"))
+        give(store, Record.from_json(one, "one"))
     with Served(out) as served:
         # The page's own policy lets no script of a test in either; what it says is tested above.
         page = browser.new_context(bypass_csp=True).new_page()
@@ -549,7 +549,7 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
         assert "0 answers wait" in page.text_content("main")
         page.context.close()
     assert all(url.startswith("http://127.0.0.1:") for url in requests)
-    decided = Ledger(out).current()
+    decided = Journal(out).current()
     assert len(decided) == 100
     assert sorted(one.credit for one in decided.values()) == [0.5] * 50 + [1] * 50
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]
@@ -592,10 +592,10 @@ def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
     command = "main(sys.argv[1:])"
     done = on_windows(command, "export", out, "--feedback", tmp_path / "feedback.zip")
     assert done.returncode == 0 and (tmp_path / "feedback.zip").is_file(), done.stderr
-    (tmp_path / "rules.toml").write_text(
+    (out / "term.toml").write_text(
         'time-zone = "Europe/Paris"\n[assignments.turns]\ndue = 2026-10-05T23:59:00\n'
     )
-    done = on_windows(command, "term", out, "--rules", tmp_path / "rules.toml")
+    done = on_windows(command, "term", out)
     assert done.returncode == 0 and "course.csv" in done.stdout, done.stderr
     other = shutil.copytree(out, tmp_path / "other")
     program = (

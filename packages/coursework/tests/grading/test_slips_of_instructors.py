@@ -13,8 +13,8 @@ from test_review import Served, first_of
 from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import NothingToGrade, grade
-from coursework.grading.judging import ledger as judging
-from coursework.grading.judging.ledger import Ledger
+from coursework.grading.judging import journal as judging
+from coursework.grading.judging.journal import Journal
 from coursework.grading.store import Store
 from coursework.grading.submissions.roster import Roster
 
@@ -55,6 +55,7 @@ def test_results_are_nobody_s_work(course):
         "graded": 0,
         "kept": 2,
         "refused": 0,
+        "held": 0,
     }
     with pytest.raises(NothingToGrade, match="cannot hold the results, too"):
         graded(course, course / "in", course / "in")
@@ -74,7 +75,7 @@ def test_a_full_disk_is_said_in_a_sentence_and_the_next_run_goes_on(course, monk
     command = ["grade", str(course / "in"), "--out", str(course / "out"), "--solutions",
                str(course / "course" / "solutions")]  # fmt: skip
     with monkeypatch.context() as patched:
-        patched.setattr(Store, "save", full)
+        patched.setattr(Store, "stage", full)
         with pytest.raises(SystemExit, match="coursework grade: No space left on device") as found:
             main(command)
     assert "Traceback" not in str(found.value) + capsys.readouterr().err
@@ -89,9 +90,9 @@ def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypa
         with monkeypatch.context() as patched:
             patched.setattr(judging.os, "fsync", full)
             assert served.decide(cluster, "credit=1&comment=Kept", seen).status == 507
-        assert Ledger(course / "out").decisions == []
+        assert Journal(course / "out").decisions == []
         assert served.decide(cluster, "credit=1", seen).status == 303
-    assert Ledger(course / "out").decisions
+    assert Journal(course / "out").decisions
 
 
 def test_a_name_begins_no_line_of_a_table(tmp_path):

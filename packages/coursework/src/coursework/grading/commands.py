@@ -5,16 +5,15 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import io
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .grade import Moved
-    from .judging.ledger import Decision
+    from .judging.journal import Decision, Journal
+    from .judging.laboratory import Agree, Laboratory
     from .store import Store
 
 
@@ -36,19 +35,17 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--assignment",
         action="append",
         default=[],
-        metavar="NAME[=NOTEBOOK,...]",
-        help="grade this assignment only; after = the notebooks of exercises that it consists of",
-    )
-    grade.add_argument(
-        "--roster",
-        metavar="FILE.csv",
-        help="who is in the course: a table, or the gradebook your system exports",
+        metavar="NAME",
+        help="grade this assignment only (default: all that term.toml names)",
     )
     grade.add_argument("--student", help="the one student who handed all of it in")
     grade.add_argument(
         "--dry-run",
         action="store_true",
         help="say whose each file is, how that is known, and how many would be run; run nothing",
+    )
+    grade.add_argument(
+        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
     )
     grade.add_argument(
         "--workers",
@@ -85,35 +82,13 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "--dry-run", action="store_true", help="say which marks would move, and move none"
     )
     regrade.add_argument(
-        "--yes", action="store_true", help="go on without asking, whoever gains or loses"
-    )
-    regrade.add_argument(
-        "--never-lower",
-        action="append",
-        default=[],
-        metavar="QUESTION",
-        help="nobody loses by the mending of this question",
-    )
-    regrade.add_argument(
-        "--full-credit",
-        action="append",
-        default=[],
-        metavar="QUESTION[@VARIANT]",
-        help="everybody gets its points, or everybody with a variant: its name, or taken-out for "
-        "those that the source no longer has",
-    )
-    regrade.add_argument(
-        "--void",
-        action="append",
-        default=[],
-        metavar="QUESTION",
-        help="this question counts for nobody",
+        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
     )
     review = commands.add_parser(
         "review", help="judge answers on a page that this machine alone sees"
     )
     review.add_argument("out", metavar="MARKS", help=MARKS)
-    review.add_argument("--grader", help="your name, for the ledger (default: your user name)")
+    review.add_argument("--grader", help="your name, for the journal (default: your user name)")
     review.add_argument(
         "--share",
         default="1/1",
@@ -122,24 +97,41 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
     review.add_argument("--port", type=int, default=0, help="the port (default: any that is free)")
-    merge = commands.add_parser("merge", help="take in the decisions of another grader")
+    review.add_argument(
+        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+    )
+    merge = commands.add_parser(
+        "merge", help="take in decisions and appeals: another grader's journal, or a table"
+    )
     merge.add_argument("out", metavar="MARKS", help=MARKS)
     merge.add_argument(
-        "ledgers", nargs="+", metavar="ledger.jsonl", help="the ledger in their folder of marks"
+        "files",
+        nargs="+",
+        metavar="FILE",
+        help="the journal.jsonl in their folder of marks; a copy of undecided.csv with credit "
+        "filled in; or a table of appeals with the columns student, question and words",
+    )
+    merge.add_argument(
+        "--grader", help="who decided what stands in a table (default: your user name)"
     )
     merge.add_argument(
         "--dry-run", action="store_true", help="say what would be taken in, and take in nothing"
     )
+    merge.add_argument(
+        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+    )
     term = commands.add_parser(
-        "term", help="what a whole course comes to: due dates, weights, statistics"
+        "term", help="what a whole course comes to by MARKS/term.toml: pages, totals, statistics"
+    )
+    term.add_argument(
+        "new",
+        nargs="?",
+        choices=["new"],
+        help="write term.toml instead, with each choice explained",
     )
     term.add_argument("out", metavar="MARKS", help=MARKS)
-    term.add_argument(
-        "--rules",
-        required=True,
-        metavar="FILE.toml",
-        help="due dates, extensions, weights: section 7 of the manual has an example",
-    )
+    term.add_argument("--solutions", help=SOLUTIONS)
+    term.add_argument("--roster", metavar="FILE.csv", help="with new: who is in the course")
     term.add_argument(
         "--earlier",
         nargs="+",
@@ -162,7 +154,10 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="FILE.csv",
         help="where the filled gradebook goes (default: FILE-filled.csv)",
     )
-    export.add_argument("--column", help="the column to fill, by its name or the beginning of it")
+    export.add_argument(
+        "--column",
+        help="the column to fill, by its name or the beginning of it (default: that of term.toml)",
+    )
     export.add_argument(
         "--name",
         action="append",
@@ -170,16 +165,6 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="OURS=THEIRS",
         help="what a column is called in a gradebook of another language, such as --name "
         "identifier=ID",
-    )
-    export.add_argument(
-        "--rules",
-        metavar="FILE.toml",
-        help="the rules of the term, by which lateness costs points and some are excused",
-    )
-    export.add_argument(
-        "--as-graded",
-        action="store_true",
-        help="hand on the points as graded, although the term has rules",
     )
     export.add_argument(
         "--as-of",
@@ -199,7 +184,9 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="replace a mark that somebody entered for this student by hand; an excuse stays",
     )
     export.add_argument(
-        "--assignment", help="the assignment whose points are handed on, if there are several"
+        "--assignment",
+        help="the assignment whose points are handed on (default: each whose column, as term.toml "
+        "says, is in the gradebook)",
     )
     export.add_argument(
         "--feedback",
@@ -216,19 +203,16 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     gradescope = commands.add_parser(
         "gradescope", help="make an autograder of one assignment for Gradescope"
     )
+    gradescope.add_argument("marks", metavar="MARKS", help="a folder with term.toml")
     gradescope.add_argument(
         "--out", required=True, metavar="FILE.zip", help="where the autograder goes"
     )
     gradescope.add_argument("--solutions", help=SOLUTIONS)
-    gradescope.add_argument(
-        "--assignment",
-        required=True,
-        metavar="NAME[=NOTEBOOK,...]",
-        help="the assignment; after = the notebooks of exercises that it consists of",
-    )
-    gradescope.add_argument(
-        "--roster", metavar="FILE.csv", help="who is in the course, with their addresses"
-    )
+    gradescope.add_argument("--assignment", required=True, metavar="NAME", help="the assignment")
+    why = commands.add_parser("why", help="tell how a mark came to be what it is")
+    why.add_argument("student", metavar="STUDENT")
+    why.add_argument("assignment", metavar="ASSIGNMENT")
+    why.add_argument("--marks", default="marks", metavar="MARKS", help=MARKS)
     cluster = commands.add_parser(
         "cluster", help="start the scheduler of a cluster, or a machine that works for it"
     )
@@ -280,12 +264,6 @@ def _moment(text: str) -> datetime.datetime:
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
-def _named(assignments: Iterable[str]) -> dict[str, list[str]]:
-    """The notebooks that make up each assignment, from ``NAME`` and ``NAME=NOTEBOOK,...``."""
-    parts = [assignment.partition("=") for assignment in assignments]
-    return {name: (notebooks or name).split(",") for name, _, notebooks in parts}
-
-
 class NeedsLinux(RuntimeError):
     """This system keeps no programs apart in the way that grading does."""
 
@@ -313,7 +291,6 @@ def grade(
     out: str,
     solutions: str | None,
     assignment: Sequence[str],
-    roster: str | None,
     student: str | None,
     dry_run: bool,
     workers: int | None,
@@ -321,6 +298,7 @@ def grade(
     keys: str | None,
     allow_weak_isolation: bool,
     as_listed: bool,
+    yes: bool,
 ) -> None:
     try:
         with _on_linux():
@@ -331,12 +309,11 @@ def grade(
         sys.exit(f"coursework grade: {error}")
 
     try:
-        grade_class(
+        done = grade_class(
             submissions,
             out,
             solutions=solutions,
-            assignments=_named(assignment) or None,
-            roster=roster,
+            only=assignment,
             student=student,
             dry_run=dry_run,
             workers=workers,
@@ -344,6 +321,7 @@ def grade(
             keys=keys,
             allow_weak_isolation=allow_weak_isolation,
             as_listed=as_listed,
+            agree=_agree(out, yes),
         )
     except (InUse, WeakIsolation, WorkerDied, ValueError) as error:
         # NothingToGrade and BadRoster are such.
@@ -352,6 +330,35 @@ def grade(
         sys.exit("\nStopped. The same command goes on from here.")
     if not dry_run:
         print(f"The report: {out}/report.html")
+    if done["held"]:
+        sys.exit(NOT_MOVED)
+
+
+NOT_MOVED = "No mark that was given before has moved. To go on, say --yes."
+
+
+def _agree(out: str, yes: bool) -> Agree:
+    """Say which marks would move, and ask whether they shall, unless that was said before."""
+
+    def agree(laboratory: Laboratory) -> bool:
+        from .judging.laboratory import PAGE
+
+        for line in laboratory.lines():
+            print(line)
+        if not yes:
+            print(f"Each of them: {out}/{PAGE}")
+        return yes or (
+            sys.stdin.isatty()
+            and input("Shall these marks move? yes or no: ").strip().casefold() == "yes"
+        )
+
+    return agree
+
+
+def _say_moved(laboratory: Laboratory) -> None:
+    if not laboratory.agreed:
+        sys.exit(NOT_MOVED)
+    print(*laboratory.added, f"{len(laboratory.moves)} moved.", sep="\n")
 
 
 def regrade(
@@ -359,52 +366,27 @@ def regrade(
     solutions: str | None,
     dry_run: bool,
     yes: bool,
-    never_lower: Sequence[str],
-    full_credit: Sequence[str],
-    void: Sequence[str],
 ) -> None:
-    from .reporting.laboratory import PAGE, Policies
     from .store import InUse
 
-    policies = Policies(tuple(never_lower), tuple(full_credit), tuple(void))
     try:
         with _on_linux():
             from .grade import regrade as regrade_class
-        # What a table of decisions says wrongly is said once.
-        unheard = None if dry_run else io.StringIO()
         laboratory = regrade_class(
-            out, solutions=solutions, policies=policies, dry_run=True, show=unheard
+            out, solutions=solutions, dry_run=dry_run, agree=_agree(out, yes)
         )
-        for line in laboratory.lines():
-            print(line)
-        if laboratory.changes and (dry_run or not yes):
-            print(f"Each of them: {out}/{PAGE}")
-        if dry_run:
-            _say_moved(laboratory.by_people)
-            return
-        if laboratory.changes and not yes:
-            if (
-                not sys.stdin.isatty()
-                or input("Shall these marks move? yes or no: ").strip().casefold() != "yes"
-            ):
-                sys.exit("No mark has moved. To go on, say --yes.")
-        _say_moved(regrade_class(out, solutions=solutions, policies=policies))
     except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
+    if dry_run:
+        said = [*laboratory.lines(), *laboratory.added]
+        print(*said, f"{len(laboratory.moves)} would move.", sep="\n")
+    else:
+        _say_moved(laboratory)
 
 
-def _say_moved(moved: Sequence[Moved]) -> None:
-    from .tables import number
-
-    for student, assignment, before, after, questions in moved:
-        print(
-            f"{student!r}, {assignment}: {number(before)} -> {number(after)}  "
-            f"({', '.join(questions)})"
-        )
-    print(f"{len(moved)} moved.")
-
-
-def review(out: str, grader: str | None, share: str, hide_names: bool, port: int) -> None:
+def review(
+    out: str, grader: str | None, share: str, hide_names: bool, port: int, yes: bool
+) -> None:
     import getpass
 
     from .review import review as serve
@@ -436,88 +418,113 @@ def review(out: str, grader: str | None, share: str, hide_names: bool, port: int
         try:
             with _on_linux():
                 from .grade import bring_in_decisions
-            _say_moved(bring_in_decisions(out))
+            _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
         except (InUse, NeedsLinux, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
-def merge(out: str, ledgers: Sequence[str], dry_run: bool) -> None:
+def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes: bool) -> None:
     from pathlib import Path
 
-    from .judging.ledger import Decision, Ledger
-    from .store import Store
-    from .tables import in_a_line
+    from .judging.journal import Journal
+    from .store import InUse, Store
 
-    ledger, store = Ledger(Path(out), dry_run), Store(out)
-    missing = [path for path in ledgers if not Path(path).is_file()]
+    missing = [path for path in files if not Path(path).is_file()]
     if missing:
         sys.exit(
             f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no "
-            "ledger: leave it out."
+            "journal: leave it out."
         )
-    for path in ledgers:
-        try:
-            new, differing = ledger.merge(Path(path))
-        except (OSError, ValueError) as error:
-            sys.exit(f"coursework merge: {error}")
-        decisions = [entry for entry in new if isinstance(entry, Decision)]
-        others = (
-            f", and {len(new) - len(decisions)} on appeals and rubrics"
-            if len(new) > len(decisions)
-            else ""
-        )
+    journal, store = Journal(Path(out), dry_run), Store(out)
+    try:
+        for path in files:
+            if path.endswith(".jsonl"):
+                _merge_journal(journal, store, path, dry_run)
+            else:
+                entered, unused = journal.take_in_table(Path(path), store.all(), grader)
+                print(f"{entered} lines of {path}{' would be' if dry_run else ''} taken in.")
+                for line in unused:
+                    print(f"  not used: {line}")
+        if not dry_run:
+            with _on_linux():
+                from .grade import bring_in_decisions
+            _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
+    except (InUse, NeedsLinux, ValueError) as error:
+        sys.exit(f"coursework merge: {error}")
+
+
+def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> None:
+    from pathlib import Path
+
+    from .judging.journal import Decision
+    from .tables import in_a_line
+
+    new, differing = journal.merge(Path(path))
+    decisions = [entry for entry in new if isinstance(entry, Decision)]
+    others = (
+        f", and {len(new) - len(decisions)} on appeals and rubrics"
+        if len(new) > len(decisions)
+        else ""
+    )
+    print(
+        f"{len(decisions)} decisions{others} from {path}{' would be taken in' if dry_run else ''}."
+    )
+    foreign = [decision for decision in decisions if not _is_here(store, decision)]
+    if foreign:
+        students = dict.fromkeys(decision.student for decision in foreign)
+        whose = ", ".join(in_a_line(name, 60) for name in students)
         print(
-            f"{len(decisions)} decisions{others} from "
-            f"{path}{' would be taken in' if dry_run else ''}."
+            f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no "
+            "mark."
         )
-        foreign = [decision for decision in decisions if not _is_here(store, decision)]
-        if foreign:
-            students = dict.fromkeys(decision.student for decision in foreign)
-            whose = ", ".join(in_a_line(name, 60) for name in students)
-            print(
-                f"  {len(foreign)} of them are on answers that are not here: {whose}. They change "
-                "no mark."
-            )
-        for first, second in differing:
-            print(
-                f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
-                f"{second.who} gave {second.credit}; the later one counts."
-            )
+    for first, second in differing:
+        print(
+            f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
+            f"{second.who} gave {second.credit}; the later one counts."
+        )
 
 
 def _is_here(store: Store, decision: Decision) -> bool:
     """Whether the answer that was decided on is that of the records."""
-    from .judging.ledger import digest_of_answer
+    from .judging.journal import digest_of_answer
 
     record = store.read(decision.student, decision.assignment)
     return record is not None and digest_of_answer(record, decision.question) == decision.answer
 
 
-def term(out: str, rules: str, earlier: Sequence[str], dry_run: bool) -> None:
+def term(
+    new: str | None,
+    out: str,
+    solutions: str | None,
+    roster: str | None,
+    earlier: Sequence[str],
+    dry_run: bool,
+) -> None:
     from pathlib import Path
 
-    from .judging.term import BadRules, keep_rules, read_rules
+    from .judging.term import FILE, new_term, read_term
     from .reporting.course_pages import FOLDER, write_course
     from .store import Store
 
     try:
-        if dry_run:
-            with tempfile.TemporaryDirectory() as folder:
-                said = write_course(
-                    Store(out), read_rules(rules), earlier=earlier, folder=Path(folder)
-                )
-                print(
-                    *said,
-                    Path(folder, "course.csv").read_text("utf8"),
-                    "Nothing was kept.",
-                    sep="\n",
-                )
+        if new:
+            from ..authoring.course import find_course
+
+            print(new_term(out, Path(solutions or find_course().sources), roster, dry_run))
             return
-        said = write_course(Store(out), read_rules(rules), earlier=earlier)
-        keep_rules(Store(out), rules)
-    except BadRules as error:
+        if roster:
+            sys.exit("coursework term: --roster is for term new; it stands in term.toml then.")
+        store, rules = Store(out), read_term(Path(out, FILE))
+        with tempfile.TemporaryDirectory() as folder:
+            where = Path(folder) if dry_run else None
+            said = write_course(store, rules, earlier=earlier, folder=where)
+            if where:
+                said += [(where / "course.csv").read_text("utf8"), "Nothing was kept."]
+            else:
+                said.append(f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it")
+    except ValueError as error:
         sys.exit(f"coursework term: {error}")
-    print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
+    print(*said, sep="\n")
 
 
 def export(
@@ -526,8 +533,6 @@ def export(
     filled: str | None,
     column: str | None,
     name: Sequence[str],
-    rules: str | None,
-    as_graded: bool,
     as_of: datetime.datetime | None,
     dry_run: bool,
     overwrite: Sequence[str],
@@ -538,7 +543,6 @@ def export(
     student: str | None,
 ) -> None:
     from .export import gradebooks
-    from .judging.term import BadRules, read_rules, rules_of
     from .store import Store
 
     if not (lms or feedback or nbgrader or gradescope):
@@ -547,20 +551,20 @@ def export(
         )
     try:
         store = Store(out)
-        known = None if as_graded else rules or rules_of(store)
-        if known and not rules and (lms or nbgrader):
-            raise gradebooks.CannotExport(
-                f"The term has rules, {known}, and these would be the points before them. "
-                f"Say --rules {known}, or --as-graded."
-            )
-        marks = gradebooks.Marks(store, assignment, read_rules(rules) if rules else None, as_of)
         if lms:
             pairs = [renamed.partition("=") for renamed in name]
             names = {ours: theirs for ours, _, theirs in pairs}
-            said = gradebooks.fill(lms, marks, column, filled, names, overwrite, dry_run)
-            print(*said, sep="\n")
+            for one, its_column in gradebooks.columns(lms, store, assignment, column, names):
+                marks = gradebooks.Marks(store, one, as_of=as_of)
+                target = gradebooks.place_of_filled(lms, filled)
+                said = gradebooks.fill(lms, marks, its_column, target, names, overwrite, dry_run)
+                print(*said, sep="\n")
+                lms = lms if dry_run else str(target)
+                filled = str(target)
         if dry_run:
             return
+        if feedback or nbgrader or gradescope:
+            marks = gradebooks.Marks(store, assignment, as_of=as_of)
         if feedback:
             written = gradebooks.write_feedback(feedback, marks, store)
             print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
@@ -568,15 +572,25 @@ def export(
             gradebooks.write_nbgrader(nbgrader, marks)
         if gradescope:
             gradebooks.write_gradescope(gradescope, marks, student)
-    except (gradebooks.CannotExport, BadRules, ValueError) as error:
+    except ValueError as error:  # CannotExport, BadTerm and BadRoster are such
         sys.exit(f"coursework export: {error}")
 
 
-def gradescope(out: str, solutions: str | None, assignment: str, roster: str | None) -> None:
+def why(student: str, assignment: str, marks: str) -> None:
+    from .reporting.life import life_of
+    from .store import Store
+
+    try:
+        print(*life_of(Store(marks), student, assignment), sep="\n")
+    except ValueError as error:
+        sys.exit(f"coursework why: {error}")
+
+
+def gradescope(marks: str, out: str, solutions: str | None, assignment: str) -> None:
     from .export.gradescope import write_autograder
 
     try:
-        stems = write_autograder(out, _named([assignment]), solutions=solutions, roster=roster)
+        stems = write_autograder(out, marks, assignment, solutions=solutions)
     except (OSError, ValueError) as error:
         sys.exit(f"coursework gradescope: {error}")
     print(
@@ -644,6 +658,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "term": term,
     "export": export,
     "gradescope": gradescope,
+    "why": why,
     "cluster": cluster,
     "sample-class": sample_class,
 }

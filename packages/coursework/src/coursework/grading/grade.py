@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import base64
 import contextlib
+import functools
 import hashlib
 import importlib.util
 import itertools
@@ -18,13 +19,14 @@ import json
 import platform
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple, TextIO, overload
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from ..authoring.course import edition_of, find_course, links_of
-from ..authoring.source import names_asked
+from ..authoring.source import names_asked, posed
 from ..checking.fields import Json, by_name, many, text
 from ..checking.identity import plain_identity
 from ..checking.plugins import kinds
@@ -32,11 +34,14 @@ from .execution.cluster_keys import demand_keys
 from .judging import marking
 from .judging.cases import Contracts, answered, changed_since, variants_of
 from .judging.contract import Asked, Contract
+from .judging.journal import FILE as JOURNAL
+from .judging.journal import Journal, Standing, appeals_open, with_decisions
 from .judging.judge import Judge
-from .judging.ledger import APPEALS, DECISIONS, Ledger, Standing, appeals_open, with_decisions
+from .judging.laboratory import Agree, Laboratory, Policies, settle
 from .judging.secret import secret_beside
-from .record import FORMAT, Answer, Isolation, Record, Result, Superseded, read_result
-from .reporting.laboratory import Laboratory, Policies
+from .judging.term import FILE as TERM
+from .judging.term import IN_TIME, Term, term_of
+from .record import Answer, Isolation, Record, Result, Superseded, read_result
 from .store import REFUSED, Store, as_text, write
 from .submissions import intake
 from .submissions.intake import Notebook, Refused
@@ -55,7 +60,15 @@ Questions = Mapping[str, Sequence[Contract]]
 Finished = tuple[int, dict[str, Json]]
 Finish = Callable[[int, Sequence[Result]], Finished]
 
-COURSE, WHOSE, ROSTER = "course.json", "whose.csv", "roster.json"
+WHOSE = "whose.csv"
+#: What moves marks, where it is not work that was handed in anew.
+REJUDGED = "the questions or the software changed"
+DECIDED = "a person decided"
+
+
+def always(laboratory: Laboratory) -> bool:
+    """Agree to whatever would move, unseen: commands ask a person."""
+    return True
 
 
 MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
@@ -66,14 +79,27 @@ class NothingToGrade(ValueError):
 
 
 class Work(NamedTuple):
-    """What one student handed in for one assignment: the notebooks
-    that count, and those that do not.
+    """What one student, or one group, handed in for one assignment.
+
+    Attributes
+    ----------
+    student, assignment : str
+    notebooks : list of Notebook
+        Those that count.
+    superseded : list of Notebook
+        Those that do not.
+    why : list of str
+        Why each of these does not.
+    numbers : str
+        Whose numbers it answers: of a group, those of the member whom it names.
     """
 
     student: str
     assignment: str
     notebooks: list[Notebook]
     superseded: list[Notebook]
+    why: list[str]
+    numbers: str
 
 
 #: A notebook that says that it is of somebody else than whose work it is in.
@@ -87,56 +113,82 @@ class Course:
     ----------
     solutions : path
         The folder of the notebooks with solutions.
-    assignments : dict, optional
-        The notebooks that make up each assignment, where they are not one each.
+    term : Term, optional
+        Says of which notebooks each assignment consists; else each notebook is one.
+    only : collection of str
+        The assignments that are graded now, if not all.
     """
 
     def __init__(
         self,
         solutions: str | Path | None = None,
-        assignments: Mapping[str, Sequence[str]] | None = None,
+        term: Term | None = None,
+        only: Collection[str] = (),
     ) -> None:
         folder = self.folder = Path(solutions or find_course().sources)
         self.edition = edition_of(folder)
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
-        self.assignments = assignments or {stem: [stem] for stem in self.sources}
-        unknown = sorted(
-            {stem for stems in self.assignments.values() for stem in stems} - set(self.sources)
-        )
+        known = {name: about.notebooks for name, about in (term or Term()).assignments.items()}
+        known = known or {stem: (stem,) for stem in self.sources}
+        unknown = sorted({stem for stems in known.values() for stem in stems} - set(self.sources))
         if unknown:
             raise NothingToGrade(
                 f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
                 f"there are {', '.join(self.sources)}."
             )
+        if strangers := sorted(set(only) - set(known)):
+            raise NothingToGrade(
+                f"There is no assignment {strangers[0]!r}; there are {', '.join(known)}."
+            )
+        asked = {stem: names_asked(path) for stem, path in self.sources.items()}
+        self.assignments = {name: known[name] for name in known if not only or name in only}
         self.names = {
-            assignment: [name for stem in stems for name in names_asked(self.sources[stem])]
+            assignment: [name for stem in stems for name in asked[stem]]
             for assignment, stems in self.assignments.items()
         }
+        graded = {stem for stems in self.assignments.values() for stem in stems}
+        #: The questions of what is not graded now.
+        self.others: dict[str, list[str]] = {
+            name: [question for stem in stems for question in asked[stem]]
+            for name, stems in known.items()
+            if name not in self.assignments
+        }
+        used = graded | {stem for stems in known.values() for stem in stems}
+        self.others |= {stem: list(asked[stem]) for stem in asked if stem not in used}
+        #: How many notebooks are of these.
+        self.left_alone: Counter[str] = Counter()
 
     def assignments_of(self, notebook: Notebook) -> list[str]:
-        """The assignments that a notebook answers, by the names in its
-        cells, or else by its own name.
+        """The assignments that a notebook answers, by the names in its cells, or else by its own
+        name and folder; a notebook of which no other is graded now is counted as left alone.
         """
-        by_cell = {name.replace("/", "-"): name for names in self.names.values() for name in names}
+        all_names = {**self.others, **self.names}
+        by_cell = {name.replace("/", "-"): name for names in all_names.values() for name in names}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
-        counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
+        counts = {assignment: len(named & set(names)) for assignment, names in all_names.items()}
         most = max(counts.values())
+        found: list[str] = []
         if most:
             # The one it names most of; and any other of which it names half:
             # some work in a single notebook.
-            first = next(assignment for assignment, count in counts.items() if count == most)
-            return [
-                assignment
-                for assignment, count in counts.items()
-                if assignment == first or 2 * count >= len(self.names[assignment]) > 0
+            first = next(name for name in [*self.names, *self.others] if counts[name] == most)
+            found = [
+                name
+                for name, count in counts.items()
+                if name == first or 2 * count >= len(all_names[name]) > 0
             ]
-        for place in (notebook.folder, notebook.file.rpartition("/")[2]):
-            fitting = [assignment for assignment in self.assignments if assignment in place]
-            if fitting:
-                return [max(fitting, key=len)]
-        return list(self.assignments) if len(self.assignments) == 1 else []
+        else:
+            for place in (notebook.folder, notebook.file.rpartition("/")[2]):
+                if not found and (fitting := [name for name in all_names if name in place]):
+                    found = [max(fitting, key=len)]
+        if not found and len(self.assignments) == 1 and not notebook.of_assignment:
+            found = list(self.assignments)
+        graded = [name for name in found if name in self.assignments]
+        if not graded and (found or notebook.of_assignment):
+            self.left_alone[(found or [notebook.of_assignment])[0]] += 1
+        return graded
 
     def questions(self, assignments: Iterable[str], kept: Path) -> dict[str, Questions]:
         """The questions of some assignments, by assignment and name."""
@@ -152,44 +204,84 @@ class Course:
             for assignment in assignments
         }
 
+    @property
+    def all_questions(self) -> list[str]:
+        """The names of all questions, also of what is not graded now."""
+        return [name for names in (*self.names.values(), *self.others.values()) for name in names]
 
-def sort_work(notebooks: Iterable[Notebook], course: Course, refused: list[Refused]) -> list[Work]:
-    """Sort notebooks by student and assignment; say of each which counts.
+    @functools.cached_property
+    def blanks(self) -> frozenset[str]:
+        """The code cells of all notebooks as students get them."""
+        found = set()
+        for path in self.sources.values():
+            owners = {variable: name for name, variable in names_asked(path).items()}
+            for cell in json.loads(path.read_text("utf8"))["cells"]:
+                if cell["cell_type"] == "code":
+                    found.add(posed("".join(cell["source"]), owners).strip())
+        return frozenset(found)
 
-    Of several notebooks for one assignment the newest counts, and older ones only for questions
-    that no newer one has: an assignment may be handed in as several notebooks.
+    def answers_something(self, notebook: Notebook) -> bool:
+        """Whether a notebook says anything that the exercise did not say."""
+        return any(
+            source and source not in self.blanks and not intake.SAYS.match(source)
+            for source in (cell["source"].strip() for cell in notebook.cells)
+        )
+
+
+def sort_work(
+    notebooks: Iterable[Notebook], course: Course, refused: list[Refused], term: Term | None = None
+) -> list[Work]:
+    """Sort notebooks by student, or group, and assignment; say of each which counts.
+
+    Of several notebooks for one assignment that counts which the term says, and another one only
+    for questions that it has not: an assignment may be handed in as several notebooks. What answers
+    nothing never counts where another notebook answers something.
     """
+    term = term or Term()
     handed_in: dict[tuple[str, str], list[Notebook]] = {}
     for notebook in notebooks:
+        left_alone = course.left_alone.total()
         assignments = course.assignments_of(notebook)
-        if not assignments:
+        if not assignments and course.left_alone.total() == left_alone:
             refused.append(
                 Refused(
                     notebook.file, notebook.student, "No question of any assignment is named in it."
                 )
             )
         for assignment in assignments:
-            handed_in.setdefault((notebook.student, assignment), []).append(notebook)
+            group = term.group_of(notebook.student)
+            handed_in.setdefault((group, assignment), []).append(notebook)
     found = []
     for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0]):
+
+        def rank(notebook: Notebook) -> tuple[bool, bool]:
+            late = term.attempts == IN_TIME and term.is_late(student, assignment, notebook)
+            return len(mine) == 1 or course.answers_something(notebook), not late
+
+        ranks = {notebook.file: rank(notebook) for notebook in mine}
         counting: list[Notebook] = []
         superseded: list[Notebook] = []
+        why: list[str] = []
         taken: set[str] = set()
-        for notebook in sorted(mine, key=_by_age, reverse=True):
+        for notebook in sorted(mine, key=lambda one: (ranks[one.file], _by_age(one)), reverse=True):
             names = set(notebook.named) & set(course.names[assignment])
             if counting and (names & taken or not names):
                 superseded.append(notebook)
+                answers, in_time = ranks[notebook.file]
+                best = max(ranks.values())
+                reasons = (
+                    "it answers nothing" if not answers and best[0] else "",
+                    "it came late, and another in time" if not in_time and best[1] else "",
+                    "another is newer",
+                )
+                why.append(next(filter(None, reasons)))
             else:
                 counting.append(notebook)
                 taken |= names
-        found.append(
-            Work(
-                student,
-                assignment,
-                sorted(counting, key=lambda notebook: notebook.file),
-                superseded,
-            )
-        )
+        members = {plain_identity(name): name for name in (student, *term.members(student))}
+        said = [members.get(plain_identity(notebook.says), student) for notebook in counting]
+        counting.sort(key=lambda notebook: notebook.file)
+        found.append(Work(student, assignment, counting, superseded, why, said[0]))
     return found
 
 
@@ -206,8 +298,7 @@ def grade(
     out: str | Path,
     *,
     solutions: str | Path | None = None,
-    assignments: Mapping[str, Sequence[str]] | None = None,
-    roster: str | Path | None = None,
+    only: Collection[str] = (),
     student: str | None = None,
     dry_run: bool = False,
     workers: int | None = None,
@@ -217,18 +308,18 @@ def grade(
     as_listed: bool = False,
     limits: Limits | None = None,
     show: TextIO | None = None,
+    agree: Agree = always,
 ) -> dict[str, int]:
-    """Grade what was handed in and write records and reports to the folder ``out``.
+    """Grade what was handed in and write records and reports to the folder ``out``, whose file
+    ``term.toml`` says who is in the course and what there is to hand in.
 
     Parameters
     ----------
     submissions, out : path
     solutions : path, optional
         The folder of the notebooks with solutions, beside which the course's secret is kept.
-    assignments : dict, optional
-        As for :class:`Course`.
-    roster : path, optional
-        Who is in the course; then nothing else says whose a notebook is.
+    only : collection of str
+        The assignments to grade, if not all.
     student : str, optional
         The one student who handed all of it in.
     dry_run : bool
@@ -246,15 +337,18 @@ def grade(
     limits : Limits, optional
     show : file, optional
         Where it says how far it is.
+    agree : function
+        Hears which marks that were given would move, and says whether they shall.
 
     Returns
     -------
     dict
-        How many were ``graded`` now, were graded before (``kept``), and were ``refused``.
+        How many were ``graded`` now, were graded before (``kept``), and were ``refused``; and
+        how many marks that were given did not move, since nobody agreed (``held``).
 
     Raises
     ------
-    NothingToGrade, BadRoster, InUse, WeakIsolation
+    NothingToGrade, BadTerm, BadRoster, InUse, WeakIsolation
     """
     from .execution.sandbox import Limits
     from .reporting import reports
@@ -273,12 +367,13 @@ def grade(
     if scheduler:
         demand_keys(scheduler, folder_of_keys)
     store, limits, show = Store(out), limits or Limits(), show or sys.stderr
-    people = Roster(roster) if roster else None
+    term = term_of(store.folder)
+    people = term.roster
     if student is not None and people and student not in people.people:
         raise BadRoster(f"There is no student {student!r} in the roster.")
     with contextlib.ExitStack() as closing:
         closing.enter_context(store.locked())
-        course = Course(solutions, assignments)
+        course = Course(solutions, term, only)
         _demand_submissions(Path(submissions), course)
         try:
             notebooks, refused = intake.take_in(
@@ -290,8 +385,13 @@ def grade(
             raise NothingToGrade(
                 f"There is nothing in {submissions}: no notebook, and no other file."
             )
-        work = sort_work(notebooks, course, refused)
-        _say_whose(work, refused, people, store, show)
+        work = sort_work(notebooks, course, refused, term)
+        if people:
+            term.demand_people(store.folder / TERM, people.people)
+        for name, number in sorted(course.left_alone.items()):
+            are = ("notebook is", "is") if number == 1 else ("notebooks are", "are")
+            print(f"{number} {are[0]} of {name}, and {are[1]} left alone.", file=show)
+        _say_whose(work, refused, term, store, show)
         foreign = _say_foreign(work, show)
         _demand_a_class(work, people, student)
         questions = course.questions(
@@ -299,21 +399,17 @@ def grade(
         )
         if not as_listed:
             _demand_own_numbers(work, questions, foreign, people)
-        ledger = Ledger(store.folder)
-        for line in _put_renamed_aside(store, work, ledger, dry_run):
+        journal = Journal(store.folder)
+        for line in _put_renamed_aside(store, work, journal, dry_run):
             print(line, file=show)
         if not dry_run:
-            if people:
-                write(store.folder / ROSTER, as_text(sorted(people.people)))
-            write(
-                store.folder / COURSE, as_text(dict(_assignments_kept(store), **course.assignments))
-            )
-            _take_in_decisions(ledger, store, show)
+            _say_cut(journal, show)
 
+        term.policies.demand(course.all_questions)
         standing, contracts, policies = (
-            ledger.standing(),
+            journal.standing(),
             Contracts(store.folder),
-            Policies.of(store.folder),
+            term.policies,
         )
 
         def before(one: Work) -> Record | None:
@@ -324,7 +420,7 @@ def grade(
 
         def key(one: Work) -> str:
             own, _ = marking.of_student(
-                questions[one.assignment], one.student, before(one), contracts
+                questions[one.assignment], one.numbers, before(one), contracts
             )
             asked = marking.asked_of_sandbox(marking.with_second_chances(own))
             return key_of(one, asked, limits, allow_weak_isolation)
@@ -339,7 +435,7 @@ def grade(
             file=show,
         )
         if dry_run:
-            return {"graded": 0, "kept": len(kept), "refused": len(refused)}
+            return {"graded": 0, "kept": len(kept), "refused": len(refused), "held": 0}
         store.log(
             f"start: {len(waiting)} of {len(work)} to grade, {len(refused)} refused, on "
             f"{platform.node()}"
@@ -348,24 +444,18 @@ def grade(
         judge = closing.enter_context(Judge(questions, contracts, store.log))
 
         def finish(order: int, results: Sequence[Result]) -> Finished:
-            """Judge one student's work, and write its record."""
+            """Judge one student's work, and write what its record would be."""
             one = waiting[order]
-            asked = questions[one.assignment]
             old = before(one)
-            of_student, cases = marking.of_student(asked, one.student, old, contracts)
-            record = record_of(one, results, key(one), of_student, limits)
-            # By whose mending nobody is to lose, nobody loses who handed the same answer in again.
-            same = (
-                {name: mark for name, mark in old.marks.items() if _is_same(old, record, name)}
-                if old
-                else {}
+            of_student, cases = marking.of_student(
+                questions[one.assignment], one.numbers, old, contracts
             )
+            record = record_of(one, results, key(one), of_student, limits)
             record = replace(
                 record,
-                marks=same,
                 cases={name: answered(case, of_student[name]) for name, case in cases.items()},
             )
-            store.save(marked(record, judge, standing, policies))
+            store.stage(marked(with_marks_of(old, record), judge, standing, policies))
             return order, record.notebooks[0].isolation.as_json()
 
         progress = _Progress(len(waiting), show)
@@ -386,20 +476,53 @@ def grade(
         for order, isolation in finished:
             store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
             progress.one_more(Isolation.from_json(isolation))
-        # What was kept may have been decided on since.
-        for one in kept:
-            found = store.read(one.student, one.assignment)
-            again = found and marked(found, judge, standing, policies)
-            if again and again != found:
-                store.save(again)
-        write(store.folder / REFUSED, as_text(sorted(refused)))
+        run_now = {(one.student, one.assignment) for one in waiting}
+        key_of_kept = {(one.student, one.assignment): key(one) for one in kept}
+
+        def candidates() -> Iterator[Record]:
+            """All records of these assignments, as they would be now."""
+            for student, assignment in run_now:
+                staged = store.staged(student, assignment)
+                assert staged is not None
+                yield staged
+            for of, wanted in key_of_kept.items():
+                staged, old = store.staged(*of), store.read(*of)
+                if staged and staged.key == wanted and (old is None or old.key != wanted):
+                    yield marked(with_marks_of(old, staged), judge, standing, policies)
+            for record in store.all():
+                of = record.student, record.assignment
+                if of not in run_now and record.key == key_of_kept.get(of, record.key):
+                    if record.assignment in questions:
+                        yield marked(record, judge, standing, policies)
+
+        laboratory = settle(store, journal, candidates(), agree, REJUDGED)
+        # Of another folder nothing is forgotten.
+        all_refused = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
+        all_refused[str(Path(submissions).resolve())] = tuple(sorted(refused))
+        write(store.folder / REFUSED, as_text(all_refused))
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
         store.log("end")
     for line in said_of_people(store, standing):
         print(line, file=show)
     _say_other_numbers(store, work, questions, show)
-    return {"graded": len(waiting), "kept": len(work) - len(waiting), "refused": len(refused)}
+    return {
+        "graded": len(waiting),
+        "kept": len(work) - len(waiting),
+        "refused": len(refused),
+        "held": 0 if laboratory.agreed else len(laboratory.moves),
+    }
+
+
+def with_marks_of(old: Record | None, record: Record) -> Record:
+    """A record with the marks that the same answers have: by whose mending nobody is to lose,
+    nobody loses who handed the same answer in again.
+    """
+    same = old.marks.items() if old else ()
+    return replace(
+        record,
+        marks={name: mark for name, mark in same if old and _is_same(old, record, name)},
+    )
 
 
 def _demand_submissions(submissions: Path, course: Course) -> None:
@@ -410,7 +533,7 @@ def _demand_submissions(submissions: Path, course: Course) -> None:
         raise NothingToGrade(
             f"{submissions} holds the notebooks with solutions: name the folder that was handed in."
         )
-    if (submissions / "records").is_dir() and (submissions / COURSE).is_file():
+    if (submissions / "records").is_dir() and (submissions / JOURNAL).is_file():
         raise NothingToGrade(
             f"{submissions} holds results of grading: name the folder that was handed in."
         )
@@ -419,20 +542,26 @@ def _demand_submissions(submissions: Path, course: Course) -> None:
 def _say_whose(
     work: Sequence[Work],
     refused: Sequence[Refused],
-    roster: Roster | None,
+    term: Term,
     store: Store,
     show: TextIO,
 ) -> None:
-    """Say before anything is run whose each file is, and how that is known."""
+    """Say before anything is run whose each file is, how that is known, and which do not count."""
+    roster = term.roster
 
     def rows() -> Iterator[tuple[str, ...]]:
         for one in work:
-            for notebook in (*one.notebooks, *one.superseded):
-                yield one.student, one.assignment, notebook.file, notebook.matched, notebook.says
+            for notebook, why in zip(
+                (*one.notebooks, *one.superseded), (*(("",) * len(one.notebooks)), *one.why)
+            ):
+                about = (notebook.matched, notebook.says, why)
+                yield one.student, one.assignment, notebook.file, *about
 
     write(
         store.folder / WHOSE,
-        lines(("student", "assignment", "file", "known by", "says it is of"), rows()),
+        lines(
+            ("student", "assignment", "file", "known by", "says it is of", "does not count"), rows()
+        ),
     )
     around = {
         one.file.partition(one.claim.place)[0].strip("/") for each in work for one in each.notebooks
@@ -444,11 +573,9 @@ def _say_whose(
             "name.",
             file=show,
         )
-    for student, assignment, file, matched, _ in itertools.islice(rows(), MOST_SHOWN):
-        print(
-            f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})",
-            file=show,
-        )
+    for student, assignment, file, matched, _, why in itertools.islice(rows(), MOST_SHOWN):
+        whose = f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})"
+        print(whose + (f" DOES NOT COUNT: {why}" if why else ""), file=show)
     more = sum(len(one.notebooks) + len(one.superseded) for one in work) - MOST_SHOWN
     if more > 0:
         print(f"  ... and {more} more: {store.folder / WHOSE}", file=show)
@@ -456,10 +583,9 @@ def _say_whose(
     for one in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(one.file, 120)}: {in_a_line(one.why, 300)}", file=show)
     if roster:
-        damaged = {one.student for one in refused} & set(roster.people) - {
-            one.student for one in work
-        }
-        missing = sorted(set(roster.people) - {one.student for one in work} - damaged)
+        present = {member for one in work for member in term.members(one.student)}
+        damaged = {one.student for one in refused} & set(roster.people) - present
+        missing = sorted(set(roster.people) - present - damaged)
         for names, what in (
             (missing, "handed in nothing"),
             (sorted(damaged), "handed in what cannot be graded"),
@@ -477,7 +603,7 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
         (one, notebook)
         for one in work
         for notebook in one.notebooks
-        if notebook.says and plain_identity(notebook.says) != plain_identity(one.student)
+        if notebook.says and plain_identity(notebook.says) != plain_identity(one.numbers)
     ]
     for one, notebook in foreign[:MOST_SHOWN]:
         print(
@@ -589,7 +715,7 @@ def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | 
 
 
 def _put_renamed_aside(
-    store: Store, work: Sequence[Work], ledger: Ledger, dry_run: bool = False
+    store: Store, work: Sequence[Work], journal: Journal, dry_run: bool = False
 ) -> Iterator[str]:
     """Move the record of a student away whose very notebooks are now
     another's: the folder was renamed.
@@ -626,22 +752,18 @@ def _put_renamed_aside(
                 continue
             place = store.put_aside(student, assignment)
             said += f"the record of {assignment} was moved to {place}."
-            decisions = ledger.of(student, assignment)
+            decisions = journal.of(student, assignment)
             if decisions and len(names) == 1:
-                ledger.hand_on(student, assignment, names[0])
+                journal.hand_on(student, assignment, names[0])
                 said += f" So were {len(decisions)} of the decisions, to the new name."
             elif decisions:
                 said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
             yield said
 
 
-def _take_in_decisions(ledger: Ledger, store: Store, show: TextIO) -> None:
-    if said := ledger.said_of_cut():
+def _say_cut(journal: Journal, show: TextIO) -> None:
+    if said := journal.said_of_cut():
         print(said, file=show)
-    for line in ledger.take_in_table(store.folder / DECISIONS, store.all()):
-        print(f"{DECISIONS}, not used: {line}.", file=show)
-    for line in ledger.take_in_appeals(store.folder / APPEALS, store.all()):
-        print(f"{APPEALS}, not used: {line}.", file=show)
 
 
 def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
@@ -679,18 +801,14 @@ def said_of_people(store: Store, standing: Standing) -> Iterator[str]:
             )
 
 
-def _assignments_kept(store: Store) -> dict[str, tuple[str, ...]]:
-    """The notebooks of each assignment that was graded into a folder."""
-    return store.said(COURSE, by_name(many(text))) or {}
-
-
 def _is_done(store: Store, one: Work, key: str) -> bool:
-    record = store.read(one.student, one.assignment)
+    key_of_work = one.student, one.assignment
     # A notebook that this machine could not run is tried again.
-    return (
+    return any(
         record is not None
         and record.key == key
         and not any(notebook.isolation.given_up is not None for notebook in record.notebooks)
+        for record in (store.read(*key_of_work), store.staged(*key_of_work))
     )
 
 
@@ -707,7 +825,6 @@ def key_of(work: Work, asked: Mapping[str, Json], limits: Limits, weak: bool) ->
     mended just those are run again.
     """
     depends = [
-        FORMAT,
         [
             [
                 notebook.digest,
@@ -762,7 +879,7 @@ class _Jobs:
         one = self.work[order]
         named = {name for notebook in one.notebooks for name in notebook.named}
         own, _ = marking.of_student(
-            self.questions[one.assignment], one.student, self.before(one), self.contracts
+            self.questions[one.assignment], one.numbers, self.before(one), self.contracts
         )
         asked = marking.asked_of_sandbox(marking.with_second_chances(own, named))
         for_a_person = any(
@@ -909,7 +1026,10 @@ def record_of(
             )
             for run, notebook in zip(ran, work.notebooks)
         ),
-        tuple(Superseded(notebook.file, notebook.digest) for notebook in work.superseded),
+        tuple(
+            Superseded(notebook.file, notebook.digest, why)
+            for notebook, why in zip(work.superseded, work.why, strict=True)
+        ),
         software(),
         vars(limits),
         all(one.finished for one in ran),
@@ -949,6 +1069,8 @@ def marked(
         # What the lines of a rubric are worth, where its author said so.
         rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
         marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
+        judged = replace(cases[name].own, judged=asked.contract.version)
+        cases[name] = replace(cases[name], own=judged)
     return with_decisions(replace(record, cases=cases, marks=marks), standing or Standing())
 
 
@@ -991,57 +1113,24 @@ def _span(seconds: float) -> str:
 # --- grading again ------------------------------------------------------------------------------
 
 
-class Moved(NamedTuple):
-    """A student whose points changed."""
-
-    student: str
-    assignment: str
-    before: float
-    after: float
-    questions: list[str]
-
-
-@overload
 def regrade(
     out: str | Path,
     *,
     solutions: str | Path | None = None,
-    policies: Policies | None = None,
-    dry_run: Literal[False] = False,
-    show: TextIO | None = None,
-) -> list[Moved]: ...
-@overload
-def regrade(
-    out: str | Path,
-    *,
-    solutions: str | Path | None = None,
-    policies: Policies | None = None,
-    dry_run: Literal[True],
-    show: TextIO | None = None,
-) -> Laboratory: ...
-def regrade(
-    out: str | Path,
-    *,
-    solutions: str | Path | None = None,
-    policies: Policies | None = None,
     dry_run: bool = False,
     show: TextIO | None = None,
-) -> list[Moved] | Laboratory:
+    agree: Agree = always,
+) -> Laboratory:
     """Judge the stored answers again, by the questions and people's decisions as they are now.
 
     Parameters
     ----------
     out : path
     solutions : path, optional
-    policies : Policies, optional
-        What mended questions may do to marks, beside what was chosen before: from now on.
     dry_run : bool
         Write what would move into a page and a table, and nothing else.
-
-    Returns
-    -------
-    list of Moved
-        For a dry run a :class:`Laboratory`.
+    agree : function
+        Hears which marks would move, and says whether they shall.
 
     Nothing is run. A question that was added since has no answers in
     the records; grade again for that.
@@ -1054,83 +1143,42 @@ def regrade(
         names = sorted({record.assignment for record in store.all()})
         if not names:
             raise NothingToGrade(f"There are no records in {store.folder}.")
-        known = _assignments_kept(store)
-        unknown = sorted(set(names) - set(known))
-        if unknown:
-            raise NothingToGrade(
-                f"{store.folder / COURSE} does not say which notebooks make up "
-                f"{', '.join(map(repr, unknown))}; grade again with --assignment."
-            )
-        course = Course(solutions, {name: known[name] for name in names})
+        term = term_of(store.folder)
+        course = Course(solutions, term, names)
         questions = course.questions(names, store.folder / "questions")
-        policies = Policies.of(store.folder).and_also(policies or Policies())
-        policies.demand(name for asked in questions.values() for name in asked)
-        ledger, laboratory, moved = Ledger(store.folder, dry_run), Laboratory(), []
-        _take_in_decisions(ledger, store, show or sys.stderr)
-        if not dry_run:
-            policies.keep(store.folder)
-        standing = ledger.standing()
+        policies = term.policies
+        policies.demand(course.all_questions)
+        journal = Journal(store.folder)
+        _say_cut(journal, show or sys.stderr)
+        standing = journal.standing()
         judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
-        for record in store.all():
-            again = marked(record, judge, standing, policies)
-            if again == record:
-                continue
-            # What people decided is their own doing, and asks for nobody's yes.
-            by_people = with_decisions(record, standing)
-            laboratory.add(by_people, again)
-            laboratory.by_people += moved_in(record, by_people)
-            if not dry_run:
-                store.save(again)
-            moved += moved_in(record, again)
-        if dry_run:
-            laboratory.write(store.folder)
+        candidates = (marked(record, judge, standing, policies) for record in store.all())
+        laboratory = settle(store, journal, candidates, agree, REJUDGED, dry_run)
+        laboratory.write(store.folder)
+        if dry_run or not laboratory.agreed:
             return laboratory
-        store.log(f"graded again: {len(moved)} moved")
         for line in said_of_people(store, standing):
             print(line, file=show or sys.stderr)
         write(store.folder / reports.LINKS, as_text(links_of(course.folder)))
         reports.write_all(store)
-    return moved
+    return laboratory
 
 
-def changed_in(record: Record, again: Record) -> list[str]:
-    """The questions of which points or outcome are others in a second record."""
-    return [
-        name
-        for name, mark in again.marks.items()
-        if name not in record.marks
-        or (mark.points, mark.outcome) != (record.marks[name].points, record.marks[name].outcome)
-    ]
-
-
-def moved_in(record: Record, again: Record) -> list[Moved]:
-    """What moved from one record to another, if anything did."""
-    changed = changed_in(record, again)
-    points = record.points, again.points
-    return [Moved(record.student, record.assignment, *points, changed)] if changed else []
-
-
-def bring_in_decisions(out: str | Path, *, show: TextIO | None = None) -> list[Moved]:
-    """Bring what people decided into marks and pages; nothing is judged anew.
-
-    Returns
-    -------
-    list of Moved
-    """
+def bring_in_decisions(
+    out: str | Path, *, show: TextIO | None = None, agree: Agree = always
+) -> Laboratory:
+    """Bring what people decided into marks and pages; nothing is judged anew."""
     from .reporting import reports
 
     store = Store(out)
     with store.locked():
-        ledger, moved = Ledger(store.folder), []
-        _take_in_decisions(ledger, store, show or sys.stderr)
-        standing = ledger.standing()
-        for record in store.all():
-            again = with_decisions(record, standing)
-            if again != record:
-                store.save(again)
-                moved += moved_in(record, again)
-        store.log(f"decisions brought in: {len(moved)} moved")
+        journal = Journal(store.folder)
+        _say_cut(journal, show or sys.stderr)
+        standing = journal.standing()
+        candidates = (with_decisions(record, standing) for record in store.all())
+        laboratory = settle(store, journal, candidates, agree, DECIDED)
+        laboratory.write(store.folder)
         for line in said_of_people(store, standing):
             print(line, file=show or sys.stderr)
         reports.write_all(store)
-    return moved
+    return laboratory

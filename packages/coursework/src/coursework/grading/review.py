@@ -1,7 +1,7 @@
 """A page to judge in: answer by answer, or all equal answers at once; on this machine only.
 
-It is made from the records, and what is decided goes into the ledger
-(:mod:`coursework.grading.judging.ledger`); nothing is uploaded. Whoever knows the address may
+It is made from the records, and what is decided goes into the journal
+(:mod:`coursework.grading.judging.journal`); nothing is uploaded. Whoever knows the address may
 decide, so it holds a secret, and a request that another page or another name for this machine sent
 is refused. What a student wrote is shown as text and mathematics; a policy forbids the browser to
 run, load or send anything that is in it.
@@ -27,17 +27,18 @@ from ..checking.plain import Plain
 from ..checking.variants import text_of
 from .judging.cases import Contracts, changed_since, questions_in
 from .judging.contract import Contract
-from .judging.ledger import (
+from .judging.journal import (
     LONGEST_WORDS,
     RAISED,
     REJECTED,
     UNDER_REVIEW,
     Appeal,
     Appealed,
+    ByPeople,
     Collision,
     Decision,
     Event,
-    Ledger,
+    Journal,
     Worth,
     digest_of_answer,
 )
@@ -127,8 +128,8 @@ class Class:
 
     def __init__(self, folder: str | Path, share: tuple[int, int] = (1, 1)) -> None:
         self.store = Store(folder)
-        self.ledger = Ledger(self.store.folder)
-        self.standing = self.ledger.standing()
+        self.journal = Journal(self.store.folder)
+        self.standing = self.journal.standing()
         self.questions = {
             name: about
             for path in sorted(
@@ -224,8 +225,8 @@ class Class:
 
     def read(self) -> None:
         """Read what was decided in the meantime."""
-        self.ledger.read()
-        self.standing = self.ledger.standing()
+        self.journal.read()
+        self.standing = self.journal.standing()
 
     def outcome(self, cluster: Cluster) -> tuple[str, list[str]]:
         """What counts for a cluster now, and who decided: decided only if all of it is."""
@@ -287,7 +288,7 @@ class Class:
         )
         found |= dict.fromkeys(source)
         used: Counter[str] = Counter()
-        for one in self.ledger.decisions:
+        for one in self.journal.decisions:
             if one.question == cluster.question:
                 found |= dict.fromkeys(one.rubric)
         for one in self.standing.decisions.values():
@@ -581,7 +582,7 @@ class _Answer(_Page):
                 for place, one in enumerate(cluster.members)
                 for appeal in graded.appeals(cluster, one)
             ],
-            history=_history(graded.ledger.events, cluster, students),
+            history=_history(graded.journal.by_people, cluster, students),
             asked=Markup(_as_asked(contract)),
             given=contract.variant.given if contract else {},
             calls=contract.question.calls if contract else (),
@@ -655,7 +656,7 @@ class _Answer(_Page):
         if not members:
             raise web.HTTPError(400, "no such student")
         if said == "back":
-            graded.ledger.take_back([record for _, record in members], cluster.question, who, why)
+            graded.journal.take_back([record for _, record in members], cluster.question, who, why)
             return bool(only)
         rubric = list(
             dict.fromkeys(line.strip() for line in self.get_arguments("rubric") if line.strip())
@@ -667,7 +668,8 @@ class _Answer(_Page):
             if self.get_argument("new_points", "").strip():
                 now = lines[new] = self.points_said(self.get_argument("new_points"), worth)
                 change = {new: (now, self.worth_in_force(cluster, new))}
-                made += graded.ledger.worths(cluster.question, change, self.source_of(cluster), who)
+                source = self.source_of(cluster)
+                made += graded.journal.worths(cluster.question, change, source, who)
         points = [lines.get(line) for line in rubric] if said == "rubric" else None
         if points is None:
             all_points = self.points_said(said, worth, least=0)
@@ -677,7 +679,7 @@ class _Answer(_Page):
         for place, record in members:
             waiting = [one.id for one in graded.appeals(cluster, record) if one.is_open and accepts]
             made.append(
-                graded.ledger.decision(
+                graded.journal.decision(
                     record,
                     cluster.question,
                     all_points / worth if worth else 0.0,
@@ -690,7 +692,7 @@ class _Answer(_Page):
                     appeal=waiting[0] if waiting else "",
                 )
             )
-        graded.ledger.append(made, collisions=True)
+        graded.journal.append(made, collisions=True)
         return bool(only)
 
     def appeal(self, cluster: Cluster, comment: str, why: str) -> bool:
@@ -705,7 +707,7 @@ class _Answer(_Page):
         if bool(of) != (state in (UNDER_REVIEW, REJECTED)):
             raise web.HTTPError(400, "no such step")
         try:
-            self.graded.ledger.appeal(
+            self.graded.journal.appeal(
                 record,
                 cluster.question,
                 self.get_argument("words", ""),
@@ -734,10 +736,10 @@ class _Answer(_Page):
                 if points != now[line]:
                     changes[line] = points, step.removeprefix(NONE)
         if changes:
-            made = self.graded.ledger.worths(
+            made = self.graded.journal.worths(
                 cluster.question, changes, self.source_of(cluster), self.settings["grader"]
             )
-            self.graded.ledger.append(made, collisions=True)
+            self.graded.journal.append(made, collisions=True)
         return True
 
     def points_said(self, said: str, worth: float, least: float | None = None) -> float:
@@ -764,7 +766,7 @@ class _Answer(_Page):
 
 
 def _history(
-    events: Iterable[Event], cluster: Cluster, students: Collection[str]
+    events: Iterable[ByPeople], cluster: Cluster, students: Collection[str]
 ) -> list[tuple[str, ...]]:
     """What was decided on the answers of a cluster, said of them,
     and said of its rubric, in words.

@@ -13,7 +13,7 @@ import secrets
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from ..checking.fields import Reader, Some, by_name, many, text
+from ..checking.fields import Json, Reader, Some, by_name, many, text
 from .locks import lock
 from .record import Record
 
@@ -39,7 +39,9 @@ class Store:
     @contextlib.contextmanager
     def locked(self) -> Iterator[None]:
         """Keep other runs away; what a run that was killed left half done is removed."""
-        self.records.mkdir(parents=True, exist_ok=True)
+        # Marks and answers are for nobody else who works on this machine.
+        self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        self.records.mkdir(exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
             try:
                 lock(self.lock, wait=False)
@@ -65,8 +67,29 @@ class Store:
         except FileNotFoundError:
             return None
 
-    def save(self, record: Record) -> None:
-        write(self.place(record.student, record.assignment), as_text(record.as_json()))
+    # What is not given yet waits in a folder of its own, so that a run that was killed, or to which
+    # nobody said yes, has not run notebooks for nothing.
+
+    def _staged(self, student: str, assignment: str) -> Path:
+        return self.folder / "waiting" / self.place(student, assignment).relative_to(self.records)
+
+    def stage(self, record: Record) -> None:
+        """Keep a record of which nobody knows yet whether it shall count."""
+        write(self._staged(record.student, record.assignment), _as_json(record))
+
+    def staged(self, student: str, assignment: str) -> Record | None:
+        """The record that waits, or ``None``."""
+        path = self._staged(student, assignment)
+        return record_in(path) if path.exists() else None
+
+    def unstage(self, student: str, assignment: str) -> None:
+        self._staged(student, assignment).unlink(missing_ok=True)
+
+    def promote(self, student: str, assignment: str) -> None:
+        """Let the record that waits count."""
+        place = self.place(student, assignment)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(self._staged(student, assignment), place)
 
     def keep_work(self, digest: str, sources: list[str]) -> None:
         """Keep the code of a notebook, for people to look at beside its answers."""
@@ -132,6 +155,12 @@ class Store:
         now = datetime.datetime.now().isoformat(" ", "milliseconds")
         with open(self.folder / "run.log", "a", encoding="utf8") as file:
             file.write(f"{now}  {line}\n")
+
+
+def _as_json(record: Record) -> str:
+    """A record as it is stored, with what its marks come to."""
+    sums: dict[str, Json] = {"points": record.points, "worth": record.worth}
+    return as_text(record.as_json() | sums | {"undecided": record.undecided})
 
 
 def record_in(path: Path) -> Record:

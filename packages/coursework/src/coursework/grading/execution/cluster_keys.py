@@ -5,6 +5,7 @@ reach it, on all of its machines, so that there is no way here to start one like
 """
 
 import os
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -81,6 +82,10 @@ def options(folder: Path) -> list[str]:
     return ["--tls-ca-file", certificate, "--tls-cert", certificate, "--tls-key", key]
 
 
+#: Even without a dashboard Dask shows what it does to whoever asks, so it listens to this machine.
+ALONE = ["--no-dashboard", "--dashboard-address", "127.0.0.1:0"]
+
+
 def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
     """The command that starts a scheduler, which listens to those alone who have its key."""
     asked = [
@@ -91,7 +96,7 @@ def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
         host,
         "--port",
         str(port),
-        "--no-dashboard",
+        *ALONE,
     ]
     return [sys.executable, "-m", "dask", "scheduler", *asked]
 
@@ -100,15 +105,21 @@ def worker(folder: Path, address: str, workers: int) -> list[str]:
     """The command that starts the workers of a machine, each of one notebook at a time."""
     if not address.startswith("tls://"):
         raise NoKeys(f"A scheduler with keys is at tls://..., and this is {address!r}.")
+    place = urlsplit(address)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
+        way.connect((place.hostname or "", place.port or PORT))  # sends nothing
+        own = way.getsockname()[0]
     asked = [
         *options(folder),
         "--protocol",
         "tls",
+        "--host",
+        own,
         "--nworkers",
         str(workers),
         "--nthreads",
         "1",
-        "--no-dashboard",
+        *ALONE,
     ]
     return [sys.executable, "-m", "dask", "worker", address, *asked]
 

@@ -7,6 +7,7 @@ back. Nothing that a student wrote gets into it.
 """
 
 import datetime
+import getpass
 import json
 import math
 import os
@@ -17,13 +18,12 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from ...checking.fields import by_name, many, text
 from ...checking.reply import plain_text
-from ..judging.ledger import Ledger, appeals_open, with_decisions
-from ..judging.term import EXCUSED, Result, Rules, results_of, say_what_marked_costs
+from ..judging.journal import Exported, Given, Journal, new_id, now, with_decisions
+from ..judging.term import EXCUSED, FILE, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
-from ..store import REFUSED, Store, as_text, file_name, write
-from ..submissions.intake import Refused
+from ..store import Store, file_name, write
+from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import local_parts
 from ..tables import in_a_line, number, readable, table
@@ -49,102 +49,136 @@ class CannotExport(ValueError):
 
 
 class Marks:
-    """The points of each student, over one assignment or all, with all
-    decisions, and by the rules of the term.
+    """The marks that were given, as the journal has them, by the rules of the term: lateness costs
+    what they say, who is excused has no points, and members of a group have those of the group.
 
     Parameters
     ----------
     store : Store
     assignment : str, optional
-    rules : Rules, optional
-        Of the term: then lateness costs what they say, and who is excused has no points.
+        If there is more than one.
+    term : Term, optional
+        That of the folder, if none is given.
     as_of : datetime, optional
-        By what people had decided then, and what was due; what was handed in and judged is that of
-        the records.
+        As they had been given then, and what was due; what was handed in is that of the records.
 
     Attributes
     ----------
-    records : list of dict
+    records : list of Record
+    given : dict
+        What was given last, by student and assignment.
     students : dict
         The records of each student.
+    missing : list of str
+        Who handed in nothing of the one assignment, though it was due.
+    behind : int
+        Of how many records something that people decided is not in the marks yet.
     """
 
     def __init__(
         self,
         store: Store,
         assignment: str | None = None,
-        rules: Rules | None = None,
+        term: Term | None = None,
         as_of: datetime.datetime | None = None,
     ) -> None:
-        self.store, self.rules = store, rules
-        standing = Ledger(store.folder).standing(as_of)
+        self.store = store
+        self.term = term = term or term_of(store.folder)
+        self.journal = Journal(store.folder)
+        self.standing, now = self.journal.standing(as_of), self.journal.standing()
+        self.given = self.standing.given
         self.behind = 0
         self.records: list[Record] = []
         for record in store.all():
-            if assignment in (None, record.assignment):
-                decided = with_decisions(record, standing)
-                self.behind += decided != record
-                self.records.append(decided)
+            key = record.student, record.assignment
+            if assignment in (None, record.assignment) and key in self.given:
+                marks = {
+                    name: (mark.points, mark.outcome)
+                    for name, mark in with_decisions(record, now).marks.items()
+                }
+                self.behind += marks != {
+                    name: (part.points, part.outcome) for name, part in now.given[key].marks.items()
+                }
+                self.records.append(record)
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
-            raise CannotExport(f"There are no records{named} in {store.folder}.")
+            raise CannotExport(f"There are no marks{named} in {store.folder}.")
         self.assignments = sorted({record.assignment for record in self.records})
         self.students: dict[str, list[Record]] = {}
         for record in self.records:
-            self.students.setdefault(record.student, []).append(record)
+            for member in term.members(record.student):
+                self.students.setdefault(member, []).append(record)
+        people = set(term.roster.people) if term.roster else set()
+        if people:
+            term.demand_people(store.folder / FILE, people)
         worth = {record.assignment: record.worth for record in self.records}
-        self.worth = sum(worth.values())
-        self.results = (
-            self._results(rules, worth, as_of or datetime.datetime.now(datetime.UTC))
-            if rules
-            else {}
-        )
+        self.results: dict[tuple[str, str], Result] = {}
+        moment = as_of or datetime.datetime.now(datetime.UTC)
+        for student in sorted(people | set(self.students)):
+            own = {record.assignment: record for record in self.students.get(student, ())}
+            for name in self.assignments:
+                self.results[student, name] = result_of(
+                    student, name, own.get(name), term, worth, moment
+                )
+        self.unknown = unknown_times(self.results.values(), term)
 
-    def _results(
-        self, rules: Rules, worth: Mapping[str, float], now: datetime.datetime
-    ) -> dict[tuple[str, str], Result]:
-        """What the rules make of each record, by student and assignment."""
-        unknown = [name for name in self.assignments if name not in rules.assignments]
-        if unknown:
-            raise CannotExport(f"The rules say nothing of {', '.join(unknown)}.")
-        found: dict[tuple[str, str], Result] = {}
-        marked: list[str] = []
-        for student, records in self.students.items():
-            own = {record.assignment: record for record in records}
-            for result in results_of(student, own, rules, worth, now)[0]:
-                if result.assignment in own:
-                    found[student, result.assignment] = result
-                    if result.late and result.handed_in is None:
-                        marked.append(result.assignment)
-        if marked and rules.marked is None and rules.late_costs:
-            raise CannotExport(say_what_marked_costs(marked))
-        return found
+    @property
+    def assignment(self) -> str:
+        """The one assignment: marks of several are not added up for a column.
 
-    def penalty(self, record: Record) -> float:
-        """The share of the points of a record that its lateness costs."""
-        found = self.results.get((record.student, record.assignment))
-        return found.penalty if found else 0.0
+        Raises
+        ------
+        CannotExport
+        """
+        if len(self.assignments) > 1:
+            raise CannotExport(
+                f"There are marks of {', '.join(self.assignments)}: say which --assignment this is."
+            )
+        return self.assignments[0]
+
+    @property
+    def missing(self) -> list[str]:
+        about = self.term.assignments.get(self.assignment)
+        return [
+            student
+            for (student, _), result in self.results.items()
+            if result.state == "missing" and about and about.due and student not in self.damaged
+        ]
+
+    @property
+    def damaged(self) -> set[str]:
+        """Who is known to have handed in nothing but what cannot be graded."""
+        people = set(self.term.roster.people) if self.term.roster else set()
+        return people & {one.student for one in refused_of(self.store)} - set(self.students)
 
     def excused(self, student: str) -> bool:
-        """Whether the rules excuse a student from what is handed on here, or from a part of it."""
-        return any(
-            self.results[student, record.assignment].state == EXCUSED
-            for record in self.students[student]
-            if self.results
-        )
+        return self.results[student, self.assignment].state == EXCUSED
+
+    def mark(self, student: str) -> Given:
+        """What was given for the one assignment."""
+        return self.given[self.term.group_of(student), self.assignment]
 
     def points(self, student: str) -> float:
-        return sum(record.points * (1 - self.penalty(record)) for record in self.students[student])
-
-    def undecided(self, student: str) -> int:
-        return sum(record.undecided for record in self.students[student])
+        penalty = self.results[student, self.assignment].penalty
+        return self.mark(student).points * (1 - penalty)
 
     def appeals(self, student: str) -> list[str]:
         """The questions of a student against whose marks an appeal is open."""
-        return [name for record in self.students[student] for name in appeals_open(record)]
+        return [
+            question
+            for (whose, assignment, question), appeals in self.standing.appeals.items()
+            if whose == self.term.group_of(student)
+            and assignment in self.assignments
+            and any(appeal.is_open for appeal in appeals)
+        ]
 
     def identity(self, student: str) -> Identity:
-        return self.students[student][0].identity
+        record = self.students[student][0] if student in self.students else None
+        own = record.identity if record and record.student == student else Identity()
+        if self.term.roster and student in self.term.roster.people:
+            known = self.term.roster.identity(student)
+            return Identity({**own.called, **known.called}, known.own)
+        return own
 
 
 # --- a table whose every byte is kept -----------------------------------------------------------
@@ -246,9 +280,50 @@ def _split(text: str, delimiter: str) -> list[tuple[list[Field], str]]:
 # --- the systems --------------------------------------------------------------------------------
 
 
-#: What was written into each column of a gradebook, by student: what stands
-#: there of these is ours to change.
-WRITTEN = "exported.json"
+def place_of_filled(path: str | Path, filled: str | Path | None = None) -> Path:
+    path = Path(path)
+    return Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
+
+
+def columns(
+    path: str | Path,
+    store: Store,
+    assignment: str | None,
+    column: str | None,
+    names: Mapping[str, str] | None = None,
+) -> list[tuple[str | None, str | None]]:
+    """The assignments that a gradebook has columns for, as the term says, each with its column.
+
+    Raises
+    ------
+    CannotExport
+        Of several assignments nobody has said which this is.
+    """
+    about = term_of(store.folder).assignments
+    if assignment or column:
+        known = about[assignment].column if assignment and assignment in about else ""
+        return [(assignment, column or known or None)]
+    header = [name.casefold() for name in _read(path, names).header]
+    graded = {name for _, name in Journal(store.folder).standing().given}
+    there = [
+        (name, one.column)
+        for name, one in about.items()
+        if name in graded
+        and one.column
+        and any(there.startswith(one.column.casefold()) for there in header)
+    ]
+    used = [column for _, column in there]
+    if len(set(used)) < len(used):
+        several = ", ".join(name for name, column in there)
+        raise CannotExport(f"{several} have a column of one name: say which --assignment this is.")
+    return [*there] or [(None, None)]
+
+
+def _read(path: str | Path, names: Mapping[str, str] | None) -> Gradebook:
+    try:
+        return Gradebook(Path(path).read_bytes(), names)
+    except (OSError, UnicodeDecodeError) as error:
+        raise CannotExport(f"{path} cannot be read: {error}.") from None
 
 
 def fill(
@@ -287,27 +362,34 @@ def fill(
     ------
     CannotExport
     """
-    path = Path(path)
-    try:
-        book = Gradebook(path.read_bytes(), names)
-    except (OSError, UnicodeDecodeError) as error:
-        raise CannotExport(f"{path} cannot be read: {error}.") from None
+    book = _read(path, names)
     system = _system(book)
     place = _column(book, system, column)
     out_of, first, comma = _scale(book, system, place)
     found, several = _match(book, system, marks, first)
-    scale = out_of / marks.worth if out_of and marks.worth else 1
-    said = [f"{system}: column {book.header[place]!r}."]
-    if scale != 1:
+    header, assignment = book.header[place], marks.assignment
+    said = [f"{system}: column {header!r}, of {assignment}."]
+    worths = sorted({marks.mark(student).worth for student in marks.students})
+    if out_of and worths != [out_of]:
         said.append(
-            f"The column is out of {number(out_of or 0)} and the questions are worth "
-            f"{number(marks.worth)}: "
-            "points are scaled."
+            f"The column is out of {number(out_of)} and the questions are worth "
+            f"{', '.join(map(number, worths))}: points are scaled."
         )
-    header = book.header[place]
-    known = marks.store.said(WRITTEN, by_name(by_name(many(text)))) or {}
-    ours = known.setdefault(header, {})
-    waiting, closed, kept, excused, replaced, changes = (list[str]() for _ in range(6))
+    said += marks.unknown
+    if marks.behind:
+        said.append(
+            f"Of {marks.behind} students something was decided that is not in the marks yet: "
+            f"coursework regrade {marks.store.folder}."
+        )
+    # What stands there of what was written here is ours to change.
+    ours: dict[str, list[str]] = {}
+    for event in marks.journal.events:
+        if isinstance(event, Exported) and (event.assignment, event.column) == (assignment, header):
+            for student, points in event.marks.items():
+                ours.setdefault(student, []).append(points)
+    now_written: dict[str, str] = {}
+    unfit, waiting, closed, kept, excused, replaced, changes = (list[str]() for _ in range(7))
+    missing, damaged = set(marks.missing), marks.damaged
     filled_in = 0
     strangers = sorted(set(overwrite) - set(found.values()))
     if strangers:
@@ -315,9 +397,11 @@ def fill(
             f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
         )
     for line, student in sorted(found.items()):
-        if marks.excused(student):
+        if student in damaged:
+            unfit.append(student)
+        elif marks.excused(student):
             excused.append(student)
-        elif marks.undecided(student):
+        elif student not in missing and marks.mark(student).undecided:
             waiting.append(student)
         elif (
             system == "Moodle"
@@ -325,9 +409,9 @@ def fill(
         ):
             closed.append(student)
         else:
-            points = number(round(marks.points(student) * scale, 2))
+            points = "0" if student in missing else number(_scaled(marks, student, out_of))
             there = book.says(line, place)
-            before = ours.setdefault(student, ())
+            before = ours.get(student, ())
             if there not in ("", "-") and not any(
                 _is_same(there, one) for one in (points, *before)
             ):
@@ -337,20 +421,25 @@ def fill(
                 replaced.append(f"{student}: {there} -> {points}")
             elif there not in ("", "-") and not _is_same(there, points):
                 changes.append(f"{student}: {there} -> {points}")
-            if points not in before:
-                ours[student] = (*before, points)
+            now_written[student] = points
             book.put(line, place, points.replace(".", ",") if comma else points)
             filled_in += 1
     if changes:
         said.append(f"Changed since it was written from here last ({len(changes)}):")
         said += [f"  {in_a_line(change, 200)}" for change in changes]
-    target = Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
+    target = place_of_filled(path, filled)
     if dry_run:
         said.append(f"{filled_in} would be filled in: nothing was written.")
     else:
         # First what is ours: of a crash in between, the next run knows more than it
         # wrote, and nothing is overlooked.
-        write(marks.store.folder / WRITTEN, as_text(known))
+        marks.journal.append(
+            [
+                Exported(
+                    new_id(), now(), getpass.getuser(), assignment, header, str(target), now_written
+                )
+            ]
+        )
         write(target, bytes(book))
         said.append(f"{filled_in} filled in: {target}")
     without = [
@@ -363,7 +452,7 @@ def fill(
         for student in marks.students
         if student not in found.values() and student not in several
     ]
-    damaged, without = _with_damaged(marks.store, without)
+    more, without = _with_damaged(marks.store, without)
     appealing = [
         f"{student}: {', '.join(open_ones)}"
         for student in marks.students
@@ -371,13 +460,14 @@ def fill(
     ]
     for heading, those in (
         ("In the gradebook, and nothing was handed in", without),
-        ("In the gradebook, and what they handed in cannot be graded", damaged),
+        ("In the gradebook, and what they handed in cannot be graded", [*unfit, *more]),
         ("Handed in, and not in the gradebook", unmatched),
+        ("Nothing was handed in, and it was due: 0", sorted(missing & set(found.values()))),
         ("Of a name that is there more than once, or that two go by, so not filled in", several),
         ("Not filled in, because a person has still to decide", waiting),
         ("An appeal is open: what is filled in may change", appealing),
         ("Not filled in, because the system allows no change", closed),
-        ("Excused by the rules, so not filled in", excused),
+        ("Excused by the term, so not filled in", excused),
         ("A mark by hand, written over as you said", replaced),
         ("Not filled in, because something else stands there than was written from here", kept),
     ):
@@ -385,6 +475,11 @@ def fill(
             said.append(f"{heading} ({len(those)}):")
             said += [f"  {in_a_line(name, 200)}" for name in those]
     return said
+
+
+def _scaled(marks: Marks, student: str, out_of: float | None) -> float:
+    worth = marks.mark(student).worth
+    return round(marks.points(student) * (out_of / worth if out_of and worth else 1), 2)
 
 
 def _is_same(there: str, text: str) -> bool:
@@ -400,7 +495,7 @@ def _is_number(there: str) -> bool:
 
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Of those without a record: who handed in only what was refused, and who nothing."""
-    refused = store.said(REFUSED, many(Refused.from_json)) or ()
+    refused = refused_of(store)
     known = {_signs(one.student) for one in refused if one.student}
     damaged = [name for name in names if _signs(name) in known or _signs(_turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
@@ -503,7 +598,7 @@ def _match(
         lines.setdefault(("own", own), set()).add(line)
     wanting: dict[int, list[str]] = {}
     several: list[str] = []
-    for student in marks.students:
+    for student in [*marks.students, *marks.missing, *marks.damaged]:
         for key in _keys_of_student(system, student, marks.identity(student)):
             candidates = lines.get(key, set())
             if len(candidates) == 1:
@@ -617,21 +712,13 @@ def write_nbgrader(path: str | Path, marks: Marks) -> None:
     """Write nbgrader's table of grades."""
     rows = []
     for record in marks.records:
-        rows.append(
-            (
-                record.assignment,
-                "",
-                "",
-                record.student,
-                "",
-                "",
-                "",
-                record.points,
-                round(record.points * marks.penalty(record), 4),
-                round(record.points * (1 - marks.penalty(record)), 4),
-                record.worth,
-            )
-        )
+        given = marks.given[record.student, record.assignment]
+        (first, *_) = marks.term.members(record.student)
+        penalty = marks.results[first, record.assignment].penalty
+        score = round(given.points * (1 - penalty), 4)
+        lost = round(given.points * penalty, 4)
+        points = (given.points, lost, score, given.worth)
+        rows.append((record.assignment, "", "", record.student, "", "", "", *points))
     write(path, table(NBGRADER, rows))
 
 

@@ -11,22 +11,26 @@ there as everywhere, or not run at all.
 
 import io
 import json
+import os
+import shutil
 import sys
 import tempfile
 import zipfile
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
-from ...checking.fields import Fields, many, text, truth
+from ...checking.fields import Fields, many, text
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
+from ..judging.term import FILE, term_of
+from ..store import write
 from ..versions import folders
 
 HOME = Path("/autograder")
-CONFIGURATION = "autograder.json"
+ROSTER = "roster.csv"
 
 SETUP = """#!/usr/bin/env bash
 # Run once by Gradescope, with a network: Python, what the packages need, and the questions worked
@@ -54,11 +58,7 @@ exec /autograder/venv/bin/python -m coursework.grading.export.gradescope
 
 
 def write_autograder(
-    path: str | Path,
-    assignments: Mapping[str, Sequence[str]],
-    *,
-    solutions: str | Path | None = None,
-    roster: str | Path | None = None,
+    path: str | Path, marks: str | Path, assignment: str, *, solutions: str | Path | None = None
 ) -> Sequence[str]:
     """Write the zip that Gradescope takes, for one assignment; give the names
     of the notebooks that make it up.
@@ -66,32 +66,33 @@ def write_autograder(
     Parameters
     ----------
     path : path
-    assignments : dict
-        One name, and its notebooks.
+    marks : path
+        The folder of marks, whose term says who is in the course, with the addresses by which
+        Gradescope knows students.
+    assignment : str
     solutions : path, optional
-    roster : path, optional
-        Who is in the course, with the addresses by which Gradescope knows students.
     """
     from ..grade import Course
 
-    folder = Path(solutions or find_course().sources)
-    course = Course(folder, assignments)
-    ((name, stems),) = course.assignments.items()
+    folder, term = Path(solutions or find_course().sources), term_of(marks)
+    course = Course(folder, term, [assignment])
+    stems = course.assignments[assignment]
+    there = f'time-zone = "UTC"\n[assignments.{json.dumps(assignment)}]\n'
+    there += f"notebooks = {json.dumps(stems)}\n"
     secret_beside(folder)  # made here if there is none: marks are to be the same there
     files = {
         "setup.sh": SETUP.encode(),
         "run_autograder": RUN.encode(),
         "requirements.txt": "".join(f"{one}\n" for one in requirements()).encode(),
-        CONFIGURATION: json.dumps(
-            {"assignment": name, "notebooks": stems, "roster": roster is not None}
-        ).encode(),
         **{f"solutions/{stem}.ipynb": course.sources[stem].read_bytes() for stem in stems},
         f"solutions/{SECRET}": (folder / SECRET).read_bytes(),
     }
     if course.edition:
         files["course.toml"] = f"edition = {json.dumps(course.edition)}\n".encode()
-    if roster:
-        files["roster.csv"] = Path(roster).read_bytes()
+    if term.roster:
+        files[ROSTER] = term.roster.path.read_bytes()
+        there = f'roster = "{ROSTER}"\n{there}'
+    files[FILE] = there.encode()
     for package in folders():
         for file in sorted(package.rglob("*")):
             if file.is_file() and "__pycache__" not in file.parts:
@@ -117,7 +118,8 @@ def write_autograder(
                 0o755 if place in ("setup.sh", "run_autograder") else 0o644
             ) << 16
             archive.writestr(entry, content)
-    Path(path).write_bytes(data.getvalue())
+    # It holds the solutions and the secret.
+    write(path, data.getvalue(), private=True)
     return stems
 
 
@@ -161,21 +163,19 @@ def run(home: Path = HOME) -> None:
     that the autograder failed, and nobody has lost a point.
     """
     from ..grade import NothingToGrade, grade
-    from ..store import REFUSED, Store
-    from ..submissions.intake import Refused
-    from ..submissions.roster import Roster
+    from ..store import Store
+    from ..submissions.intake import refused_of
     from .gradebooks import Marks, write_gradescope
 
     source = home / "source"
-    assignments, with_roster = _configuration(source)
-    (assignment,) = assignments
+    term = term_of(source)
+    (assignment,) = term.assignments
     about = home / "submission_metadata.json"
     user, *_ = Fields(json.loads(about.read_text("utf8")), str(about)).get("users", many(_user))
-    roster = source / "roster.csv" if with_roster else None
     student = user["email"]
     results = home / "results" / "results.json"
-    if roster:
-        found, why = Roster(roster).find(
+    if term.roster:
+        found, why = term.roster.find(
             (("email", user["email"]), ("own", user["email"]), ("name", user["name"]))
         )
         if found is None:
@@ -185,35 +185,24 @@ def run(home: Path = HOME) -> None:
         student = found
     with tempfile.TemporaryDirectory() as out:
         Path(out, "questions").symlink_to(home / "questions")
+        for name in {FILE, ROSTER} & set(os.listdir(source)):
+            shutil.copy(source / name, out)
         try:
             grade(
                 home / "submission",
                 out,
                 solutions=source / "solutions",
-                assignments=assignments,
-                roster=roster,
                 student=student,
             )
         except NothingToGrade as error:
             return _say(results, str(error))
         store = Store(out)
         if store.read(student, assignment) is None:
-            refused = [
-                f"{Path(one.file).name}: {one.why}"
-                for one in store.said(REFUSED, many(Refused.from_json)) or ()
-            ]
+            refused = [f"{Path(one.file).name}: {one.why}" for one in refused_of(store)]
             return _say(
                 results, "\n".join(["There was no notebook that could be graded.", *refused])
             )
         write_gradescope(results, Marks(store), student)
-
-
-def _configuration(source: Path) -> tuple[dict[str, tuple[str, ...]], bool]:
-    """The notebooks of the assignment, by its name, and whether there is a roster."""
-    about = Fields(json.loads((source / CONFIGURATION).read_text("utf8")), CONFIGURATION)
-    return {about.get("assignment", text): about.get("notebooks", many(text))}, about.get(
-        "roster", truth
-    )
 
 
 def _user(found: object, where: str) -> dict[str, str]:
@@ -234,8 +223,9 @@ def prepare(home: Path = HOME) -> None:
     """Work the questions out, once for all submissions."""
     from ..grade import Course
 
-    assignments, _ = _configuration(home / "source")
-    Course(home / "source" / "solutions", assignments).questions(assignments, home / "questions")
+    term = term_of(home / "source")
+    course = Course(home / "source" / "solutions", term)
+    course.questions(term.assignments, home / "questions")
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from ...checking.variants import names_of_variants, numbers_of_variants, sibling
 from ..record import Case, Place, Record
 from ..store import write
 from .contract import Asked, Contract, variants_from_json
-from .ledger import Decision, digest_of_answer
+from .journal import Decision, digest_of_answer
 
 
 def answered(case: Case, asked: Asked) -> Case:
@@ -137,11 +137,12 @@ def asked_of(
     by_their_names = variants_of(variants)
 
     def at(place: Place) -> Contract:
-        found = by_their_names.get(place.variant) or (contracts and contracts.of(place.contract))
+        version = place.judged or place.contract
+        found = by_their_names.get(place.variant) or (contracts and contracts.of(version))
         if not found:
             raise ValueError(
                 f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is "
-                f"no contract {place.contract}. "
+                f"no contract {version}. "
                 "Put the variant back into the source, and judge again."
             )
         return found

@@ -8,11 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from ...checking.fields import Fields, by_name, many, text
+from ...checking.fields import Fields, by_name, text
 from ...checking.fields import number as a_number
-from ..judging import term
-from ..judging.ledger import Ledger, with_decisions
-from ..judging.term import Rules
+from ..judging.term import FILE, BadTerm, Result, Term, results_of, unknown_times
 from ..store import Store, as_text, file_name, write
 from ..tables import number, table
 from . import pages
@@ -20,7 +18,6 @@ from .statistics import FORMAT, Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
-ROSTER = "roster.json"
 #: How the state of an assignment is told to a student; where it
 #: simply counts there is nothing to tell.
 STATES = {
@@ -65,7 +62,7 @@ class Year(NamedTuple):
 
 def write_course(
     store: Store,
-    rules: Rules,
+    term: Term,
     *,
     earlier: Iterable[str | Path] = (),
     now: datetime.datetime | None = None,
@@ -76,7 +73,7 @@ def write_course(
     Parameters
     ----------
     store : Store
-    rules : Rules
+    term : Term
     earlier : iterable of path
         Counts that were kept of other years.
     now : datetime, optional
@@ -88,7 +85,7 @@ def write_course(
 
     Raises
     ------
-    BadRules
+    BadTerm
         An extension is for nobody in the course, or counts cannot be read.
     """
     now = now or datetime.datetime.now(datetime.UTC)
@@ -96,68 +93,51 @@ def write_course(
     statistics = Statistics()
     worth: dict[str, float] = {}
     students: set[str] = set()
-    standing = Ledger(store.folder).standing()
     for record in store.all():
-        statistics.add(with_decisions(record, standing))
+        statistics.add(record)
         worth[record.assignment] = record.worth
-        students.add(record.student)
-    students.update(store.said(ROSTER, many(text)) or ())
-    said = _misspelt(rules, students, worth)
-    unknown, marked = list[str](), list[str]()
-    folder, rows = folder or store.folder / FOLDER, []
+        students.update(term.members(record.student))
+    if term.roster:
+        students.update(term.roster.people)
+    term.demand_people(store.folder / FILE, students)
+    said = _misspelt(term, worth)
+    folder, rows, all_results = folder or store.folder / FOLDER, [], list[Result]()
     for student in sorted(students):
         records = {
-            name: with_decisions(found, standing)
-            for name in rules.assignments
-            if (found := store.read(student, name)) is not None
+            name: found
+            for name in term.assignments
+            if (found := store.read(term.group_of(student), name)) is not None
         }
-        results, total = term.results_of(student, records, rules, worth, now)
-        _write_student(folder, student, records, results, total, rules)
+        results, total = results_of(student, records, term, worth, now)
+        _write_student(folder, student, records, results, total, term)
         rows.append(_row(student, results, total))
-        unknown += [
-            one.assignment
-            for one in results
-            if one.assignment in records and one.due and not one.handed_in
-        ]
-        marked += [one.assignment for one in results if one.late and not one.handed_in]
-    for name in sorted(set(unknown)):
-        said.append(
-            f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness "
-            "cost nothing. "
-            f'A table of your system says it: times = "worksheet.csv" in [assignments.{name}].'
-        )
-    if marked and rules.marked is None and rules.late_costs:
-        said.append(term.say_what_marked_costs(marked))
-    write(folder / "course.csv", table(_header(rules), rows))
-    _write_questions(folder, statistics, rules.name, counts)
-    write(folder / "counts.json", as_text(statistics.counts(rules.name)))
+        all_results += results
+    said += unknown_times(all_results, term)
+    write(folder / "course.csv", table(_header(term), rows))
+    _write_questions(folder, statistics, term.name, counts)
+    write(folder / "counts.json", as_text(statistics.counts(term.name)))
     return said
 
 
-def _misspelt(rules: Rules, students: set[str], worth: Mapping[str, float]) -> list[str]:
-    strangers = sorted({student for student, _ in rules.extensions} - students)
-    if strangers:
-        raise term.BadRules(
-            f"An extension is for {strangers[0]!r}, and nobody in the course is called so."
-        )
-    missing = [name for name in rules.assignments if name not in worth]
-    others = sorted(set(worth) - set(rules.assignments))
+def _misspelt(term: Term, worth: Mapping[str, float]) -> list[str]:
+    missing = [name for name in term.assignments if name not in worth]
+    others = sorted(set(worth) - set(term.assignments))
     return [f"{name}: nothing of it was graded, so it does not count yet." for name in missing] + [
-        f"{name} was graded and is not in the rules: it counts nowhere." for name in others
+        f"{name} was graded and is not in the term: it counts nowhere." for name in others
     ]
 
 
-def _header(rules: Rules) -> list[str]:
+def _header(term: Term) -> list[str]:
     parts = ("points", "state", "handed in", "late: share lost", "share that counts")
     return [
         "student",
         "total in %",
         "undecided",
-        *(f"{name}: {part}" for name in rules.assignments for part in parts),
+        *(f"{name}: {part}" for name in term.assignments for part in parts),
     ]
 
 
-def _row(student: str, results: Sequence[term.Result], total: float | None) -> list[object]:
+def _row(student: str, results: Sequence[Result], total: float | None) -> list[object]:
     row: list[object] = [
         student,
         "" if total is None else round(100 * total, 2),
@@ -179,22 +159,23 @@ def _write_student(
     folder: Path,
     student: str,
     records: Iterable[str],
-    results: Sequence[term.Result],
+    results: Sequence[Result],
     total: float | None,
-    rules: Rules,
+    term: Term,
 ) -> None:
     links = {
-        name: f"../../feedback/{file_name(student)}/{file_name(name)}.html" for name in records
+        name: f"../../feedback/{file_name(term.group_of(student))}/{file_name(name)}.html"
+        for name in records
     }
     content = page(
         "student.html",
-        name=rules.name,
+        name=term.name,
         student=student,
         total=total,
         results=results,
         waiting=sum(one.undecided for one in results),
         links=links,
-        weights={name: about.weight for name, about in rules.assignments.items()},
+        weights={name: about.weight for name, about in term.assignments.items()},
         words=STATES,
     )
     write(folder / "students" / f"{file_name(student)}.html", content, lasting=False)
@@ -280,7 +261,7 @@ def _earlier(path: str | Path) -> Year:
             raise ValueError("it is of another format")
         return Year(about.get("name", text), about.get("questions", by_name(Then.from_json)))
     except (OSError, ValueError) as error:
-        raise term.BadRules(f"{path} holds no counts of a course ({error}).") from None
+        raise BadTerm(f"{path} holds no counts of a course ({error}).") from None
 
 
 def _share_then(year: Year, question: str, found: Question) -> str:

@@ -5,6 +5,7 @@ Everything here can be made again from the records at any time, and comes out th
 
 from __future__ import annotations
 
+import datetime
 import functools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -12,14 +13,15 @@ from pathlib import Path
 from statistics import mean, median
 from urllib.parse import quote
 
-from ...checking.fields import by_name, many, text
+from ...checking.fields import by_name, text
 from ...checking.plain import Plain
 from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
-from ..judging.ledger import stable_id
+from ..judging.journal import case_id
+from ..judging.term import Term, result_of, term_of
 from ..record import Cell, Mark, Record, RunNotebook
-from ..store import REFUSED, Store, file_name, write
-from ..submissions.intake import Refused
+from ..store import Store, file_name, write
+from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
 from . import pages
 from .templates_of_pages import page
@@ -144,7 +146,7 @@ def write_all(store: Store) -> None:
     """Make the tables and the pages of all records; no more than one record is held at a time."""
     classes: dict[str, _Assignment] = {}
     names: dict[str, None] = {}
-    links = store.said(LINKS, by_name(text)) or {}
+    links, term = store.said(LINKS, by_name(text)) or {}, term_of(store.folder)
     for record in store.all():
         place = (
             store.folder
@@ -152,10 +154,10 @@ def write_all(store: Store) -> None:
             / file_name(record.student)
             / f"{file_name(record.assignment)}.html"
         )
-        _write_if_new(place, feedback(record, links))
+        _write_if_new(place, feedback(record, links, term))
         classes.setdefault(record.assignment, _Assignment()).add(record)
         names.update(dict.fromkeys(record.marks))
-    refused = store.said(REFUSED, many(Refused.from_json)) or ()
+    refused = refused_of(store)
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
     write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
@@ -165,7 +167,10 @@ def write_all(store: Store) -> None:
     )
 
 
-UNDECIDED = ("id", "student", "question", "credit", "comment", "worth", "why", "message", "answer")
+#: Filled in, it is a table of decisions: ``id`` and ``version`` bind each line to what it is about.
+UNDECIDED = (
+    "id", "version", "student", "question", "credit", "comment", "worth", "why", "message", "answer"
+)  # fmt: skip
 
 
 def _undecided_of(records: Iterable[Record]) -> Iterator[tuple[object, ...]]:
@@ -173,7 +178,8 @@ def _undecided_of(records: Iterable[Record]) -> Iterator[tuple[object, ...]]:
         for name, mark in record.marks.items():
             if mark.outcome == "undecided":
                 yield (
-                    stable_id(record.student, record.assignment, name),
+                    case_id(record, name),
+                    mark.version,
                     record.student,
                     name,
                     "",
@@ -216,11 +222,17 @@ def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
 # --- for a student ------------------------------------------------------------------------------
 
 
-def feedback(record: Record, links: Mapping[str, str] | None = None) -> str:
+def feedback(
+    record: Record, links: Mapping[str, str] | None = None, term: Term | None = None
+) -> str:
     """The page that a student gets; ``links`` are addresses as a course has them."""
+    term = term or Term()
+    now = datetime.datetime.now(datetime.UTC)
+    (member, *_) = term.members(record.student)
     return page(
         "feedback.html",
         record=record,
+        result=result_of(member, record.assignment, record, term, {}, now),
         questions=[
             (
                 name,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from ...checking.fields import Json
 from ...checking.plain import Plain
-from ..judging.ledger import digest_of_answer
+from ..judging.journal import digest_of_answer
 from ..record import Mark, Record
 from .reports import deed
 

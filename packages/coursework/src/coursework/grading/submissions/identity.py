@@ -260,9 +260,9 @@ class Layout:
             return None
         name, own, when = known
         return Claim(
-            _clean(own or name),
+            _clean([*own, name][0]),
             # The number or address is the course's; what people are called they may change.
-            ((("gradescope", own),) if own else ()) + (("name", name),),
+            (*(("gradescope", one) for one in own), ("name", name)),
             f"gradescope {parts[0]}",
             _inside(parts),
             given_by_system=True,
@@ -405,8 +405,8 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
 )
 
 
-def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
-    """The name, the number or address, and the time of each of Gradescope's
+def _submitters(data: bytes) -> dict[str, tuple[str, list[str], str]]:
+    """The name, the number and the address, and the time of each of Gradescope's
     submissions that one person handed in.
     """
     import yaml
@@ -426,7 +426,7 @@ def _submitters(data: bytes) -> dict[str, tuple[str, str, str]]:
             when = about.get(":created_at")
             time = when.isoformat() if isinstance(when, datetime.datetime) else ""
             if name or number or address:
-                found[str(folder)] = name, number or address, time
+                found[str(folder)] = name, [own for own in (number, address) if own], time
     return found
 
 

@@ -29,8 +29,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
-from ...checking.fields import a_list, text
+from ...checking.fields import a_list, by_name, many, text
 from ..record import Identity, Remembered
+from ..store import REFUSED, Store
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
 from .pictures import JPEG, PNG, is_picture
 from .roster import Roster
@@ -105,6 +106,12 @@ class Refused(NamedTuple):
         return cls(*(text(part, where) for part in a_list(found, where)))
 
 
+def refused_of(store: Store) -> list[Refused]:
+    """All files that were refused, of each folder that was handed in."""
+    known = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
+    return [one for place in known.values() for one in place]
+
+
 class Beside(NamedTuple):
     """A file that was handed in beside a notebook, for its code to read."""
 
@@ -144,6 +151,8 @@ class Notebook(NamedTuple):
         When, in ISO 8601, as the system says; without a time zone where the system names none.
     says : str
         Whose it says that it is, for the numbers of its questions; empty if it does not.
+    of_assignment : str
+        The folder of an assignment in which nbgrader collected it; empty elsewhere.
     """
 
     file: str
@@ -160,6 +169,7 @@ class Notebook(NamedTuple):
     beside: tuple[Beside, ...] = ()
     handed_in: str = ""
     says: str = ""
+    of_assignment: str = ""
 
     @property
     def cells(self) -> list[CodeCell]:
@@ -379,6 +389,7 @@ def _take(
             claim,
             read,
             says=_says(cells),
+            of_assignment=PurePosixPath(claim.file).parent.name if layout.is_nbgraders else "",
         )
     )
 

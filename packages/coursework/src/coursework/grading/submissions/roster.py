@@ -20,8 +20,8 @@ Key = TypeVar("Key")
 #: What the columns of rosters and exported gradebooks are called, and what they hold.
 COLUMNS = {
     "own": (
-        "student", "student id", "student_id", "username", "user name", "login", "sis login id",
-        "sis user id", "integration id", "id number", "orgdefinedid", "identifier",
+        "sid", "student", "student id", "student_id", "username", "user name", "login",
+        "sis login id", "sis user id", "integration id", "id number", "orgdefinedid", "identifier",
     ),
     "name": ("name", "full name", "student name"),
     "email": ("email", "email address", "e-mail", "e-mail address"),
@@ -108,6 +108,8 @@ class Roster:
         A table of comma-separated values, or the gradebook that Canvas, Moodle or Brightspace
         exports. Read are the columns of :data:`COLUMNS`; ``handed in as`` holds names of folders or
         files, separated by semicolons, for what cannot be matched otherwise.
+    groups : mapping, optional
+        The members of each group: what fits several of one group is the group's.
 
     Attributes
     ----------
@@ -115,7 +117,11 @@ class Roster:
         By their names here.
     """
 
-    def __init__(self, path: str | Path) -> None:
+    def __init__(self, path: str | Path, groups: Mapping[str, Iterable[str]] | None = None) -> None:
+        self.group_of = {
+            member: group for group, members in (groups or {}).items() for member in members
+        }
+        self.path = Path(path)
         self.people: dict[str, Person] = {}
         for line, row in _rows(Path(path)):
             person = Person(_called(row), row)
@@ -140,6 +146,8 @@ class Roster:
             for kind, value in person.spellings():
                 self.index.setdefault((kind, _same(kind, value)), set()).add(name)
         self.kinds = {kind for kind, _ in self.index}
+        for group in groups or ():
+            self.index.setdefault(("own", _same("own", group)), set()).add(group)
 
     def find(self, keys: Iterable[tuple[str, str]], place: str = "") -> tuple[str | None, str]:
         """The student that a claim's keys mean and the kind that told, or
@@ -150,10 +158,15 @@ class Roster:
         """
         names = dict.fromkeys((place, PurePosixPath(place).stem)) if place else ()
         keys = (*(("handed in as", name) for name in names), *keys)
+        surest = ""
         for kind, value in keys:
+            if surest not in ("", kind):
+                break  # the system's number is known of others, so a name does not overrule it
             found = self.index.get((kind, _same(kind, value)), set())
             if len(found) == 1:
                 return next(iter(found)), WORDS[kind]
+            if len({self.group_of.get(name, name) for name in found}) == 1:
+                return self.group_of[min(found)], WORDS[kind]
             if found:
                 return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
             if kind in self.kinds and kind in (
@@ -162,13 +175,15 @@ class Roster:
                 "moodle",
                 "gradescope",
             ):
-                break  # the system's number is known of others, so a name does not overrule it
+                surest = kind
             if kind == "github" and kind not in self.kinds:
                 return None, "The roster has no column `github`, and that name anybody may choose."
         return None, "Nobody in the roster fits."
 
     def identity(self, student: str) -> Identity:
         """What is known of a student, as a record holds it."""
+        if student not in self.people:
+            return Identity({}, (student,))  # a group
         person = self.people[student]
         kinds = ("canvas", "moodle", "brightspace", "name", "email")
         called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}

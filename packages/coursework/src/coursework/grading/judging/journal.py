@@ -1,15 +1,15 @@
-"""What people decided on answers: a ledger that only grows, with who, when and why.
+"""The journal: all that happened to marks, in lines that are only ever added.
 
-Each line of ``ledger.jsonl`` is an event: a :class:`Decision` on one answer, a step of an
-:class:`Appeal`, or what a line of a rubric is worth from now on (:class:`Worth`). Of several
-decisions on the same answer the last one counts, and none is ever taken out; who takes an own
-decision back enters another one that says so, and what stood before it counts again. A decision
-belongs to the answer that was looked at and to the question as it stood then: handed in anew, an
-answer is judged anew. Who decides names what was decided when they looked: if it is another by
-then, nothing is entered, and both are told.
+Each line of ``journal.jsonl`` is an event, which any editor shows: marks that were :class:`Given`,
+a :class:`Decision` on one answer, a step of an :class:`Appeal`, what a line of a rubric is worth
+from now on (:class:`Worth`), or marks that were :class:`Exported`. The marks of a class are those
+that were given last, and nothing else moves them (:mod:`coursework.grading.judging.laboratory`).
 
-What all events come to is worked out whenever it is needed (:class:`Standing`), so that a line of a
-rubric whose worth changes scores anew what used it, and the marks of any day can be told.
+Of several decisions on the same answer the last one counts, and none is ever taken out; who takes
+an own decision back enters another one that says so, and what stood before it counts again. A
+decision belongs to the answer that was looked at and to the question as it stood then: handed in
+anew, an answer is judged anew. Who decides names what was decided when they looked: if it is
+another by then, nothing is entered, and both are told.
 """
 
 import contextlib
@@ -19,38 +19,38 @@ import getpass
 import hashlib
 import io
 import json
-import math
 import os
 import secrets
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from ...checking import fields
-from ...checking.fields import Fields, Misread, Reader, many, one_of, text, whole
+from ...checking.fields import Fields, Json, Misread, one_of, text
 from ..locks import lock
+from ..reading import AsJson
 from ..record import Judged, Mark, Record
 from ..submissions.roster import decoded
 from ..tables import as_written
 
-FILE = "ledger.jsonl"
-#: Of the lines; those of the first format say no ``event`` and are decisions.
-FORMAT = 2
+FILE = "journal.jsonl"
 #: Where the beginning of a line is kept that was being written when the machine stopped.
-CUT = "ledger.cut"
-DECISIONS, APPEALS = "decisions.csv", "appeals.csv"
+CUT = "journal.cut"
 LONGEST_WORDS = 4_000
 
 #: A student, an assignment, a question.
 Key = tuple[str, str, str]
+
+#: A line of a table: its number, and its cells by the names of the columns.
+Row = tuple[int, dict[str, str]]
 
 #: The states of an appeal, in their order; the last two close it.
 RAISED, UNDER_REVIEW, ACCEPTED, REJECTED = "raised", "under review", "accepted", "rejected"
 OPEN = (RAISED, UNDER_REVIEW)
 
 
-class Decision(NamedTuple):
+@dataclass(frozen=True)
+class Decision(AsJson):
     """One person's decision on one answer.
 
     Attributes
@@ -104,7 +104,8 @@ class Decision(NamedTuple):
         return self.student, self.assignment, self.question
 
 
-class Appeal(NamedTuple):
+@dataclass(frozen=True)
+class Appeal(AsJson):
     """A step of an appeal against a mark: it is raised, taken up, or
     rejected. A :class:`Decision` accepts it.
 
@@ -142,7 +143,8 @@ class Appeal(NamedTuple):
         return self.student, self.assignment, self.question
 
 
-class Worth(NamedTuple):
+@dataclass(frozen=True)
+class Worth(AsJson):
     """What a line of a rubric is worth from now on.
 
     Attributes
@@ -167,13 +169,76 @@ class Worth(NamedTuple):
     after: str = ""
 
 
-Event = Decision | Appeal | Worth
-KINDS: dict[str, type[Decision] | type[Appeal] | type[Worth]] = {
-    "decision": Decision,
-    "appeal": Appeal,
-    "worth": Worth,
+@dataclass(frozen=True)
+class Part(AsJson):
+    """What a mark comes to, for one question."""
+
+    points: float
+    worth: float
+    outcome: str
+
+
+@dataclass(frozen=True)
+class Given(AsJson):
+    """The marks that were given for a student's work on an assignment.
+
+    Attributes
+    ----------
+    id, when, who : str
+    student, assignment : str
+    why : str
+        What moved them, or that they were given first.
+    points, worth : float
+    marks : mapping of str to Part
+        By question.
+    files : mapping of str to str
+        The notebooks that counted, with the SHA-256 of each.
+    """
+
+    id: str
+    when: str
+    who: str
+    student: str
+    assignment: str
+    why: str
+    points: float
+    worth: float
+    marks: Mapping[str, Part]
+    files: Mapping[str, str]
+
+    @property
+    def undecided(self) -> int:
+        """How many answers wait for a person."""
+        return sum(part.outcome == "undecided" for part in self.marks.values())
+
+
+@dataclass(frozen=True)
+class Exported(AsJson):
+    """Marks that were written into the table of a system.
+
+    Attributes
+    ----------
+    id, when, who : str
+    assignment, column, file : str
+    marks : mapping of str to str
+        What was written for each student.
+    """
+
+    id: str
+    when: str
+    who: str
+    assignment: str
+    column: str
+    file: str
+    marks: Mapping[str, str]
+
+
+#: What people said, which another grader's journal may bring.
+ByPeople = Decision | Appeal | Worth
+Event = ByPeople | Given | Exported
+KINDS: dict[str, type[Event]] = {
+    kind.__name__.lower(): kind for kind in (Decision, Appeal, Worth, Given, Exported)
 }
-NAMES = {kind: name for name, kind in KINDS.items()}
 
 
 class Collision(ValueError):
@@ -191,8 +256,8 @@ class Collision(ValueError):
 
 
 def digest_of_answer(record: Record, question: str) -> str:
-    """A short text that follows from an answer, and from nothing else."""
-    answer = record.answer(question).as_json()
+    """A short text that follows from what was answered, in whichever cell."""
+    answer = replace(record.answer(question), cell=None, source=None).as_json()
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
 
@@ -201,9 +266,12 @@ def contract_of(record: Record, question: str) -> str:
     return record.marks[question].version if question in record.marks else ""
 
 
-def stable_id(student: str, assignment: str, question: str) -> str:
-    """What a line of a table is known by, whatever a spreadsheet makes of the names in it."""
-    return hashlib.sha256(json.dumps([student, assignment, question]).encode()).hexdigest()[:12]
+def case_id(record: Record, question: str) -> str:
+    """What a line of a table is known by, whatever a spreadsheet makes of the names in it: another
+    answer of the same student has another one.
+    """
+    key = [record.student, record.assignment, question, digest_of_answer(record, question)]
+    return hashlib.sha256(json.dumps(key).encode()).hexdigest()[:12]
 
 
 # --- what all events come to --------------------------------------------------------------------
@@ -267,11 +335,14 @@ class Standing:
         The appeals of each answer, in the order in which they were raised.
     worths : dict
         What lines are worth, by question and line, where somebody said so beside the source.
+    given : dict
+        The marks that were given last, by student and assignment.
     """
 
     decisions: Mapping[Key, Decision] = field(default_factory=dict)
     appeals: Mapping[Key, Sequence[Appealed]] = field(default_factory=dict)
     worths: Mapping[tuple[str, str], Worth] = field(default_factory=dict)
+    given: Mapping[tuple[str, str], Given] = field(default_factory=dict)
 
     def decision(self, record: Record, question: str) -> Decision | None:
         """The decision on an answer that counts; one on an answer
@@ -331,7 +402,7 @@ def appeals_open(record: Record) -> list[str]:
     ]
 
 
-class Ledger:
+class Journal:
     """The events of a class.
 
     Parameters
@@ -352,6 +423,11 @@ class Ledger:
         self.events = list(events_in(self.path)) if self.path.exists() else []
 
     @property
+    def by_people(self) -> list[ByPeople]:
+        """What people said."""
+        return [one for one in self.events if isinstance(one, ByPeople)]
+
+    @property
     def decisions(self) -> list[Decision]:
         return [one for one in self.events if isinstance(one, Decision)]
 
@@ -370,11 +446,12 @@ class Ledger:
 
     def standing(self, until: datetime.datetime | None = None) -> Standing:
         """What counts now, or counted at a time."""
-        made = _in_order(
+        events = [
             one
             for one in self.events
             if until is None or datetime.datetime.fromisoformat(one.when) <= until
-        )
+        ]
+        made = _in_order(one for one in events if isinstance(one, ByPeople))
         decisions = {key: several[-1] for key, several in _not_taken_back(made).items() if several}
         worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
         undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
@@ -392,7 +469,8 @@ class Ledger:
             if by is not None and any(step.after == by.id for step in several):
                 by = None
             appeals.setdefault(several[0].key, []).append(Appealed(tuple(several), by))
-        return Standing(decisions, appeals, worths)
+        given = {(one.student, one.assignment): one for one in events if isinstance(one, Given)}
+        return Standing(decisions, appeals, worths, given)
 
     def current(self, until: datetime.datetime | None = None) -> Mapping[Key, Decision]:
         """The decision that counts for each answer, or counted at a time, by
@@ -417,9 +495,10 @@ class Ledger:
         old = [
             one
             for one in self.events
-            if not isinstance(one, Worth) and (one.student, one.assignment) == (student, assignment)
+            if isinstance(one, Decision | Appeal)
+            and (one.student, one.assignment) == (student, assignment)
         ]
-        ids = {one.id: secrets.token_hex(8) for one in old}
+        ids = {one.id: new_id() for one in old}
         copies: list[Event] = []
         for one in old:
             same: dict[str, Any] = {
@@ -431,7 +510,7 @@ class Ledger:
             if isinstance(one, Decision):
                 same["undoes"] = ids.get(one.undoes, one.undoes)
                 same["why"] = f"{one.why}; was {student!r}".removeprefix("; ")
-            copies.append(one._replace(**same))
+            copies.append(replace(one, **same))
         self.append(copies)
 
     def add(self, record: Record, question: str, credit: float | None, **more: Any) -> Decision:
@@ -454,13 +533,14 @@ class Ledger:
         after: str = "",
         points: Iterable[float | None] | None = None,
         appeal: str = "",
+        contract: str = "",
     ) -> Decision:
         """A decision on an answer of a record, which is not entered yet."""
         if credit is not None and not 0 <= credit <= 1:
             raise ValueError(f"A credit is a number from 0 to 1, and this is {credit}.")
         return Decision(
-            secrets.token_hex(8),
-            _now(),
+            new_id(),
+            now(),
             who or getpass.getuser(),
             record.student,
             record.assignment,
@@ -472,7 +552,7 @@ class Ledger:
             why,
             undoes,
             after,
-            contract_of(record, question),
+            contract or contract_of(record, question),
             None if points is None else tuple(points),
             appeal,
         )
@@ -514,8 +594,8 @@ class Ledger:
                 else "Say why it is rejected."
             )
         one = Appeal(
-            secrets.token_hex(8),
-            _now(),
+            new_id(),
+            now(),
             who or getpass.getuser(),
             record.student,
             record.assignment,
@@ -549,9 +629,7 @@ class Ledger:
         """
         who = who or getpass.getuser()
         return [
-            Worth(
-                secrets.token_hex(8), _now(), who, question, line, points, source.get(line), after
-            )
+            Worth(new_id(), now(), who, question, line, points, source.get(line), after)
             for line, (points, after) in changes.items()
         ]
 
@@ -565,7 +643,7 @@ class Ledger:
             None of the decisions that stand is this person's.
         """
         with self._alone() as file:
-            standing = _not_taken_back(_in_order(self.events))
+            standing = _not_taken_back(_in_order(self.by_people))
             mine = [
                 (record, standing.get((record.student, record.assignment, question), []))
                 for record in records
@@ -664,9 +742,8 @@ class Ledger:
             raise
         self.events += events
 
-    def merge(self, path: Path) -> tuple[list[Event], list[tuple[Decision, Decision]]]:
-        """Take in the events of another grader's ledger; give those that
-        are new, and those that differ.
+    def merge(self, path: Path) -> tuple[list[ByPeople], list[tuple[Decision, Decision]]]:
+        """Take in what people said in another grader's journal.
 
         Returns
         -------
@@ -676,7 +753,8 @@ class Ledger:
         """
         known = {one.id for one in self.events}
         before = self.current()
-        new = [one for one in events_in(path) if one.id not in known]
+        theirs = [one for one in events_in(path) if isinstance(one, ByPeople)]
+        new = [one for one in theirs if one.id not in known]
         differing = [
             (before[one.key], one)
             for one in new
@@ -689,84 +767,114 @@ class Ledger:
             self.append(new)
         return new, differing
 
-    def take_in_table(self, path: Path, records: Iterable[Record]) -> list[str]:
-        """Enter the decisions of a table that a person filled in; say what became of every line.
+    def take_in_table(
+        self, path: Path, records: Iterable[Record], who: str | None = None
+    ) -> tuple[int, list[str]]:
+        """Enter the decisions, or the appeals, of a table that a person filled in.
 
         Parameters
         ----------
         path : path
-            A table with the columns ``credit`` and ``id``, or ``student`` and ``question``.
-        records : iterable of dict
+            A copy of ``undecided.csv``, with the column ``credit`` filled in: each line is bound
+            to the answer that it was written for. Or a table of appeals, with the columns
+            ``student``, ``question`` and ``words``.
+        records : iterable of Record
 
         Returns
         -------
+        int
+            How many lines were entered.
         list of str
-            The lines that fit no answer.
+            The lines that were not, and why.
 
         Raises
         ------
         ValueError
-            A line cannot be read; nothing is entered then.
+            The table cannot be read; nothing is entered then.
         """
-        unused, wanted = [], []
-        # What was entered from this table, and changed since, is not entered again.
-        why = f"from {path.name}"
-        entered = {one.key: one for one in self.decisions if one.why == why}
-        for number, row, fitting in _fitting_rows(path, records, "credit"):
-            credit = _credit(row.get("credit", ""), f"{path}, line {number}")
+        header, rows = _table(path)
+        if {"id", "version", "credit"} <= header:
+            return self._take_in_decisions(path, rows, records, who or getpass.getuser())
+        if {"student", "question", "words"} <= header:
+            return self._take_in_appeals(rows, records, who)
+        raise ValueError(
+            f"{path}: decisions are a copy of undecided.csv, with its columns id and version, and "
+            "with credit filled in; appeals have the columns student, question and words. "
+            f"There are {', '.join(sorted(header)) or 'none'}."
+        )
+
+    def _take_in_decisions(
+        self, path: Path, rows: Sequence[Row], records: Iterable[Record], who: str
+    ) -> tuple[int, list[str]]:
+        cases = {
+            case_id(record, name): (record, name) for record in records for name in record.marks
+        }
+        unused, wanted, standing, why = [], list[Decision](), self.current(), f"from {path.name}"
+        for number, row in rows:
+            credit = _credit(row["credit"], f"{path}, line {number}")
             if credit is None:
                 continue
-            if isinstance(fitting, str):
-                unused.append(f"line {number}: {fitting}")
+            where = f"line {number}, {as_written(row.get('student', '')) or row['id']}"
+            if row["id"] not in cases:
+                unused.append(f"{where}: this answer is not here; perhaps it was handed in anew")
                 continue
-            record, question = fitting
-            known = entered.get((record.student, record.assignment, question))
-            comment = row.get("comment", "")
-            same = known and (known.credit, known.comment, known.answer) == (
-                credit,
-                comment,
-                digest_of_answer(record, question),
+            record, question = cases[row["id"]]
+            there = standing.get((record.student, record.assignment, question))
+            if there and there.answer == digest_of_answer(record, question):
+                if there.who != who:
+                    unused.append(f"{where}: {there.who} has decided, and gave {there.credit}")
+                    continue
+                if (there.credit, there.comment) == (credit, row.get("comment", "")):
+                    continue
+            wanted.append(
+                self.decision(
+                    record,
+                    question,
+                    credit,
+                    who=who,
+                    comment=row.get("comment", ""),
+                    why=why,
+                    contract=row["version"],
+                )
             )
-            if not same:
-                wanted.append(self.decision(record, question, credit, comment=comment, why=why))
         if wanted:
             self.append(wanted)
-        return unused
+        return len(wanted), unused
 
-    def take_in_appeals(self, path: Path, records: Iterable[Record]) -> list[str]:
-        """Raise the appeals of a table, each once; say which lines fit no answer.
-
-        Parameters
-        ----------
-        path : path
-            A table with the columns ``words`` and ``id``, or ``student`` and ``question``.
-        records : iterable of dict
-        """
-        unused = []
+    def _take_in_appeals(
+        self, rows: Sequence[Row], records: Iterable[Record], who: str | None
+    ) -> tuple[int, list[str]]:
+        by_names: dict[tuple[str, str], list[Record]] = {}
+        for record in records:
+            for question in record.marks:
+                by_names.setdefault((record.student, question), []).append(record)
         raised = {(*one.key, one.words) for one in self.events if isinstance(one, Appeal)}
-        for number, row, fitting in _fitting_rows(path, records, "words"):
-            words = as_written(row.get("words", "")).strip()
-            if not words:
-                continue
-            if isinstance(fitting, str):
-                unused.append(f"line {number}: {fitting}")
-                continue
-            record, question = fitting
-            if (record.student, record.assignment, question, words) in raised:
-                continue
-            try:
-                self.appeal(record, question, words)
-            except ValueError as error:
-                unused.append(f"line {number}: {error}")
-        return unused
+        unused, entered = [], 0
+        for number, row in rows:
+            words = as_written(row["words"]).strip()
+            student, question = as_written(row["student"]), row["question"]
+            fitting = by_names.get((student, question), [])
+            if words and len(fitting) != 1:
+                unused.append(f"line {number}: there is no answer of {student!r} to {question!r}")
+            elif words and (student, fitting[0].assignment, question, words) not in raised:
+                try:
+                    self.appeal(fitting[0], question, words, who=who)
+                    entered += 1
+                except ValueError as error:
+                    unused.append(f"line {number}: {error}")
+        return entered, unused
 
 
-def _now() -> str:
+def new_id() -> str:
+    return secrets.token_hex(8)
+
+
+def now() -> str:
     return datetime.datetime.now(datetime.UTC).isoformat(timespec="microseconds")
 
 
-def _in_order(events: Iterable[Event]) -> list[Event]:
-    """Events by time, since ledgers of several graders may have been put together;
+def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
+    """Events by time, since journals of several graders may have been put together;
     but none before what it came after.
 
     A clock may be wrong, or be set back: who saw another decision decided later all the same.
@@ -775,7 +883,7 @@ def _in_order(events: Iterable[Event]) -> list[Event]:
     by_id = {one.id: one for one in events}
     places: dict[str, tuple[str, int]] = {}
 
-    def place(one: Event) -> tuple[str, int]:
+    def place(one: ByPeople) -> tuple[str, int]:
         chain = [one]
         while (
             chain[-1].id not in places
@@ -792,7 +900,7 @@ def _in_order(events: Iterable[Event]) -> list[Event]:
     return sorted(events, key=lambda one: (*place(one), one.id))
 
 
-def _not_taken_back(made: Sequence[Event]) -> dict[Key, list[Decision]]:
+def _not_taken_back(made: Sequence[ByPeople]) -> dict[Key, list[Decision]]:
     """The decisions on each answer that nobody took back, the last one last."""
     decisions = [one for one in made if isinstance(one, Decision)]
     undone = {one.undoes for one in decisions if one.undoes}
@@ -809,49 +917,47 @@ def _not_taken_back(made: Sequence[Event]) -> dict[Key, list[Decision]]:
 
 
 def events_in(path: Path) -> Iterator[Event]:
-    """The events of a ledger, but for a last line that was not written to its
+    """The events of a journal, but for a last line that was not written to its
     end: nobody was told that it counts.
 
     Raises
     ------
     ValueError
-        A line is none; the message says which.
+        A line is none, or was changed; the message says which.
     """
     with open(path, encoding="utf8", errors="replace") as file:
         for number, line in enumerate(file, 1):
             try:
                 yield _event(line)
-            except NewerFormat as error:
-                raise ValueError(f"{path}, line {number}: {error}") from None
             except ValueError as error:
                 if not line.endswith("\n"):
                     return
                 why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
-                    f"{path}, line {number}: this is no decision: {line[:80]!r}{why}. "
-                    "Somebody changed the file: move the line into a file of its own, and look at "
-                    "that answer again."
+                    f"{path}, line {number}: this is not what was written there: {line[:80]!r}"
+                    f"{why}. Somebody changed the file: put back what it said, or move the line "
+                    "into a file of its own and look at that answer again."
                 ) from None
-
-
-class NewerFormat(ValueError):
-    """A later version wrote this."""
 
 
 def _is_cut(line: bytes) -> bool:
     """Whether a last line, without the end of a line, is no whole event."""
     try:
         _event(line.decode("utf8", "replace"))
-    except NewerFormat:
-        return False
     except ValueError:
         return True
     return False
 
 
 def _line(one: Event) -> bytes:
-    said = {"format": FORMAT, "event": NAMES[type(one)], **one._asdict()}
-    return json.dumps(said, ensure_ascii=False).encode("utf8", "backslashreplace") + b"\n"
+    said = {"event": type(one).__name__.lower(), **one.as_json()}
+    line = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
+    return line.encode("utf8", "backslashreplace") + b"\n"
+
+
+def _sum(said: Mapping[str, Json]) -> str:
+    """What tells that a line was changed by hand."""
+    return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12]
 
 
 def _event(line: str) -> Event:
@@ -859,137 +965,27 @@ def _event(line: str) -> Event:
 
     Raises
     ------
-    NewerFormat, ValueError
+    ValueError
         It is none; the message says why.
     """
     about = Fields(json.loads(line), "the line")
-    if (about.maybe("format", whole) or 1) > FORMAT:
-        raise NewerFormat("a later version of coursework wrote this. Install that one.")
-    kind = KINDS[about.maybe("event", one_of(*KINDS)) or "decision"]
-    for name, value in about.beside(("format", "event", *kind._fields)).items():
-        raise Misread(about.where, f"an event without {name!r}", value)
-    made = READERS[kind](about)
-    datetime.datetime.fromisoformat(made.when)
-    return made
+    if about.get("sum", text) != _sum(about.beside(["sum"])):
+        raise ValueError("it was changed")
+    return KINDS[about.get("event", one_of(*KINDS))].from_json(about.found, about.where)
 
 
-def _of_an_event(about: Fields) -> tuple[str, str, str]:
-    return about.get("id", text), about.get("when", text), about.get("who", text)
-
-
-def _of_an_answer(about: Fields) -> tuple[str, str, str, str, str, str, str]:
-    """How an event begins that is about one answer of one student."""
-    student, assignment = about.get("student", text), about.get("assignment", text)
-    return (
-        *_of_an_event(about),
-        student,
-        assignment,
-        about.get("question", text),
-        about.get("answer", text),
-    )
-
-
-def _decision(about: Fields) -> Decision:
-    credit, rubric = (
-        about.get("credit", _or_none(fields.number)),
-        about.maybe("rubric", many(text)) or (),
-    )
-    points = about.maybe("points", many(_or_none(fields.number)))
-    if not (credit is None or 0 <= credit <= 1):
-        raise Misread(f"{about.where}: 'credit'", "a share from 0 to 1", credit)
-    if points is not None and len(points) != len(rubric):
-        raise Misread(f"{about.where}: 'points'", f"those of {len(rubric)} lines", points)
-    return Decision(
-        *_of_an_answer(about),
-        credit,
-        about.maybe("comment", text) or "",
-        rubric,
-        about.maybe("why", text) or "",
-        about.maybe("undoes", text) or "",
-        about.maybe("after", text) or "",
-        about.maybe("contract", text) or "",
-        points,
-        about.maybe("appeal", text) or "",
-    )
-
-
-def _appeal(about: Fields) -> Appeal:
-    return Appeal(
-        *_of_an_answer(about),
-        about.get("contract", text),
-        about.get("state", text),
-        about.get("words", text),
-        about.maybe("appeal", text) or "",
-        about.maybe("after", text) or "",
-    )
-
-
-def _worth(about: Fields) -> Worth:
-    points = about.get("points", fields.number)
-    if not math.isfinite(points):
-        raise Misread(f"{about.where}: 'points'", "a number of points", points)
-    return Worth(
-        *_of_an_event(about),
-        about.get("question", text),
-        about.get("line", text),
-        points,
-        about.maybe("source", fields.number),
-        about.maybe("after", text) or "",
-    )
-
-
-def _or_none(reader: Reader[float]) -> Reader[float | None]:
-    return lambda value, where: None if value is None else reader(value, where)
-
-
-READERS: dict[type[Event], Callable[[Fields], Event]] = {
-    Decision: _decision,
-    Appeal: _appeal,
-    Worth: _worth,
-}
-
-
-def _fitting_rows(
-    path: Path, records: Iterable[Record], column: str
-) -> Iterator[tuple[int, dict[str, str], tuple[Record, str] | str]]:
-    """The lines of a table, each with the record and the question
-    that it means, or why there is none.
-    """
-    if not path.exists():
-        return
-    by_id: dict[str, tuple[Record, str]] = {}
-    by_names: dict[tuple[str, str], list[tuple[Record, str]]] = {}
-    for record in records:
-        for question in record.marks:
-            by_id[stable_id(record.student, record.assignment, question)] = record, question
-            by_names.setdefault((record.student, question), []).append((record, question))
-    for number, row in _rows(path, column):
-        names = as_written(row.get("student", "")), row.get("question", "")
-        fitting = [by_id[row["id"]]] if row.get("id") in by_id else by_names.get(names, [])
-        yield (
-            number,
-            row,
-            fitting[0]
-            if len(fitting) == 1
-            else f"there is no answer of {names[0]!r} to {names[1]!r}",
-        )
-
-
-def _rows(path: Path, column: str) -> Iterator[tuple[int, dict[str, str]]]:
+def _table(path: Path) -> tuple[set[str], list[Row]]:
     text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
     # Not at every sign that ends a line somewhere: students choose some of the words,
     # and would begin a line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
-    if column not in header or not ("id" in header or {"student", "question"} <= set(header)):
-        raise ValueError(
-            f"{path}: this table has the columns {column} and id, or {column}, student and "
-            "question; "
-            f"there are {', '.join(header) or 'none'}."
-        )
-    for cells in reader:
-        yield reader.line_num, dict(zip(header, (cell.strip() for cell in cells), strict=False))
+    rows = [
+        (reader.line_num, dict.fromkeys(header, "") | dict(zip(header, map(str.strip, cells))))
+        for cells in reader
+    ]
+    return set(header), rows
 
 
 def _credit(text: str, where: str) -> float | None:

@@ -1,0 +1,98 @@
+"""Dataclasses as JSON, and back: one reader and one writer, made from the fields themselves.
+
+JSON calls a field as Python does, with spaces for underscores; a field that has its default is left
+out. Two fields can therefore never be exchanged by a reader that was written by hand.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, fields, is_dataclass
+from types import NoneType
+from typing import Any, Self, get_args, get_origin, get_type_hints
+
+from ..checking.fields import (
+    Fields,
+    Json,
+    Reader,
+    anything,
+    by_name,
+    many,
+    number,
+    text,
+    truth,
+    whole,
+)
+
+PLAIN: dict[object, Reader[Any]] = {str: text, float: number, int: whole, bool: truth}
+
+
+class AsJson:
+    """A dataclass that is stored as JSON."""
+
+    @classmethod
+    def from_json(cls, value: object, where: str = "") -> Self:
+        """Read what :meth:`as_json` wrote; fields that nobody asks for are ignored.
+
+        Raises
+        ------
+        Misread
+        """
+        about, known = Fields(value, where or cls.__name__.lower()), {}
+        for field, reader in _readers(cls):  # type: ignore[arg-type]
+            name = _key(field)
+            optional = field.default is not MISSING or field.default_factory is not MISSING
+            if name in about.found or not optional:
+                known[field.name] = about.get(name, reader)
+        return cls(**known)
+
+    def as_json(self) -> dict[str, Json]:
+        """What :meth:`from_json` reads."""
+        return {
+            _key(field): written(getattr(self, field.name))
+            for field, _ in _readers(type(self))  # type: ignore[arg-type]
+            if getattr(self, field.name) != _default(field)
+        }
+
+
+def _key(field: Field[Any]) -> str:
+    return str(field.metadata.get("key") or field.name.replace("_", " "))
+
+
+def _default(field: Field[Any]) -> object:
+    return field.default if field.default_factory is MISSING else field.default_factory()
+
+
+@functools.cache
+def _readers(kind: type) -> list[tuple[Field[Any], Reader[Any]]]:
+    types = get_type_hints(kind)
+    return [(field, _reader(types[field.name])) for field in fields(kind)]
+
+
+def _reader(kind: Any) -> Reader[Any]:
+    """The reader of a value of a type: plain data is read as it is."""
+    origin, arguments = get_origin(kind), get_args(kind)
+    if kind in PLAIN:
+        return PLAIN[kind]
+    if is_dataclass(kind):
+        return kind.from_json  # type: ignore[no-any-return, union-attr]
+    if origin is tuple and arguments[-1] is Ellipsis:
+        return many(_reader(arguments[0]))
+    if origin is Mapping:
+        return by_name(_reader(arguments[1]))
+    if NoneType in arguments and len(arguments) == 2:
+        inner = _reader(next(one for one in arguments if one is not NoneType))
+        return lambda value, where: None if value is None else inner(value, where)
+    return anything
+
+
+def written(value: Any) -> Json:
+    """A value of a dataclass as JSON."""
+    if isinstance(value, AsJson):
+        return value.as_json()
+    if isinstance(value, (tuple, list)):
+        return [written(part) for part in value]
+    if isinstance(value, Mapping):
+        return {name: written(part) for name, part in value.items()}
+    return value  # type: ignore[no-any-return, union-attr]

@@ -1,0 +1,77 @@
+"""How a mark came to be what it is, in a few lines."""
+
+import datetime
+
+from ..judging import term as of_term
+from ..judging.journal import Appeal, Decision, Exported, Given, Journal
+from ..store import Store
+from ..tables import in_a_line, number
+
+
+def life_of(store: Store, student: str, assignment: str) -> list[str]:
+    """What happened to the marks of a student for an assignment.
+
+    Raises
+    ------
+    ValueError
+        There are none.
+    """
+    term, journal = of_term.term_of(store.folder), Journal(store.folder)
+    whose = term.group_of(student)
+    key = whose, assignment
+    record, given = store.read(*key), journal.standing().given.get(key)
+    if record is None or given is None:
+        known = sorted({one for one, _ in journal.standing().given})
+        raise ValueError(
+            f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
+            f"marks of {', '.join(known[:40])}."
+        )
+    group = f" (in {whose})" if whose != student else ""
+    said = [f"{student}{group}, {assignment}: {_of(given)}."]
+    for notebook in record.notebooks:
+        when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
+        said.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
+    for other in record.superseded:
+        said.append(f"  does not count: {in_a_line(other.file, 120)}, since {other.why}")
+    result = of_term.result_of(
+        student, assignment, record, term, {}, datetime.datetime.now(datetime.UTC)
+    )
+    due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
+    late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else "in time"
+    said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
+    for name, mark in record.marks.items():
+        case = record.cases.get(name)
+        rule = f", variant {case.own.variant} ({case.rule})" if case and case.rule else ""
+        decided = f", decided by {mark.decided['who']}" if mark.decided else ""
+        note = f" ({mark.note})" if mark.note else ""
+        said.append(
+            f"  {name}{rule}: {mark.outcome}{note}, {number(mark.points)} of {number(mark.worth)}"
+            f"{decided}"
+        )
+    for event in journal.events:
+        happened = ""
+        if isinstance(event, Exported):
+            if event.assignment == assignment and student in event.marks:
+                happened = f"{event.marks[student]} written to {event.column!r} of {event.file}"
+        elif isinstance(event, Given):
+            if (event.student, event.assignment) == key:
+                happened = f"{_of(event)}: {event.why}"
+        elif isinstance(event, Decision | Appeal) and event.key[:2] == key:
+            happened = f"{event.question}: {_step(event)}"
+        if happened:
+            said.append(f"  {event.when[:16].replace('T', ' ')} {event.who}: {happened}")
+    return said
+
+
+def _of(given: Given) -> str:
+    waiting = f", {given.undecided} undecided" if given.undecided else ""
+    return f"{number(given.points)} of {number(given.worth)} points{waiting}"
+
+
+def _step(event: Decision | Appeal) -> str:
+    if isinstance(event, Appeal):
+        return f"appeal {event.state}: {in_a_line(event.words, 120)}"
+    if event.credit is None:
+        return "took a decision back"
+    said = f" “{in_a_line(event.comment, 120)}”" if event.comment else ""
+    return f"gave {number(round(100 * event.credit, 2))} % of the points{said}"

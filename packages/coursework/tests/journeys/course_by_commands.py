@@ -1,0 +1,160 @@
+"""A small course, students, and the command `coursework`: what an instructor has."""
+
+import contextlib
+import csv
+import io
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from coursework.__main__ import main
+
+SECRET = "5eed" * 16
+
+
+def notebook(*cells):
+    made = nbformat.v4.new_notebook()
+    for number, source in enumerate(cells):
+        markdown = source.startswith("#!")
+        new = nbformat.v4.new_markdown_cell if markdown else nbformat.v4.new_code_cell
+        made.cells.append(new(source.removeprefix("#!"), id=f"cell-{number}"))
+    return made
+
+
+class Course:
+    """Solutions, a folder of what was handed in, and the marks.
+
+    Each question is a number that the students give, or a text: `questions` says
+    what is right, and what it is worth.
+    """
+
+    def __init__(self, place, **assignments):
+        self.place = Path(place)
+        self.solutions, self.handed_in = self.place / "solutions", self.place / "handed-in"
+        self.marks = self.place / "marks"
+        self.solutions.mkdir(parents=True)
+        self.handed_in.mkdir()
+        (self.solutions / ".grading-secret").write_text(SECRET)
+        self.assignments = assignments
+        for name in assignments:
+            self.write_source(name)
+
+    def write_source(self, name):
+        cells = ["from coursework import check"]
+        for question, (right, worth) in self.assignments[name].items():
+            kind = "free text" if isinstance(right, str) else "expression"
+            cells += [
+                f"#!How much is {question}?",
+                f"### BEGIN SOLUTION\n{question} = {right!r}\n### END SOLUTION",
+                f"check('{name}/{question}', {question})\n### BEGIN HIDDEN TESTS\n"
+                f"question('{name}/{question}', kind={kind!r}, worth={worth})\n"
+                "### END HIDDEN TESTS",
+            ]
+        nbformat.write(notebook(*cells), self.solutions / f"{name}.ipynb")
+
+    def change(self, name, **questions):
+        """Mend the source: another right answer, or another worth."""
+        self.assignments[name] |= questions
+        self.write_source(name)
+
+    def answers(self, name, **given):
+        """The notebook of a student who answers right but for what is
+        `given`; `None` leaves the blank.
+        """
+        cells = ["from coursework import check"]
+        for question, (right, _) in self.assignments[name].items():
+            answer = given.get(question, right)
+            cells.append(f"{question} = {'...' if answer is None else repr(answer)}")
+            cells.append(f"check('{name}/{question}', {question})")
+        return notebook(*cells)
+
+    def hands_in(self, student, name, file=None, **given):
+        path = self.handed_in / student / (file or f"{name}.ipynb")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        nbformat.write(self.answers(name, **given), path)
+        return path
+
+    def run(self, *words, fails=False, stdin=""):
+        """Run the command; give all that it says.
+
+        It runs in this process, which has loaded SymPy: in one of its own each would take seconds.
+        """
+        said, status = io.StringIO(), 0
+        with contextlib.ExitStack() as stack:
+            stack.enter_context(contextlib.chdir(self.place))
+            stack.enter_context(contextlib.redirect_stdout(said))
+            stack.enter_context(contextlib.redirect_stderr(said))
+            monkeypatch = stack.enter_context(pytest.MonkeyPatch.context())
+            monkeypatch.setattr(sys, "stdin", io.StringIO(stdin))
+            try:
+                main([*map(str, words)])
+            except SystemExit as ended:
+                status = ended.code
+                print(status or "", file=said)
+        assert bool(status) == fails, said.getvalue()
+        return said.getvalue()
+
+    def grade(self, *words, **more):
+        return self.run(
+            "grade", "handed-in", "--out", "marks", "--solutions", "solutions", *words, **more
+        )
+
+    def regrade(self, *words, **more):
+        return self.run("regrade", "marks", "--solutions", "solutions", *words, **more)
+
+    def export(self, book, *words, **more):
+        return self.run("export", "marks", "--lms", book, "--filled", book, *words, **more)
+
+    def reviews(self, who, decide):
+        """Somebody opens the page, decides, and stops it."""
+        command = [sys.executable, "-m", "coursework", "review", "marks", "--grader", who, "--yes"]
+        hears = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+        with subprocess.Popen(
+            command, cwd=self.place, stdout=subprocess.PIPE, text=True, preexec_fn=hears
+        ) as page:
+            address = page.stdout.readline().split()[-1]
+            decide(address)
+            page.send_signal(signal.SIGINT)
+            return page.stdout.read()
+
+    def points(self, assignment=None):
+        """What grades.csv says of each student, or of each in an assignment."""
+        rows = csv.DictReader((self.marks / "grades.csv").read_text("utf8").splitlines())
+        return {
+            row["student"]: float(row["points"])
+            for row in rows
+            if assignment in (None, row["assignment"])
+        }
+
+    def table(self, name):
+        text = (self.marks / name).read_text("utf8")
+        return list(csv.DictReader(text.splitlines()))
+
+    def write_table(self, name, rows):
+        path = self.place / name
+        with open(path, "w", encoding="utf8", newline="") as file:
+            writer = csv.DictWriter(file, rows[0])
+            writer.writeheader()
+            writer.writerows(rows)
+        return path
+
+    def canvas_book(self, *columns, name="book.csv"):
+        """A gradebook of Canvas, empty, of all who have handed in."""
+        students = sorted(os.listdir(self.handed_in))
+        rows = [
+            {"Student": student, "ID": number, "SIS User ID": "", "SIS Login ID": student,
+             "Section": "x"} | dict.fromkeys(columns, "")
+            for number, student in enumerate(students, 1)
+        ]  # fmt: skip
+        return self.write_table(name, rows)
+
+    def column(self, book, column):
+        """What a filled gradebook says of each student."""
+        rows = csv.DictReader(Path(book).read_text("utf8").splitlines())
+        key = "SIS Login ID" if "SIS Login ID" in rows.fieldnames else rows.fieldnames[0]
+        return {row[key]: row[column] for row in rows}

@@ -1,0 +1,183 @@
+"""Instructors do what they do each week; no mark that was given moves before it was said."""
+
+import nbformat
+import pytest
+from course_by_commands import Course
+
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+
+TOO_SHORT = "no idea, sorry"
+
+
+@pytest.fixture
+def course(tmp_path):
+    return Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8), "why": ("By the arm.", 1)})
+
+
+def test_a_late_notebook_comes_after_the_source_changed(tmp_path):
+    course = Course(tmp_path, hw2={"load": (7, 8)})
+    for student in ("ada", "ben", "cem", "dan", "eva"):
+        course.hands_in(student, "hw2")
+    course.grade()
+    before = course.points()
+    assert set(before.values()) == {8}
+    course.change("hw2", load=(9, 8))
+    course.hands_in("fay", "hw2", load=9)
+    said = course.grade(fails=True)
+    assert "5 students would lose: hw2/load." in said and "'ada', hw2: 8 -> 0" in said
+    assert "No mark that was given before has moved." in said
+    assert course.points() == {**before, "fay": 8}
+    # Asked once more it says the same, and runs nothing again.
+    assert "6 of them graded before" in course.grade(fails=True)
+    # With a yes it comes to pass, and is written down.
+    course.grade("--yes")
+    assert course.points() == {**dict.fromkeys(before, 0), "fay": 8}
+    log = (course.marks / "run.log").read_text()
+    assert "not moved, nobody agreed: 'ada', hw2: 8 -> 0" in log and "  moved: 'ada'" in log
+
+
+def test_the_worth_of_a_question_changes(tmp_path):
+    course = Course(tmp_path, hw2={"load": (7, 8), "arm": (2, 8)})
+    course.hands_in("ada", "hw2", arm=3)
+    course.hands_in("ben", "hw2")
+    course.grade()
+    course.change("hw2", load=(7, 24))
+    for command in (course.regrade, course.grade):
+        said = command(fails=True)
+        assert (
+            "1 student would gain: hw2/load." in said and "'ada', hw2: 8 of 16 -> 24 of 32" in said
+        )
+        assert "Of 1 the share of the points would stay the same." in said
+    book = course.canvas_book("HW 2 (7)")
+    course.export(book)
+    assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "16"}
+    course.regrade("--yes")
+    assert course.points() == {"ada": 24, "ben": 32}
+
+
+def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
+    course.hands_in("ada", "hw2", why="It has no point of its own, as the moments add up.")
+    course.hands_in("ben", "hw2", why="By magic.")
+    course.grade()
+    table = course.table("undecided.csv")
+    for line in table:
+        line["credit"] = {"ada": "1", "ben": "0"}[line["student"]]
+    path = course.write_table("decided.csv", table)
+    said = course.run("merge", "marks", path, "--grader", "Ann")
+    assert "2 lines of" in said and course.points() == {"ada": 9, "ben": 8}
+    course.hands_in("ada", "hw2", why=TOO_SHORT)
+    course.grade("--yes")
+    assert course.points()["ada"] == 8 and [
+        one["student"] for one in course.table("undecided.csv")
+    ] == ["ada"]
+    said = course.run("merge", "marks", path, "--grader", "Ann")
+    assert "line 2, ada: this answer is not here; perhaps it was handed in anew" in said
+    assert course.points()["ada"] == 8
+    # A table that is bound to no answers is none of decisions.
+    unbound = course.write_table(
+        "unbound.csv", [{"student": "ada", "question": "hw2/why", "credit": "1"}]
+    )
+    assert "decisions are a copy of undecided.csv" in course.run(
+        "merge", "marks", unbound, fails=True
+    )
+
+
+def test_a_decision_that_was_merged_stays(course, tmp_path):
+    """Ann and Ben each fill in a table on copies of the folder; Ben is the later one."""
+    course.hands_in("ada", "hw2", why="As the moments add up.")
+    course.grade()
+    table = course.table("undecided.csv")
+    copy = Course(tmp_path / "ben", **course.assignments)
+    copy.hands_in("ada", "hw2", why="As the moments add up.")
+    copy.grade()
+    for where, who, credit in ((course, "Ann", "1"), (copy, "Ben", "0.5")):
+        path = where.write_table("decided.csv", [{**table[0], "credit": credit}])
+        where.run("merge", "marks", path, "--grader", who)
+    said = course.run("merge", "marks", copy.marks / "journal.jsonl", fails=True)
+    assert "Ann gave 1.0, Ben gave 0.5; the later one counts" in said
+    assert "1 student would lose: hw2/why." in said and course.points() == {"ada": 9}
+    course.run("merge", "marks", copy.marks / "journal.jsonl", "--yes")
+    assert course.points() == {"ada": 8.5}
+    for _ in range(2):
+        assert "0 moved." in course.regrade()
+    course.grade()
+    assert course.points() == {"ada": 8.5}
+    # A table over what a colleague decided is refused, line by line.
+    said = course.run("merge", "marks", course.place / "decided.csv", "--grader", "Ann")
+    assert "line 2, ada: Ben has decided, and gave 0.5" in said and course.points() == {"ada": 8.5}
+
+
+def test_one_assignment_takes_in_no_other(course):
+    """nbgrader's layout: submitted/student/assignment."""
+    for student, name in (("ada", "hw1"), ("ada", "hw2"), ("ben", "hw2")):
+        path = course.handed_in / "submitted" / student / name / f"{name}.ipynb"
+        path.parent.mkdir(parents=True)
+        nbformat.write(course.answers(name), path)
+    said = course.grade("--assignment", "hw1")
+    assert "2 notebooks are of hw2, and are left alone." in said
+    assert course.points() == {"ada": 4} and course.table("refused.csv") == []
+    course.grade("--assignment", "hw2")
+    assert course.points("hw2") == {"ada": 8, "ben": 8} and course.points("hw1") == {"ada": 4}
+
+
+def test_a_column_is_filled_with_one_assignment(tmp_path):
+    course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8)})
+    course.hands_in("ada", "hw1", sum=6)
+    course.hands_in("ada", "hw2")
+    course.grade()
+    book = course.canvas_book("HW 1 (6)", "HW 2 (7)")
+    said = course.export(book, "--column", "HW 2", fails=True)
+    assert "There are marks of hw1, hw2: say which --assignment this is." in said
+    assert course.column(book, "HW 2 (7)") == {"ada": ""}
+    course.export(book, "--column", "HW 2", "--assignment", "hw2")
+    assert course.column(book, "HW 2 (7)") == {"ada": "8"}
+    assert course.column(book, "HW 1 (6)") == {"ada": ""}
+
+
+def test_a_mark_changed_by_hand_in_moodle_stays(tmp_path):
+    """Every assignment's worksheet calls its column Grade."""
+    course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 4)})
+    course.hands_in("ada", "hw1", sum=6)
+    course.hands_in("ada", "hw2")
+    course.grade()
+    row = {
+        "Identifier": "Participant 1",
+        "Full name": "Ada",
+        "ID number": "ada",
+        "Grade": "",
+        "Maximum Grade": "4.00",
+        "Grade can be changed": "Yes",
+    }
+    book = course.write_table("hw1.csv", [row])
+    course.export(book, "--assignment", "hw1")
+    book = course.write_table("hw2.csv", [{**row, "Grade": "0"}])
+    said = course.export(book, "--assignment", "hw2")
+    assert "ada: 0, and graded 4" in said and ",0," in book.read_text()
+
+
+def test_a_cell_that_is_added_leaves_a_decision_where_it_is(course):
+    course.hands_in("ada", "hw2", why="As the moments add up.")
+    course.grade()
+    path = course.write_table("decided.csv", [{**course.table("undecided.csv")[0], "credit": "1"}])
+    course.run("merge", "marks", path)
+    assert course.points() == {"ada": 9}
+    handed_in = course.handed_in / "ada" / "hw2.ipynb"
+    made = nbformat.read(handed_in, 4)
+    made.cells.insert(0, nbformat.v4.new_code_cell("# what I thought", id="more"))
+    nbformat.write(made, handed_in)
+    course.grade()
+    assert course.points() == {"ada": 9}
+
+
+def test_a_line_of_the_journal_that_was_edited_is_noticed(course):
+    course.hands_in("ada", "hw1")
+    course.grade()
+    path = course.marks / "journal.jsonl"
+    whole = path.read_text()
+    path.write_text(whole.replace('"points": 4', '"points": 3'))
+    said = course.regrade(fails=True)
+    assert "journal.jsonl, line 1: this is not what was written there" in said
+    # A last line that was torn is named, and what was whole counts.
+    path.write_text(whole + whole[:40])
+    said = course.regrade()
+    assert "ends within a line" in said and "0 moved." in said

@@ -1,0 +1,273 @@
+"""An instructor writes down the term once, in one file; commands need no flags from then on."""
+
+import json
+import os
+import stat
+
+import nbformat
+import pytest
+from course_by_commands import Course, notebook
+
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+TERM = """
+time-zone = "Europe/Paris"
+roster = "../roster.csv"
+[late]
+a-day = 0.1
+[assignments.hw1]
+due = 2025-10-05T23:59:00
+column = "HW 1"
+[assignments.hw2]
+opens = 2025-10-06T08:00:00
+due = 2025-10-12T08:00:00
+column = "HW 2"
+"""
+
+
+@pytest.fixture
+def course(tmp_path):
+    course = Course(tmp_path, hw1={"sum": (5, 4), "arm": (2, 4)}, hw2={"load": (7, 8)})
+    (tmp_path / "roster.csv").write_text(
+        "student,name,email\n"
+        + "".join(f"{one},{one.capitalize()} Lee,{one}@uni.example\n" for one in STUDENTS)
+    )
+    course.marks.mkdir()
+    write_term(course)
+    return course
+
+
+STUDENTS = ("ada", "ben", "cem", "dan")
+
+
+def write_term(course, *more, text=TERM):
+    (course.marks / "term.toml").write_text("\n".join([text, *more]) + "\n")
+
+
+def collected(course, student, name, when="2025-10-01 12:00:00", file=None, **answers):
+    """As nbgrader collects it: in a folder for each student and assignment, with its time."""
+    folder = course.handed_in / "submitted" / student / name
+    folder.mkdir(parents=True, exist_ok=True)
+    nbformat.write(course.answers(name, **answers), folder / (file or f"{name}.ipynb"))
+    (folder / "timestamp.txt").write_text(f"{when}.000000 UTC")
+    return folder
+
+
+def book_of(course):
+    rows = [
+        {"Student": "", "ID": number, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
+         "HW 1 (11)": "", "HW 2 (12)": ""}
+        for number, one in enumerate(STUDENTS, 1)
+    ]  # fmt: skip
+    return course.write_table("book.csv", rows)
+
+
+def test_from_a_new_file_to_filled_columns(tmp_path):
+    course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8)})
+    (tmp_path / "roster.csv").write_text("student\nada\nben\n")
+    made = ["term", "new", "marks", "--solutions", "solutions", "--roster", "roster.csv"]
+    assert "read it, and choose" in course.run(*made)
+    assert "is there already" in course.run(*made, fails=True)
+    path = course.marks / "term.toml"
+    text = path.read_text()
+    assert "[assignments.hw1]" in text and 'roster = "../roster.csv"' in text
+    # Every line that is offered can be taken as it is.
+    for name in ("hw1", "hw2"):
+        begun = f"[assignments.{name}]\n"
+        number = name[-1]
+        text = text.replace(
+            begun, f'{begun}due = 2025-10-0{number}T12:00:00\ncolumn = "HW {number}"\n'
+        )
+    path.write_text(text)
+    collected(course, "ada", "hw1", "2025-10-01 09:00:00")
+    collected(course, "ada", "hw2", load=6)
+    course.grade()
+    book = course.canvas_book("HW 1 (11)", "HW 2 (12)")
+    rows = [{"Student": "", "ID": 1, "SIS User ID": "", "SIS Login ID": one, "Section": "x",
+             "HW 1 (11)": "", "HW 2 (12)": ""} for one in ("ada", "ben")]  # fmt: skip
+    book = course.write_table("book.csv", rows)
+    said = course.export(book)
+    assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "0"}
+    assert course.column(book, "HW 2 (12)") == {"ada": "0", "ben": "0"}
+    assert "Nothing was handed in, and it was due: 0 (1):\n  ben" in said
+
+
+@pytest.mark.parametrize(
+    "more, said",
+    [
+        (
+            "[extensions.adda]\nhw1 = 2025-10-09T12:00:00",
+            "line 14: extensions name 'adda', and nobody",
+        ),
+        ("[extensions.ada]\nhw3 = 'excused'", "line 15: what is 'hw3' in extensions.ada?"),
+        ("[late-days]\nmost = 1", "line 14: what is 'late-days'?"),
+        ("[extensions.ada]\ntime = 1.5", "line 15: time = 1.5 .* hw1 has no such time"),
+        ("[groups]\nteam = ['ada', 'zoe']", "groups name 'zoe', and nobody"),
+    ],
+)
+def test_what_is_misspelt_is_refused_with_its_line(course, more, said):
+    import re
+
+    collected(course, "ada", "hw1")
+    write_term(course, more)
+    assert re.search(said, course.grade(fails=True))
+    assert not (course.marks / "grades.csv").exists()
+
+
+def test_a_time_zone_that_there_is_not_is_refused(course):
+    write_term(course, text=TERM.replace("Europe/Paris", "Europe/Pariss"))
+    assert "line 2: there is no time zone 'Europe/Pariss'" in course.run(
+        "term", "marks", fails=True
+    )
+
+
+def test_a_blank_copy_counts_less_than_finished_work(course):
+    folder = collected(course, "ada", "hw1")
+    blank = nbformat.read(course.solutions / "hw1.ipynb", 4)
+    cells = ["from coursework import check", "sum = ...  # your answer", "check('hw1/sum', sum)"]
+    blank = notebook(*cells, "arm = ...  # your answer", "check('hw1/arm', arm)")
+    nbformat.write(blank, folder / "hw1-Copy1.ipynb")
+    os.utime(folder / "hw1.ipynb", (1, 1))
+    said = course.grade()
+    assert (
+        "hw1-Copy1.ipynb  (hw1; the name of the folder) DOES NOT COUNT: it answers nothing" in said
+    )
+    assert course.points("hw1") == {"ada": 8}
+    page = (course.marks / "feedback" / "ada" / "hw1.html").read_text()
+    assert "was not counted: it answers nothing" in page
+
+
+def test_what_came_in_time_counts_before_what_came_late(tmp_path):
+    """Brightspace says of each attempt when it came."""
+    course = Course(tmp_path, hw1={"sum": (5, 4), "arm": (2, 4)})
+    (tmp_path / "roster.csv").write_text("student,name\nada,Ada Lee\nben,Ben Lee\n")
+    course.marks.mkdir()
+    attempts = [
+        ("101-7 - Ada Lee - Oct 5, 2025 1000 AM", {}),
+        ("101-7 - Ada Lee - Oct 9, 2025 1000 AM", {"arm": 3}),
+        ("102-7 - Ben Lee - Oct 5, 2025 1000 AM", {"arm": 3}),
+        ("102-7 - Ben Lee - Oct 5, 2025 0100 PM", {}),
+    ]
+    for folder, answers in attempts:
+        course.hands_in(folder, "hw1", **answers)
+    for attempts, points in (
+        ("newest in time", {"ada": 8, "ben": 8}),
+        ("last", {"ada": 4, "ben": 8}),
+    ):
+        (course.marks / "term.toml").write_text(
+            'time-zone = "UTC"\nroster = "../roster.csv"\n'
+            f'attempts = "{attempts}"\n[late]\na-day = 0.1\n'
+            "[assignments.hw1]\ndue = 2025-10-05T23:59:00\n"
+        )
+        course.grade("--yes")
+        assert course.points() == points
+    said = course.run("why", "ada", "hw1")
+    assert "handed in 2025-10-09T10:00:00" in said and "late: 40 % are lost" in said
+    assert (
+        "It came late: due 2025-10-05 23:59 UTC"
+        in (course.marks / "feedback" / "ada" / "hw1.html").read_text()
+    )
+
+
+def test_a_group_hands_in_once(course):
+    write_term(course, "[groups]", 'team = ["ada", "ben"]')
+    collected(course, "team", "hw1", arm=3)
+    collected(course, "cem", "hw1")
+    course.grade()
+    assert course.points("hw1") == {"team": 4, "cem": 8}
+    book = book_of(course)
+    course.export(book)
+    assert course.column(book, "HW 1 (11)") == {"ada": "4", "ben": "4", "cem": "8", "dan": "0"}
+    # By the folder of one of them it is theirs as well; one appeal is for both.
+    (course.handed_in / "submitted" / "team").rename(course.handed_in / "submitted" / "ben")
+    course.grade()
+    assert course.points("hw1") == {"team": 4, "cem": 8}
+    appeal = course.write_table(
+        "appeals.csv", [{"student": "team", "question": "hw1/arm", "words": "Why?"}]
+    )
+    course.run("merge", "marks", appeal)
+    said = course.export(book)
+    assert "  ada: hw1/arm" in said and "  ben: hw1/arm" in said
+    assert "ada (in team), hw1: 4 of 8 points." in course.run("why", "ada", "hw1")
+
+
+def test_more_time_is_for_whom_it_is(course):
+    write_term(course)
+    for student in ("ada", "ben"):
+        collected(course, student, "hw2", "2025-10-14 12:00:00")
+    write_term(course, "[extensions.ada]", "hw1 = 'excused'", text=TERM)
+    course.grade()
+    book = book_of(course)
+    course.export(book, "--assignment", "hw2")
+    assert course.column(book, "HW 2 (12)") == {"ada": "5.6", "ben": "5.6", "cem": "0", "dan": "0"}
+    text = TERM.replace("[assignments.hw1]\n", "[assignments.hw1]\nopens = 2025-10-01T08:00:00\n")
+    write_term(course, "[extensions.ada]", "time = 1.5", text=text)
+    course.export(book, "--assignment", "hw2")
+    assert course.column(book, "HW 2 (12)") == {"ada": "8", "ben": "5.6", "cem": "0", "dan": "0"}
+
+
+def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
+    collected(course, "ada", "hw1")
+    damaged = collected(course, "ben", "hw1")
+    (damaged / "hw1.ipynb").write_text("no notebook")
+    course.grade()
+    # Another assignment in another folder forgets nothing of it.
+    other = course.place / "later"
+    (other / "cem").mkdir(parents=True)
+    nbformat.write(course.answers("hw2"), other / "cem" / "hw2.ipynb")
+    course.run("grade", "later", "--out", "marks", "--solutions", "solutions")
+    assert [row["student"] for row in course.table("refused.csv")] == ["ben"]
+    book = book_of(course)
+    said = course.export(book, "--assignment", "hw1")
+    assert "what they handed in cannot be graded (1):\n  ben" in said
+    assert course.column(book, "HW 1 (11)") == {"ada": "8", "ben": "", "cem": "0", "dan": "0"}
+
+
+def test_a_mark_tells_its_life(course):
+    collected(course, "ada", "hw2", load=6)
+    course.grade()
+    course.change("hw2", load=(6, 8))
+    course.regrade("--yes")
+    book = book_of(course)
+    course.export(book, "--assignment", "hw2")
+    said = course.run("why", "ada", "hw2")
+    lines = said.splitlines()
+    assert lines[0] == "ada, hw2: 8 of 8 points." and len(lines) <= 10
+    assert (
+        "0 of 8 points: graded" in said and "8 of 8 points: the questions or the software" in said
+    )
+    assert "8 written to 'HW 2 (12)' of " in said
+    assert "There are no marks of 'eve'" in course.run("why", "eve", "hw2", fails=True)
+
+
+def test_gradescopes_own_lists_are_understood(tmp_path):
+    course = Course(tmp_path, hw1={"sum": (5, 4)})
+    (tmp_path / "roster.csv").write_text(
+        "Name,SID,Email\nAda Lee,1001,ada@uni.example\nBen Lee,,ben@uni.example\n"
+    )
+    course.marks.mkdir()
+    (course.marks / "term.toml").write_text(
+        'time-zone = "UTC"\nroster = "../roster.csv"\n[assignments.hw1]\n'
+    )
+    listed = []
+    for number, (name, sid, email) in enumerate(
+        [("Ada Lee", "1001", "ada@uni.example"), ("Ben Lee", "2002", "ben@uni.example")]
+    ):
+        course.hands_in(f"submission_{number}", "hw1")
+        listed.append(
+            f"submission_{number}:\n  :submitters:\n  - :name: {name}\n    :sid: '{sid}'\n"
+            f"    :email: {email}\n  :created_at: 2025-10-01 12:00:00.0 Z\n"
+        )
+    (course.handed_in / "submission_metadata.yml").write_text("".join(listed))
+    course.grade()
+    assert course.points() == {"1001": 4, "ben@uni.example": 4}
+
+
+def test_nobody_else_on_the_machine_reads_marks(tmp_path):
+    course = Course(tmp_path, hw1={"sum": (5, 4)})
+    course.hands_in("ada", "hw1")
+    course.grade()
+    assert stat.S_IMODE(course.marks.stat().st_mode) == 0o700
+    made = ["gradescope", "marks", "--out", "auto.zip", "--solutions", "solutions"]
+    course.run(*made, "--assignment", "hw1")
+    assert stat.S_IMODE((tmp_path / "auto.zip").stat().st_mode) == 0o600
+    assert json.loads((course.marks / "refused.json").read_text())
