@@ -24,6 +24,7 @@ import time
 from pathlib import Path
 
 from coursework.grading.grade import Course, grade
+from coursework.grading.judging.term import Assignment, Term
 from coursework.grading.sample_class import make_class
 
 NOTEBOOKS = ("reference-frames", "unit-quaternions")
@@ -166,7 +167,8 @@ def measured():
 def of_questions(place):
     """Work out the questions, which :func:`of_grading` is given: the seconds that it takes."""
     with measured() as seconds:
-        Course(assignments={ASSIGNMENT: list(NOTEBOOKS)}).questions(
+        about = Assignment(notebooks=tuple(NOTEBOOKS))
+        Course(term=Term(assignments={ASSIGNMENT: about})).questions(
             [ASSIGNMENT], place / "questions"
         )
     return seconds
@@ -175,11 +177,13 @@ def of_questions(place):
 def of_grading(submissions, place, workers, scheduler=None):
     out = Path(tempfile.mkdtemp(dir=place))
     shutil.copytree(place / "questions", out / "questions")
+    (out / "term.toml").write_text(
+        f'time-zone = "UTC"\n[assignments.{ASSIGNMENT}]\nnotebooks = {list(NOTEBOOKS)}\n'
+    )
     with measured() as seconds:
         done = grade(
             submissions,
             out,
-            assignments={ASSIGNMENT: list(NOTEBOOKS)},
             workers=workers,
             scheduler=scheduler,
             show=io.StringIO(),

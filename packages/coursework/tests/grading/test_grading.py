@@ -169,7 +169,7 @@ def contents(folder):
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name not in ("run.log", "lock")
+        if path.is_file() and path.name not in ("run.log", "lock", "journal.jsonl")
     }
 
 
@@ -652,7 +652,7 @@ def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
     other.add(found, "turns/sum", 1)
     other.add(replace(found, student="stranger"), "turns/sum", 1)
     other.add(replace(found, answers={}), "turns/about-x", 1)
-    main(["merge", str(copied), str(other.path)])
+    main(["merge", str(copied), str(other.path), "--yes"])
     said = capsys.readouterr().out
     assert (
         "3 decisions from" in said

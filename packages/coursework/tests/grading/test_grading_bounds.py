@@ -257,7 +257,7 @@ def _contents(folder):
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
         for path in folder.rglob("*")
         if path.is_file()
-        and path.name not in ("run.log", "lock")
+        and path.name not in ("run.log", "lock", "journal.jsonl")
         and not path.name.startswith(".half-")
     }
 

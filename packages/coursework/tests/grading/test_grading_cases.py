@@ -288,7 +288,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
         )
     options = {"solutions": begun.place / "solutions", "limits": LIMITS}
     said = io.StringIO()
-    with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 say .*--roster"):
+    with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 say .*roster in term.toml"):
         grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert (
         "says that it is of 'student-00', and is graded as that of 'folder of student-00'"

@@ -21,7 +21,9 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     said = io.StringIO()
     notebooks = ["simple-orientations", "unit-quaternions"]
     submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
-    grade(submissions, tmp_path / "out", assignments={"homework": notebooks}, show=said)
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "term.toml").write_text(_blocks(PAGE, "toml")[0])
+    grade(submissions, tmp_path / "out", show=said)
     manual = PAGE.read_text("utf8")
     report = (tmp_path / "out" / "report.html").read_text("utf8")
     for line in said.getvalue().splitlines():

@@ -476,7 +476,7 @@ def grade(
         for order, isolation in finished:
             store.log(f"graded: {waiting[order].student!r} {waiting[order].assignment}")
             progress.one_more(Isolation.from_json(isolation))
-        run_now = {(one.student, one.assignment) for one in waiting}
+        run_now = {(one.student, one.assignment): None for one in waiting}
         key_of_kept = {(one.student, one.assignment): key(one) for one in kept}
 
         def candidates() -> Iterator[Record]:
@@ -649,7 +649,8 @@ def _demand_own_numbers(
         "The roster knows them by another word than they wrote: of `student`, `email` and `name` "
         "the first column that it has is the one that their numbers follow from."
         if roster
-        else "Give the --roster in which they are called as they wrote, or name their folders so."
+        else "Name a roster in term.toml in which they are called as they wrote, or name their "
+        "folders so."
     )
     raise NothingToGrade(
         f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else "
@@ -688,7 +689,7 @@ def _say_other_numbers(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
                 "other numbers than those of the student whose they are, and earn nothing. "
                 "Are the students called here as they have written into their notebooks? "
-                "If not, grade again with the right --roster: nothing is lost.",
+                "If not, grade again with the right roster in term.toml: nothing is lost.",
                 file=show,
             )
 
@@ -710,7 +711,7 @@ def _demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | 
             f"The notebooks would all be of one student, {only!r}, and all but the newest would "
             "not count. "
             f"If that is so, say --student {only!r}; if not, name the folder in which each student "
-            "has one of their own, or give a --roster."
+            "has one of their own, or name a roster in term.toml."
         )
 
 
