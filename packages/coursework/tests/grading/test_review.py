@@ -342,15 +342,7 @@ def test_names_are_hidden_on_request(out):
         assert "student " in shown and not re.search("copies|was-copied|pokes", shown)
 
 
-def test_shares_are_disjoint_and_together_all(out):
-    whole = set(Class(out).clusters)
-    parts = [set(Class(out, (order, 3)).clusters) for order in (1, 2, 3)]
-    assert set.union(*parts) == whole and sum(map(len, parts)) == len(whole)
-
-
 def test_the_commands(out, capsys, tmp_path, graded):
-    with pytest.raises(SystemExit, match="a share is one of several"):
-        main(["review", str(out), "--share", "4/3"])
     with pytest.raises(SystemExit, match="no records"):
         main(["review", str(tmp_path / "empty")])
     other = tmp_path / "other"
@@ -600,7 +592,7 @@ def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
     other = shutil.copytree(out, tmp_path / "other")
     program = (
         "from pathlib import Path\nfrom coursework.grading.review import Class\n"
-        "Class(Path(sys.argv[1]), (1, 1))"
+        "Class(Path(sys.argv[1]))"
     )
     done = on_windows(program, other)
     assert done.returncode == 0, done.stderr

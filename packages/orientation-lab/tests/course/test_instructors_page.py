@@ -16,13 +16,18 @@ from coursework.grading.store import Store
 PAGE = Path(__file__).parents[4] / "appendix" / "instructors.md"
 
 
+def _toml():
+    """The examples of term.toml."""
+    return re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf8"), re.S)
+
+
 @pytest.mark.long
 def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     said = io.StringIO()
     notebooks = ["simple-orientations", "unit-quaternions"]
     submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "term.toml").write_text(_blocks(PAGE, "toml")[0])
+    (tmp_path / "out" / "term.toml").write_text(_toml()[0])
     grade(submissions, tmp_path / "out", show=said)
     manual = PAGE.read_text("utf8")
     report = (tmp_path / "out" / "report.html").read_text("utf8")
@@ -51,7 +56,6 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
     assert told.replace(f"{tmp_path}/", "") == printed
     rules = tmp_path / "term.toml"
-    rules.write_text(
-        re.search(r"```toml\n(.*?)```", manual, re.S)[1].replace('times = "worksheet.csv"\n', "")
-    )
-    assert list(term.read_rules(rules).assignments) == notebooks
+    (tmp_path / "gradebook.csv").write_text("student\njdoe\nada\nben\n")
+    rules.write_text(_toml()[-1].replace('times = "worksheet.csv"\n', ""))
+    assert list(term.read_term(rules).assignments) == notebooks

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import datetime
-import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -89,12 +88,6 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     review.add_argument("out", metavar="MARKS", help=MARKS)
     review.add_argument("--grader", help="your name, for the journal (default: your user name)")
-    review.add_argument(
-        "--share",
-        default="1/1",
-        metavar="K/N",
-        help="the K-th of N shares, if several people judge, such as 2/3",
-    )
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
     review.add_argument("--port", type=int, default=0, help="the port (default: any that is free)")
     review.add_argument(
@@ -384,20 +377,11 @@ def regrade(
         _say_moved(laboratory)
 
 
-def review(
-    out: str, grader: str | None, share: str, hide_names: bool, port: int, yes: bool
-) -> None:
+def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool) -> None:
     import getpass
 
     from .review import review as serve
     from .store import InUse
-
-    numbers = re.fullmatch(r"(\d+)/(\d+)", share)
-    mine, shares = map(int, numbers.groups()) if numbers else (0, 0)
-    if not 1 <= mine <= shares:
-        sys.exit(
-            f"coursework review: a share is one of several, such as 2/3, and this is {share!r}."
-        )
 
     def say(address: str) -> None:
         print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
@@ -406,7 +390,6 @@ def review(
         serve(
             out,
             grader or getpass.getuser(),
-            share=(mine, shares),
             hide_names=hide_names,
             port=port,
             say=say,

@@ -122,11 +122,9 @@ class Class:
     ----------
     folder : path
         The folder of results.
-    share : (int, int)
-        Which part of the answers a grader judges, and how many parts there are.
     """
 
-    def __init__(self, folder: str | Path, share: tuple[int, int] = (1, 1)) -> None:
+    def __init__(self, folder: str | Path) -> None:
         self.store = Store(folder)
         self.journal = Journal(self.store.folder)
         self.standing = self.journal.standing()
@@ -160,13 +158,12 @@ class Class:
         self.clusters = {}
         for key, members in groups.items():
             name = hashlib.sha256("\n".join(key).encode()).hexdigest()[:16]
-            if int(name, 16) % share[1] == share[0] - 1:
-                found = [
-                    (one.student, said)
-                    for one in members
-                    for said in hints.get((one.student, key[1]), ())
-                ]
-                self.clusters[name] = Cluster(name, key[0], key[1], members, found)
+            found = [
+                (one.student, said)
+                for one in members
+                for said in hints.get((one.student, key[1]), ())
+            ]
+            self.clusters[name] = Cluster(name, key[0], key[1], members, found)
 
     def contract(self, cluster: Cluster) -> Contract | None:
         """The question by which the answers of a cluster were judged: these
@@ -849,13 +846,12 @@ def review(
     folder: str | Path,
     grader: str,
     *,
-    share: tuple[int, int] = (1, 1),
     hide_names: bool = False,
     port: int = 0,
     say: Callable[[str], None] = print,
 ) -> None:
     """Serve the page until it is stopped; ``say`` hears its address."""
-    graded = Class(folder, share)
+    graded = Class(folder)
     if not graded.records:
         raise ValueError(f"There are no records in {folder}: grade first.")
     sockets = netutil.bind_sockets(port, ALONE)

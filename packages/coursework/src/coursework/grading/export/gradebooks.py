@@ -691,7 +691,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
         name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"
         if name in pages:
             raise CannotExport(
-                f"Two pages of feedback would be called {name!r}: grade again, with a roster in term.toml."
+                f"Two pages of feedback would be called {name!r}: grade again, with a roster in "
+                "term.toml."
             )
         pages[name] = page
     half = Path(path).with_name(f".half-{secrets.token_hex(8)}")
