@@ -97,9 +97,11 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
         "cp exercises/first-steps.ipynb handed-in/ben\n"
     )
     (tmp_path / "rules.toml").write_text(rules)
-    script = "\n".join(
-        ["set -e", *blocks[:3], handing_in, blocks[3], "cp ../rules.toml .", blocks[4]]
+    example = (
+        "cp ../rules.toml marks/term.toml\nprintf 'student\\nada\\nben\\n' > roster.csv\n"
+        "coursework term marks\n"
     )
+    script = "\n".join(["set -e", *blocks[:3], handing_in, *blocks[3:], example])
     environment = {
         name: value for name, value in os.environ.items() if name != "PYTHONPATH"
     } | PINNED
