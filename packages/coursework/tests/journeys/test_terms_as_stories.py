@@ -43,7 +43,7 @@ class Crash(BaseException):
 
 def source(name, asked):
     return notebook(
-        "import sympy as sm\nfrom coursework import check, me, variant\nme('')",
+        "import sympy as sm\nfrom coursework import check, student, variant\nstudent('')",
         f"### BEGIN VARIANTS\nbeam = draw('{name}/load', count={len(asked.weights)}, "
         f"weight={asked.weights})\n### END VARIANTS",
         "#!A beam carries {{weight}} N twice. Give the whole load.",
@@ -145,7 +145,7 @@ class Story:
 
     @staticmethod
     def write_notebook(name, attempt):
-        cells = ["from coursework import check, me\nme('')"]
+        cells = ["from coursework import check, student\nstudent('')"]
         for question in QUESTIONS:
             answer = getattr(attempt, question)
             shown = "..." if answer is None else repr(answer) if question == "why" else answer
