@@ -1260,6 +1260,7 @@ def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
             {
                 "students": whose,
                 "missing": [],
+                "damaged": [],
                 "identity": lambda self, student: Identity(whose[student]),
             },
         )()
