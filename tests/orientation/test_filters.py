@@ -303,3 +303,20 @@ def test_a_smoother_is_nearer_to_the_truth_and_as_honest():
     at_the_middle = FilterState(*(each[middle] for each in smoothed))
     squares = normalised_errors(at_the_middle, dcm, bias)
     assert 5 < squares.mean() < 7.5
+
+
+def test_a_reset_of_first_order_would_enlarge_the_covariance_with_every_correction():
+    """Five hundred corrections of six degrees about any axes; the exact derivative shrinks it."""
+    random = np.random.default_rng(8)
+    first, second, exact = np.eye(3), np.eye(3), np.eye(3)
+    for axis in random.normal(size=(500, 3)):
+        x, y, z = 0.1 * axis / np.linalg.norm(axis)
+        X = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        sine, cosine = np.sin(0.1), np.cos(0.1)
+        whole = np.eye(3) - (1 - cosine) / 0.01 * X + (0.1 - sine) / 0.001 * X @ X
+        resets = np.eye(3) - X / 2, np.eye(3) - X / 2 + X @ X / 6, whole
+        first, second, exact = (
+            G @ P @ G.T for G, P in zip(resets, (first, second, exact), strict=True)
+        )
+    assert np.trace(first) > 2 * 3 and np.trace(exact) < 3
+    np.testing.assert_allclose(second, exact, rtol=0.01, atol=0.01)
