@@ -1,22 +1,32 @@
 import { picture } from './gate_picture.js';
-import { change, choice, element, follow, liveText, onceAFrame, open, plain, put, Sheet, slider, stage } from './shared.js';
+import { change, choice, element, follow, liveText, onceAFrame, open, plain, Sheet, slider, stage } from './shared.js';
 
 const percent = (share) => `${plain(100 * share, 1)}\u00a0%`;
 
 // A walk past a car: the reader moves the steel and the gate, and sees where the heading goes.
 export function render({ model, el }) {
   const { steels, rejected, rows } = model.get('table');
-  const sheet = new Sheet({ name: '', bounds: [-180, -130, 180, 130] });
-  // A plot has one view; the controls below do what arrow keys would.
+  const setSteel = (value) => {
+    change(model, { steel: Math.max(0, Math.min(12, 2 * Math.round(value / 2))) });
+    redraw();
+  };
+  const sheet = new Sheet({ name: '', bounds: [-180, -130, 180, 130], grab(part, at) {
+    const first = model.get('steel');
+    return (to) => setSteel(first + (to[0] - at[0]) / 15);
+  } });
+  sheet.svg.setAttribute('aria-label', 'The error of the heading over time, in degrees, for five walks past a car. '
+    + 'The arrow keys change the steel.');
+  // A plot has one view: the keys and a finger move the steel instead.
   sheet.look = () => {};
-  sheet.svg.removeAttribute('tabindex');
-  sheet.svg.removeAttribute('aria-roledescription');
-  put(sheet.svg, 'role', 'img');
-  put(sheet.svg, 'class', 'sheet plot');
-  put(sheet.svg, 'aria-label', 'The error of the heading over time, in degrees, for five walks past a car. The text below gives the numbers.');
+  sheet.press = (event) => {
+    const step = { ArrowLeft: -2, ArrowDown: -2, ArrowRight: 2, ArrowUp: 2 }[event.key];
+    if (!step) return;
+    setSteel(model.get('steel') + step);
+    event.preventDefault();
+  };
   const redraw = onceAFrame(draw);
   const steel = slider({ symbol: '', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 12, step: 2,
-    more: () => '', change: (value) => { change(model, { steel: 2 * Math.round(value / 2) }); redraw(); } });
+    more: () => '', change: setSteel });
   const gate = choice({ name: 'The gate rejects, of honest looks', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
     change: (value) => change(model, { gate: Number(value) }) });
   const text = liveText();
