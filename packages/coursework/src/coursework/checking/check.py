@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 
+from .cells import outdated, watch
 from .identity import forgotten, identity
 from .plain import NotPlain, to_plain
 from .progress import Entry, Progress
@@ -37,6 +38,13 @@ MOST_ANSWERS = 100
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
+#: What is said in place of a verdict on a value that no longer stands in the notebook.
+OUTDATED = (
+    "The cell that sets `{0}` stopped before its end when it last ran, so that `{0}` may still "
+    "have an earlier value. Nothing was checked: correct that cell, run it, and then run this check."
+)
+
+watch()
 
 
 class NotCorrect(AssertionError):
@@ -67,6 +75,8 @@ def check(name: str, answer: object) -> Reply:
     """
     student = identity()
     sealed = find_question(name, student)
+    if names := outdated():
+        return Reply(name, "invalid", "outdated", [OUTDATED.format(names[0])])
     try:
         reply = judge(
             name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True), student

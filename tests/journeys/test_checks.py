@@ -1,0 +1,70 @@
+"""A check judges what stands in the notebook, in a kernel and on a page."""
+
+import shutil
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+from nbclient.exceptions import CellExecutionError
+from places import REPOSITORY
+
+RIGHT = """B_C_N = sm.Matrix([[sm.cos(beta), 0, sm.sin(beta)],
+                   [0, 1, 0],
+                   [-sm.sin(beta), 0, sm.cos(beta)]])"""
+CHECK = "check('simple-orientations/boom', B_C_N)"
+
+
+@pytest.fixture(scope="module")
+def kernel(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("exercises")
+    name = "simple-orientations.ipynb"
+    shutil.copy(REPOSITORY / "exercises" / name, folder)
+    client = NotebookClient(
+        nbformat.read(folder / name, 4), resources={"metadata": {"path": str(folder)}}
+    )
+    with client.setup_kernel():
+
+        def run(code):
+            """Run a cell as a student does: what it shows, or the name of its error."""
+            cell = nbformat.v4.new_code_cell(code)
+            client.nb.cells.append(cell)
+            try:
+                client.execute_cell(cell, len(client.nb.cells) - 1)
+            except CellExecutionError as error:
+                return error.ename
+            return "".join(
+                part.get("data", {}).get("text/html", "") + part.get("text", "")
+                for part in cell.outputs
+            )
+
+        run("from coursework import check\nimport sympy as sm\nbeta = sm.Symbol('beta')")
+        yield run
+
+
+@pytest.mark.parametrize(
+    ("written", "error"),
+    [
+        (RIGHT.replace("beta", "betta"), "NameError"),
+        (RIGHT[:-1], "SyntaxError"),
+        (f"if True:\n    {RIGHT}".replace("beta", "betta"), "NameError"),
+    ],
+)
+def test_a_cell_that_failed_leaves_nothing_to_be_called_right(kernel, written, error):
+    kernel(RIGHT)
+    assert "Correct" in kernel(CHECK)
+    assert kernel(written) == error
+    for _ in range(2):
+        reply = kernel(CHECK)
+        assert "Correct" not in reply and "The cell that sets <code>B_C_N</code> stopped" in reply
+    kernel(RIGHT)
+    assert "Correct" in kernel(CHECK)
+
+
+def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
+    kernel(RIGHT)
+    assert kernel("A_C_N = sm.Matrix([betta])") == "NameError"
+    assert "Correct" in kernel(CHECK)
+    assert kernel("B_C_N = betta") == "NameError"
+    assert "Correct" in kernel(f"{RIGHT}\n{CHECK}")
+    assert kernel(f"{RIGHT}\n1/0") == "ZeroDivisionError"
+    assert "stopped before its end" in kernel(CHECK)
