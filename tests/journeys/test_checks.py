@@ -68,3 +68,50 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
     assert "Correct" in kernel(f"{RIGHT}\n{CHECK}")
     assert kernel(f"{RIGHT}\n1/0") == "ZeroDivisionError"
     assert "stopped before its end" in kernel(CHECK)
+
+
+PAGE = "exercises/simple-orientations.html"
+IDLE = "() => !document.querySelector('.cell.running, .cell.waiting, html.live-busy')"
+
+
+@pytest.fixture
+def reader(browser, site):
+    """A student at a page of exercises, who writes and runs with the keys alone."""
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    page = context.new_page()
+    page.goto(site + PAGE)
+    check = page.locator("div.cell", has_text=CHECK)
+    answer = page.locator("div.cell", has_text="B_C_N = ...")
+    answer.locator(".cm-content").wait_for()
+    answer = answer.element_handle()
+
+    def write(code):
+        answer.query_selector(".cm-content").click()
+        page.keyboard.press("Control+a")
+        # The editor indents by itself: all in one line.
+        page.keyboard.type(code)
+
+    def run():
+        check.locator("button.run-cell").click()
+        page.wait_for_timeout(300)
+        page.wait_for_function(IDLE)
+        return check.inner_text()
+
+    yield write, run, check
+    context.close()
+
+
+def test_a_page_calls_nothing_right_that_no_longer_stands_there(reader):
+    write, run, check = reader
+    right = " ".join(RIGHT.split())
+    write(right)
+    reply = run()
+    assert "Correct" in reply and "earlier answer" not in reply
+    write(right.replace("beta", "betta"))
+    assert "reply to an earlier answer" in check.inner_text()
+    assert "reply to an earlier answer" in run()  # the answer's cell fails, and no check runs
+    reply = run()
+    assert "Correct" not in reply and "The cell that sets B_C_N stopped" in reply
+    write(right)
+    reply = run()
+    assert "Correct" in reply and "earlier answer" not in reply

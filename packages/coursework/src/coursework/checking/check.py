@@ -40,8 +40,8 @@ MOST_TOLD, DIGITS = 20, 6
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
 #: What is said in place of a verdict on a value that no longer stands in the notebook.
 OUTDATED = (
-    "The cell that sets `{0}` stopped before its end when it last ran, so that `{0}` may still "
-    "have an earlier value. Nothing was checked: correct that cell, run it, and then run this check."
+    "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
+    "an earlier value. We checked nothing: correct that cell, run it, then run this check again."
 )
 
 watch()

@@ -83,6 +83,7 @@ export class Cell {
     this.ran = this.stopped = false;
     this.back.hidden = !this.edited;
     this.box.classList.toggle("edited", this.edited);
+    this.page.doubt(this, this.code !== this.sent);
     if (!this.following) this.page.keep(this);
   }
 

@@ -97,6 +97,14 @@ class Page {
     }
   }
 
+  // A reply to what no longer stands above it says so, until its check runs again.
+  doubt(cell, changed) {
+    const check = this.cells.slice(cell.number).find(({ code }) => /\bcheck\(/.test(code));
+    check?.output.querySelector(":scope > .live-outdated")?.remove();
+    if (!changed || !check?.output.querySelector(":scope > :not(.live-others) .coursework-reply:not([data-outcome='not attempted'])")) return;
+    check.output.prepend(element("p", "live-known live-outdated", "This is the reply to an earlier answer. Run this cell to check what stands above it now."));
+  }
+
   // --- the reader's edits ----------------------------------------------------------------------
 
   // One cell's text has changed here: its entry, and no other, is written.
@@ -364,6 +372,7 @@ class Page {
       const text = preformatted("stream", outcome.traceback);
       text.classList.add("stderr", "live-error");
       cell.end(text);
+      this.doubt(cell, true);
       this.tally.failed.push(cell.number);
       this.last = `${cell.name} raised an error: ${outcome.traceback.split("\n").at(-1)}`;
       if (this.queue.length) this.last += " The cells after it were not run.";

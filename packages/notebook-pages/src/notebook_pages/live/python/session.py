@@ -158,6 +158,21 @@ class Printed(io.TextIOBase):
         self.start()
 
 
+class Events:
+    """Tells packages when a cell begins and ends, as IPython's shell does."""
+
+    def __init__(self):
+        self.listeners = []
+
+    def register(self, event, listener):
+        self.listeners.append((event, listener))
+
+    def trigger(self, event, about):
+        for name, listener in self.listeners:
+            if name == event:
+                listener(about)
+
+
 class Shell:
     """One run of Python for one page: its names, and how its values are shown."""
 
@@ -166,6 +181,7 @@ class Shell:
     def __init__(self, send):
         self.send = lambda message: send(json.dumps(message))
         self.display_formatter = DisplayFormatter()
+        self.events = Events()
         self.missing = Missing()
         self.printed = [Printed(self, "stdout"), Printed(self, "stderr")]
         main = types.ModuleType("__main__")
@@ -278,6 +294,7 @@ class Shell:
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
+        self.events.trigger("pre_run_cell", types.SimpleNamespace(raw_cell=code))
         with self.printing():
             try:
                 self.execute(code, name)
@@ -286,6 +303,8 @@ class Shell:
                 outcome = {"status": "interrupted"}
             except BaseException as error:
                 outcome = self.explain(error, name)
+        succeeded = types.SimpleNamespace(success=outcome["status"] == "ok")
+        self.events.trigger("post_run_cell", succeeded)
         return json.dumps(outcome)
 
     @contextlib.contextmanager
