@@ -1,9 +1,9 @@
-"""``python -m tools.anywhere``: numbers as other machines have them.
+"""Compare the book's numbers with those of other processors.
 
-Every cell is run, all that is sealed or released is made, and every doctest is tried as if this
-processor were another one: with each kernel of OpenBLAS, without the instructions that NumPy would
-not have there, on one thread and on many. What needs only SymPy is also run in WebAssembly, in the
-Python of browsers. A table says what moved and by how much.
+``python -m tools.anywhere`` runs every cell, every release and every doctest as other processors
+would: with each kernel of OpenBLAS, without the instructions that NumPy would not have there, on
+one thread and on many. It also runs the notebooks that need only SymPy in WebAssembly, in the
+Python of browsers. A table shows which numbers moved and by how much.
 """
 
 import argparse
@@ -320,7 +320,7 @@ def main():
     parser.add_argument(
         "only",
         nargs="*",
-        help="notebooks, by the names of their files; all of them if there is none",
+        help="names of the notebooks to run (default: all)",
     )
     parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()

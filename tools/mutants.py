@@ -1,17 +1,17 @@
-"""``python -m tools.mutants``: which small changes of the code does no test notice?
+"""Find the small changes of the code that no test notices.
 
-mutmut says what can be changed. The tests are collected once, and run once to see which lines each
-of them reaches. For every change a copy of that process (a fork) gets the changed function in place
-of the right one, and runs the tests that reach the changed statement, first those that noticed
-something there before, then the quick ones, until one fails. A change that all of them pass
-survives, and is printed: either a test is missing, or the change changes nothing. Changes of the
-second kind are listed in ``mutants.txt``, each with the reason, and are skipped; an entry there
-that no change matches any more is reported.
+mutmut lists the possible changes. The tests are collected once, and run once to see which lines
+each of them reaches. For every change we fork that process, put the changed function in place of
+the right one, and run the tests that reach the changed statement, until one fails. Tests that
+noticed something there before go first, then the quick ones. A change survives if all of them pass,
+and is printed: either a test is missing, or the change changes nothing. ``mutants.txt`` lists the
+changes of the second kind, each with its reason. We skip those, and report each entry there that no
+change matches any more.
 
-    python -m tools.mutants orientation [MODULE...] [--jobs 2] python -m
-    tools.mutants coursework.checking [MODULE...]
+    python -m tools.mutants orientation [MODULE...] [--jobs 2]
+    python -m tools.mutants coursework.checking [MODULE...]
 
-Texts with spaces, or in pieces, are left as they are: no test asks for exact wording. So are the
+Strings with spaces, or in pieces, are left as they are: no test asks for exact wording. So are the
 types that only a type checker reads; the case of the letters in a codec's name; the codec of a
 file, which is the machine's own wherever the tests run; and the border itself of a comparison with
 a tolerance, or with a number that is not whole: what has been rounded lies on it, or beside it, by
@@ -392,10 +392,12 @@ def say(*words, sep=" "):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("part", choices=PARTS)
-    parser.add_argument("modules", nargs="*", help="those only")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--tests", nargs="+", help="these only")
+    parser.add_argument("part", choices=PARTS, help="the package to change")
+    parser.add_argument("modules", nargs="*", help="modules to change (default: all)")
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count(), help="processes (default: one per processor)"
+    )
+    parser.add_argument("--tests", nargs="+", help="tests to run (default: all of the package)")
     options = parser.parse_args()
     folder, tests = PARTS[options.part]
     run = Run(Path(folder), options.part, options.modules, options.jobs)

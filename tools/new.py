@@ -1,7 +1,7 @@
-"""``python -m tools.new``: a new chapter or a new question, with every part that it needs.
+"""Add a chapter or a question with every part that it needs.
 
-Where the author has something to say stands TO BE WRITTEN, and :mod:`tools.chapters` tells where it
-still does.
+The parts that the author must write are marked TO BE WRITTEN, and :mod:`tools.chapters` lists
+those that remain. Run it with ``python -m tools.new``.
 """
 
 import argparse
@@ -303,19 +303,21 @@ def main():
         prog="python -m tools.new", description=__doc__.partition("\n")[0]
     )
     commands = parser.add_subparsers(required=True)
-    chapter = commands.add_parser("chapter")
-    chapter.add_argument("name")
-    chapter.add_argument("title")
+    chapter = commands.add_parser("chapter", help="add a chapter")
+    chapter.add_argument("name", help="name of its files, such as belt-trick")
+    chapter.add_argument("title", help="title of the chapter")
     chapter.add_argument("--after", help="the chapter that it follows (default: the last one)")
     chapter.set_defaults(make=new_chapter)
-    question = commands.add_parser("question")
-    question.add_argument("name")
-    question.add_argument("title")
-    question.add_argument("--kind", default="expression")
+    question = commands.add_parser("question", help="add a question to a chapter")
+    question.add_argument("name", help="chapter and question, such as belt-trick/twist")
+    question.add_argument("title", help="title of the question")
+    question.add_argument(
+        "--kind", default="expression", help="kind of answer (default: %(default)s)"
+    )
     question.set_defaults(make=new_question)
     given = vars(parser.parse_args())
     print(*given.pop("make")(**given), sep="\n")
-    print(f"Now look for {TO_BE_WRITTEN}; `make check` tells where it stands.")
+    print(f"Now replace each {TO_BE_WRITTEN}; `make check` lists them.")
 
 
 if __name__ == "__main__":

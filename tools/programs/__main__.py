@@ -1,9 +1,9 @@
-"""Ask the programs of the convention card, each in its newest version, and
-print what changed since it was stored.
+"""Run the newest version of each program on the convention card, and print each answer that
+differs from the stored one.
 
-Each is asked what it makes of two turns, and runs every line of code that the converter writes for
-it. Everything is installed in ``_build/programs``, where nothing of the book is, and each program
-is asked in a process of its own. ``--store`` keeps the answers; names of programs ask these alone.
+Each program converts two rotations, and runs every line of code that the converter writes for it.
+The programs are installed in ``_build/programs``, apart from the book, and each runs in a process
+of its own.
 """
 
 import argparse
@@ -116,8 +116,10 @@ def changes(stored, found):
 
 def main():
     parser = argparse.ArgumentParser(prog="python -m tools.programs", description=__doc__)
-    parser.add_argument("programs", nargs="*", metavar="PROGRAM", help="those to ask; all without")
-    parser.add_argument("--store", action="store_true", help="keep what they answer")
+    parser.add_argument(
+        "programs", nargs="*", metavar="PROGRAM", help="programs to run (default: all)"
+    )
+    parser.add_argument("--store", action="store_true", help="store the new answers")
     chosen = parser.parse_args()
     PLACE.mkdir(parents=True, exist_ok=True)
     stored, failed = json.loads(STORED.read_text("utf8")) if STORED.exists() else {}, False

@@ -1,13 +1,12 @@
-"""Grading by coursework, nbgrader and plain nbclient: ``python -m benchmarks.grading``, in the
-folder ``coursework`` of the book.
+"""Compare the speed of grading by coursework, nbgrader and plain nbclient.
 
-The class is the sample class, with its mistakes, broken cells and attacks. All of it goes through
-``coursework grade``, from an empty folder to the report. The others are given the first honest
-notebooks of it, one after another, which is how they work; nbclient runs the cells and grades
-nothing. The cost of one notebook more leaves the start out. What each has to know of the assignment
-is made before, and told apart: nbgrader's own version of it, and the right answers of all variants
-of our questions. Processor times count all processes, and hardly depend on what else the machine
-does; times by the clock do.
+Run it with ``python -m benchmarks.grading`` in the folder ``packages/coursework``. We grade the
+whole sample class, with its mistakes, broken cells and attacks, with ``coursework grade``, from an
+empty folder to the report. The others grade only the first honest notebooks, one after another,
+since they cannot do otherwise; nbclient runs the cells and grades nothing. The cost of one more
+notebook leaves out the start. The preparation of an assignment is timed apart: nbgrader's own
+version of it, and the right answers to all variants of our questions. Processor times count all
+processes, and hardly depend on the load of the machine; times by the clock do.
 """
 
 import argparse
@@ -38,11 +37,11 @@ c.Exchange.enabled = False
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--students", type=int, default=200)
+    parser.add_argument("--students", type=int, default=200, help="students in the sample class")
     parser.add_argument(
-        "--sample", type=int, default=8, help="how many notebooks the others are given"
+        "--sample", type=int, default=8, help="number of notebooks for nbgrader and nbclient"
     )
-    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--workers", type=int, default=2, help="notebooks to run at a time")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         place = Path(place)

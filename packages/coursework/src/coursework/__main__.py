@@ -1,5 +1,5 @@
-"""The command ``coursework``: what authors and instructors run,
-and how students get newer exercises.
+"""The command ``coursework``, for authors and instructors, and for students who update their
+exercises.
 """
 
 import argparse
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 
-#: Rooms with commands that a student's package does not hold.
+#: The packages with commands that a student's package leaves out.
 ROOMS = ("authoring", "grading")
 
 
@@ -21,22 +21,23 @@ def main(arguments: Sequence[str] | None = None) -> None:
     missing = (
         ""
         if rooms
-        else "Authors and instructors install the package from its repository, which has more "
-        "commands."
+        else "Authors and instructors: install coursework from its repository for more commands."
     )
     parser = argparse.ArgumentParser(
         prog="coursework",
-        description="Exercises that check themselves: make them, grade them, renew them.",
-        epilog=missing or "coursework COMMAND --help says what a command takes.",
+        description="Make, grade and update exercises that check themselves.",
+        epilog=missing or "Run coursework COMMAND --help for the options of a command.",
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     update = commands.add_parser(
-        "update", help="unpack a newer archive beside your work, which stays as it is"
+        "update", help="update your exercises from a newer archive, and keep all your work"
     )
     update.add_argument(
         "archive", metavar="ARCHIVE", help="the newer archive, such as exercises.zip"
     )
-    update.add_argument("--folder", default=".", help="where your work is (default: here)")
+    update.add_argument(
+        "--folder", default=".", help="the folder with your work (default: this folder)"
+    )
     for room in rooms:
         room.add_commands(commands)
     options = vars(parser.parse_args(arguments))
@@ -47,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     command = options.pop("command")
     try:
         runs[command](**options)
-    except OSError as error:  # what the system refused, and not where in the code that happened
+    except OSError as error:  # The reason is enough; a traceback helps nobody here.
         where = f": {error.filename}" if error.filename else ""
         sys.exit(f"coursework {command}: {error.strerror or error}{where}")
 

@@ -14,17 +14,17 @@ from .mismatch.explanation import explain, sentences
 from .mismatch.table import COUNTS, KINDS, WAYS
 from .programs import PROGRAMS
 
-#: What ``orientation explain`` ends with.
+#: The exit codes of ``orientation explain``.
 EXIT_CODES = {"same": 0, "named": 1, "undecided": 2, "unrelated": 2}
 BAD_INPUT = 3
 
 
-#: What is the name of a file rather than numbers.
+#: An argument like this is the name of a file, not numbers.
 _NAME_OF_A_FILE = re.compile(r"\S*[^\W\d]\S*\.[a-zA-Z]\w{0,4}")
 
 
 class _Parser(argparse.ArgumentParser):
-    """A word too few or too many is bad input, too: 2 is an answer."""
+    """A parser that ends with BAD_INPUT for a wrong argument, since 2 is an answer."""
 
     def error(self, message):
         self.print_usage(sys.stderr)
@@ -34,13 +34,14 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments=None):
     parser = _Parser(
         prog="orientation",
-        description="What numbers from elsewhere mean: those of two programs, or a recording.",
+        description="Find out which conventions two programs, or a recording, use.",
+        epilog="Run orientation COMMAND --help for the options of a command.",
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
     _add_recording(commands)
     given = sys.argv[1:] if arguments is None else arguments
-    # What begins with a minus and a digit is a number, and no option.
+    # A word that begins with a minus and a digit is a number, not an option.
     chosen = parser.parse_args(
         [f" {word}" if re.match(r"-[.\d]", word) else word for word in given]
     )
@@ -51,31 +52,31 @@ def _add_explain(commands):
     parser = commands.add_parser(
         "explain",
         help="name the mix-up between two programs that disagree",
-        description="Name the mix-up between two programs from what they give for the same poses.",
-        epilog="Exit code: 0 both give the same, 1 a mix-up is named, 2 none fits or the numbers "
-        "cannot tell, 3 the input cannot be read.",
+        description="Name the mix-up between two programs from their numbers for the same poses.",
+        epilog="Exit codes: 0 if both agree, 1 if a mix-up is named, 2 if no mix-up fits or the "
+        "numbers cannot decide, 3 if the input cannot be read.",
     )
-    parser.add_argument("first", help="a file, or the numbers themselves: one pose a line")
+    parser.add_argument("first", help="a file, or the numbers themselves, one pose per line")
     parser.add_argument("second", help="the same poses, from the other program")
     parser.add_argument(
-        "--json", action="store_true", help="give the answer as JSON, with a format number"
+        "--json", action="store_true", help="print the answer as JSON, with a format number"
     )
     parser.add_argument(
-        "--all", action="store_true", help="also give every other reading that fits"
+        "--all", action="store_true", help="also print every other explanation that fits"
     )
     parser.add_argument(
         "--noise",
         type=float,
         default=0.0,
         metavar="DEGREES",
-        help="how far the two may differ all the same (default: 0)",
+        help="tolerance in degrees (default: 0)",
     )
     for side, programs, known in (
         (
             "first",
-            f"one of {', '.join(PROGRAMS)}",
-            f"a kind ({', '.join(COUNTS)}) or a choice such as 'zyx', 'space fixed', 'degrees', "
-            "'xyzw'; may be repeated",
+            f"one of: {', '.join(PROGRAMS)}",
+            f"a kind ({', '.join(COUNTS)}) or a convention such as 'zyx', 'space fixed', "
+            "'degrees', 'xyzw'; may be repeated",
         ),
         ("second", "as with --first", "as with --first-is"),
     ):
@@ -85,7 +86,7 @@ def _add_explain(commands):
         )  # fmt: skip
         parser.add_argument(
             f"--{side}-is", action="append", default=[], metavar="WHAT",
-            help=f"what is known of the {side} numbers: {known}",
+            help=f"one thing you know about the {side} numbers: {known}",
         )  # fmt: skip
     parser.set_defaults(run=_explain)
 
@@ -93,51 +94,53 @@ def _add_explain(commands):
 def _add_recording(commands):
     parser = commands.add_parser(
         "recording",
-        help="say what is in a recording of an instrument that turns",
-        description="Put a recording on the bench: what its columns are, their units, axes, signs "
-        "and errors, the convention of an orientation in it, and whether a filter is honest about "
-        "its own errors on it.",
-        epilog="Exit code: 0 when the file could be judged, whatever was found, 3 when it cannot "
+        help="identify the columns, units and axes of an IMU recording",
+        description="Identify the columns of a recording, their units, axes, signs and errors and "
+        "the convention of any orientation in it. Then run a filter, and test whether its "
+        "errors are as small as it claims.",
+        epilog="Exit codes: 0 if the file could be judged, even with faults in it, 3 if it cannot "
         "be read.",
     )
     parser.add_argument(
         "files",
         nargs="+",
         metavar="FILE",
-        help="a table of numbers, or a zip or a folder of tables; several files share a clock",
+        help="a table of numbers, or a zip or folder of tables; several files must share a clock",
     )
+    parser.add_argument("--rate", type=float, help="samples per second, if the file has no times")
     parser.add_argument(
-        "--rate", type=float, help="samples per second, where the file only counts them"
-    )
-    parser.add_argument(
-        "--json", action="store_true", help="give each answer with its evidence as JSON"
+        "--json", action="store_true", help="print each answer and its evidence as JSON"
     )
     parser.add_argument(
         "--columns",
         default="",
         metavar="WHAT",
-        help="what the columns are, where the file does not say it, counted from 1, such as "
+        help="meaning of the columns, if the file does not give it, counted from 1: for example "
         "'time=1 gyroscope=2-4:rad/s accelerometer=5-7'",
     )
     parser.add_argument(
-        "--html", type=Path, metavar="REPORT", help="write the report with its plots as one page"
+        "--html", type=Path, metavar="REPORT", help="write the report with its plots to one page"
     )
     parser.add_argument(
-        "--csv", type=Path, metavar="FILE", help="write the corrected recording with an orientation"
+        "--csv",
+        type=Path,
+        metavar="FILE",
+        help="write the corrected recording, with an orientation for each sample",
     )
     parser.add_argument(
         "--convention",
         default="wxyz",
-        help="how --csv writes the orientation: wxyz (default), xyzw or yaw-pitch-roll",
+        help="form of the orientation in --csv: wxyz (default), xyzw or yaw-pitch-roll",
     )
     parser.add_argument(
-        "--quick", action="store_true", help="leave out the filter, which takes longest"
+        "--quick", action="store_true", help="skip the filter, which takes the longest"
     )
     parser.set_defaults(run=_recording)
 
 
 def _recording(chosen):
-    from .recording.command import run  # loads NumPy, which explaining does without
+    # Explaining needs no NumPy, so only this command loads it.
+    from .recording.command import run
 
     return run(chosen)
 
@@ -150,12 +153,12 @@ def _given(argument):
     except (OSError, ValueError):
         pass  # too long for the name of a file: the numbers themselves
     if _NAME_OF_A_FILE.fullmatch(argument):
-        raise ValueError(f"there is no file {argument}")
+        raise ValueError(f"no such file: {argument}")
     return argument.replace("\\n", "\n")
 
 
 def _declared(words):
-    """Choices by the words for them; each word names one choice of one group."""
+    """Return the conventions that the words name; each word names one."""
     declared = {}
     choices = {
         choice["value"]: group["group"]
@@ -172,8 +175,8 @@ def _declared(words):
             declared[choices[word]] = word
         else:
             raise ValueError(
-                f"{word!r} is neither a kind of numbers ({', '.join(COUNTS)}), a choice of one nor "
-                f"a way that they lead ({', '.join(WAYS)})"
+                f"{word!r} is not a kind of numbers ({', '.join(COUNTS)}), a convention of one, or "
+                f"a direction ({', '.join(WAYS)})"
             )
     return declared
 
@@ -204,11 +207,11 @@ def _explain(chosen):
         for sentence in sentences(found):
             print(sentence)
         if found.has_line:
-            print("It is mended by (NumPy and SciPy; `second` is one pose)")
+            print("Fix it with this line (NumPy and SciPy; `second` is one pose):")
             print(f"    {mend.python_line(found.chains[0])}")
-            print("in C++ with Eigen, as the first program's matrix,")
+            print("or in C++ with Eigen, as the first program's matrix:")
             print(f"    {mend.cpp_line(found.chains[0])}")
-            print(f"for the matrices are {mend.formula(found.chains[0])}.")
+            print(f"The matrices satisfy {mend.formula(found.chains[0])}.")
         if chosen.all:
             for chain in found.chains[1:]:
                 print("or: " + "; ".join(chain.words() or ["both mean the same"]))

@@ -17,70 +17,77 @@ if TYPE_CHECKING:
 
 def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
-    new = commands.add_parser("new", help="make a small course that works at once")
+    new = commands.add_parser("new", help="create a small course, ready to use")
     new.add_argument(
-        "course", metavar="COURSE", help="the folder to make; its name becomes that of the course"
+        "course", metavar="COURSE", help="the folder to create; the course takes its name"
     )
     release = commands.add_parser(
-        "release", help="make the exercises, the sealed questions and the archive for students"
+        "release", help="build the exercises, the sealed questions and the archive for students"
     )
     release.add_argument(
-        "only", nargs="*", metavar="NOTEBOOK", help="the notebooks to make, by name (default: all)"
+        "only",
+        nargs="*",
+        metavar="NOTEBOOK",
+        help="names of the notebooks to release (default: all)",
     )
-    for name, says in (
+    for name, purpose in (
         ("sources", "folder of the notebooks with solutions"),
-        ("exercises", "where the exercise notebooks go"),
-        ("sealed", "where the sealed questions go"),
+        ("exercises", "folder for the exercise notebooks"),
+        ("sealed", "folder for the sealed questions"),
     ):
-        release.add_argument(f"--{name}", type=Path, help=f"{says} (default: as course.toml says)")
+        release.add_argument(
+            f"--{name}", type=Path, help=f"{purpose} (default: the one in course.toml)"
+        )
     release.add_argument(
-        "--no-archive", action="store_true", help="do not make the archive for students"
+        "--no-archive", action="store_true", help="do not build the archive for students"
     )
     publish = commands.add_parser(
-        "publish", help="make a site: the exercises as pages that check themselves"
+        "publish", help="build a site from the exercises, with pages that check answers"
     )
     publish.add_argument(
-        "--site", type=Path, help="the folder to make (default: site beside the archive)"
+        "--site", type=Path, help="folder for the site (default: site, beside the archive)"
     )
     publish.add_argument(
         "--room",
         action="store_true",
-        help="also fetch all packages that are needed, for a room without a network",
+        help="also download all the packages needed, for a room without a network",
     )
     trial = commands.add_parser(
-        "try", help="show a question as students will meet it, with every reply"
+        "try", help="show a question as students will see it, with every reply"
     )
     trial.add_argument(
         "name",
         metavar="NOTEBOOK/QUESTION",
-        help="a question, or a notebook for all of its questions",
+        help="a question, or a notebook to show all of its questions",
     )
     ask = commands.add_parser(
-        "ask", help="print a notebook's questions as text, for a language model to answer"
+        "ask", help="print a notebook's questions as text to give to a language model"
     )
-    ask.add_argument("notebook", type=Path, metavar="NOTEBOOK.ipynb")
-    ask.add_argument("--answers", type=Path, metavar="REPLY", help="its reply, to be read back in")
+    ask.add_argument("notebook", type=Path, metavar="NOTEBOOK.ipynb", help="an exercise notebook")
     ask.add_argument(
-        "--to", type=Path, metavar="FILE.ipynb", help="where the answered notebook goes"
+        "--answers", type=Path, metavar="REPLY", help="file with the model's reply (needs --to)"
+    )
+    ask.add_argument(
+        "--to", type=Path, metavar="FILE.ipynb", help="file for the notebook with those answers"
     )
     wheels = commands.add_parser(
-        "wheels", help="write the packages of coursework, to be installed elsewhere"
+        "wheels", help="build the packages of coursework, to install elsewhere"
     )
-    wheels.add_argument("folder", type=Path, metavar="FOLDER", help="where they go")
+    wheels.add_argument("folder", type=Path, metavar="FOLDER", help="folder for the packages")
     selftest = commands.add_parser(
-        "selftest", help="try every question as students will, and look for leaks"
+        "selftest", help="test every question as a student would, and look for leaks"
     )
     selftest.add_argument(
-        "only", nargs="*", metavar="NOTEBOOK", help="the notebooks to try, by name (default: all)"
+        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to test (default: all)"
     )
     selftest.add_argument(
         "--sources",
         type=Path,
-        help="folder of the notebooks with solutions (default: as course.toml says)",
+        help="folder of the notebooks with solutions (default: the one in course.toml)",
     )
     for parser, page in ((trial, "try"), (selftest, "selftest")):
         parser.add_argument(
-            "--page", help=f"where the page goes (default: {page}.html beside the archive)"
+            "--page", help=f"file for the page (default: {page}.html, beside the archive)"
         )
 
 
@@ -128,7 +135,7 @@ def publish(site: Path | None, room: bool) -> None:
     course = _course()
     page = make(course, site or course.archive.with_name("site"), room)
     print(f"The site: {page}")
-    print(f"To look at it: python -m http.server --directory {shlex.quote(str(page.parent))}")
+    print(f"Look at it with: python -m http.server --directory {shlex.quote(str(page.parent))}")
 
 
 def wheels(folder: Path) -> None:
@@ -139,9 +146,7 @@ def wheels(folder: Path) -> None:
 
 
 def _writable(page: str | Path) -> str | Path:
-    """The path of a page that is to be written; that it cannot be
-    is said before the work is done.
-    """
+    """Return the path of a page if it can be written, so that an error comes before the work."""
     from .author import AuthorError
 
     try:
@@ -152,7 +157,7 @@ def _writable(page: str | Path) -> str | Path:
             Path(page).unlink()
     except OSError as error:
         raise AuthorError(
-            f"{page} cannot be written ({error.strerror}). Say where the page may go: --page"
+            f"cannot write {page} ({error.strerror}). Choose another file with --page."
         ) from None
     return page
 
@@ -171,16 +176,17 @@ def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
     from .author import AuthorError
 
     if (answers is None) != (to is None):
-        raise AuthorError("to read a reply back in, give both --answers and --to")
+        raise AuthorError("give both --answers and --to to read a reply, or neither")
     if answers is None or to is None:
         print(as_text(notebook))
         return
     try:
         reply = answers.read_text("utf8")
     except OSError as error:
-        raise AuthorError(f"{answers} cannot be read: {error.strerror}") from None
+        raise AuthorError(f"cannot read {answers}: {error.strerror}") from None
     print(
-        f"{to} answers {', '.join(with_answers(notebook, reply, to))}. `coursework grade` marks it."
+        f"{to} answers {', '.join(with_answers(notebook, reply, to))}. Mark it with "
+        "`coursework grade`."
     )
 
 

@@ -15,7 +15,7 @@ BAD_INPUT = 3
 
 
 class Chosen(Protocol):
-    """What the command was asked for."""
+    """The options of the command."""
 
     files: list[str | Path]
     rate: float | None
@@ -28,7 +28,7 @@ class Chosen(Protocol):
 
 
 def run(chosen: Chosen) -> int:
-    """Examine a recording, print what was found, and write what was asked for."""
+    """Examine a recording, print the findings, and write the files that the options name."""
     shown = sys.stderr.isatty() and not chosen.quick
 
     def progress(share: float) -> None:
