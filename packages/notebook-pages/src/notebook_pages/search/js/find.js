@@ -40,6 +40,10 @@ const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that
 const TOGETHER = 4; // the power in which what the phrases of a place are worth is added: the best counts most
 const ENDS = 6, ENDED = 0.7; // with how many ends a last word is tried; what that counts where it is a word as it stands
 const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
+// Added to a page whose title begins with the question, and twice for a chapter: no other place is worth so much. A word
+// within the title counts half.
+const BEGUN = 2;
+const headed = (text) => plain(text).replace(/^(?:the|an?) +(?=.)/, "").replace(/-/g, " ");
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
@@ -270,6 +274,11 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       take(formulas.map(({ id, signs: there }) => (
         [id, (overlap(asked, there) / asked.length) ** 2 * (asked.length / there.length) ** 0.2])));
     }
+    const begun = headed(query.trim());
+    if (begun) take(entries.flatMap(({ kind, page, title, number }, id) => {
+      const place = kind === "page" ? ` ${headed(title)}`.indexOf(` ${begun}`) : -1;
+      return place < 0 ? [] : [[id, (scores.get(id) ?? 0) + BEGUN * (place ? 0.5 : 1) * (number ? 2 : pages[page][3])]];
+    }));
     return [...scores].filter(([, score]) => score > 0.06).sort((one, other) => other[1] - one[1]).slice(0, most)
       .map(([id, score]) => ({ ...entries[id], score }));
   };
