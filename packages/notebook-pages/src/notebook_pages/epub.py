@@ -118,12 +118,6 @@ def in_xml(text):
     for path in text.find_all("path"):
         if not path.get("d"):
             path.decompose()  # a line that a script would draw
-    seen = set()
-    for element in text.find_all(id=True):
-        if element["id"] in seen:
-            del element["id"]  # each exercise says again where its text begins
-        else:
-            seen.add(element["id"])
     for label in text.find_all("label"):
         label.name, label.attrs = "span", {}
     for element in text.find_all(True):

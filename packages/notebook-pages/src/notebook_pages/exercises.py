@@ -57,6 +57,13 @@ def lead_on(app, doctree):
         whole.insert(1, words)
 
 
+def name_nothing_twice(app, doctree, page):
+    """Sphinx-exercise gives the text of every exercise, and of every solution, the same name."""
+    for section in doctree.findall(nodes.section):
+        if section["ids"] in (["exercise-content"], ["solution-content"]):
+            section["ids"] = []
+
+
 def chapter_of(app, page):
     chapter = page.replace("exercises/", "chapters/", 1)
     return chapter if chapter in app.env.found_docs else None
@@ -74,3 +81,4 @@ def setup(app):
     app.setup_extension("sphinx_exercise")
     app.add_directive("exercise", MarkedExercise, override=True)
     app.connect("doctree-read", lead_on)
+    app.connect("doctree-resolved", name_nothing_twice)

@@ -124,6 +124,8 @@
     result.setAttribute("role", "status");
     const commit = make("button", { type: "button", textContent: box.classList.contains("predict") ? "That is my prediction" : "Check" });
     const skip = make("button", { type: "button", className: "quiet", textContent: "Show the answer" });
+    const name = box.querySelector(".question-name, .admonition-title").textContent;
+    for (const button of [commit, skip]) button.setAttribute("aria-label", `${button.textContent}: ${name}`);
     fold.before(way.element, make("p", { className: "actions" }, commit, skip), result);
     fold.hidden = true;
 

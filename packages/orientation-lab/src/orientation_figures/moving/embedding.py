@@ -23,7 +23,9 @@ PAGE = """<!doctype html>
 <style>html {{ --pst-color-background: #fff; background: #fff; color: #1d2125;
 font: 16px/1.6 system-ui, sans-serif; }}
 html[data-theme="dark"] {{ --pst-color-background: #121212; background: #121212; color: #eceff2; }}
-body {{ margin: 0; padding: 8px; }} figure {{ margin: 0; }} .world {{ height: 540px !important; }}
+body {{ margin: 0; padding: 8px; }} figure {{ margin: 0; }}
+h1 {{ position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }}
+.world {{ height: 540px !important; }}
 .source {{ margin: 0.4rem 0 0; font-size: 0.8rem; text-align: right; }}
 .source a {{ color: inherit; }}
 {style}</style><link rel="stylesheet" href="../_static/moving/{sheet}.css">
@@ -37,7 +39,8 @@ body {{ margin: 0; padding: 8px; }} figure {{ margin: 0; }} .world {{ height: 54
   addEventListener('load', () => new ResizeObserver(tell).observe(document.body));
 }}
 </script>{scripts}</head>
-<body><main>{figure}<p class="source">From
+<body><main><h1>A figure of Orientation of Reference Frames: {kind}</h1>{figure}
+<p class="source">From
 <a href="../index.html" target="_blank" rel="noopener">Orientation of Reference Frames</a></p>
 </main></body></html>
 """

@@ -114,7 +114,7 @@ class WorkbenchFigure(MovingFigure):
 
     kind = "workbench"
     sheet = (-330, -172, 330, 172)
-    room = (1070, 1480)
+    room = (1070, 1175)
     first = traitlets.Unicode(EXAMPLES["A quaternion, scalar last for scalar first"][0]).tag(
         sync=True, state=True
     )
