@@ -276,14 +276,16 @@ IN_A_CELL = {"scriptlevel": "0", "displaystyle": "false"}  # of a table, where t
 def lighten(html, tex):
     """KaTeX's ``html`` of a formula in fewer words: for the ear as MathML, for the eye as boxes.
 
-    The TeX of a formula that stands by itself is in ``data-tex``: by it the search finds equations.
+    Browsers must not translate its letters. Its TeX is in ``data-tex``, where readers who copy the
+    formula get it from, and where the search finds equations.
     """
     whole = ElementTree.fromstring(html)
     formula = whole if whole.get("class") == "katex" else whole[0]
     heard, drawn = formula
     heard, drawn = write(spoken(read(heard[0]))), row(read(drawn))
     boxes = "".join(write(part) for part in spread(drawn.inside))
-    light = f"><i>{heard}</i><i aria-hidden=true>{boxes}</i></span>"
-    if formula is whole:
-        return f"<span class=katex{light}"
-    return f'<span class=katex-display><span class=katex data-tex="{escape(tex)}"{light}</span>'
+    light = (
+        f'<span class=katex translate=no data-tex="{escape(tex)}">'
+        f"<i>{heard}</i><i aria-hidden=true>{boxes}</i></span>"
+    )
+    return light if formula is whole else f"<span class=katex-display>{light}</span>"

@@ -40,6 +40,17 @@
   document.addEventListener("click", ({ target }) => target.closest("a[href*='#']") && whole(), true);
 }
 
+// What a reader has moved stands there again after Back and after a reload.
+{
+  const figures = () => [...document.querySelectorAll("figure.moving")];
+  const moved = `moved ${location.pathname}`;
+  addEventListener("pagehide", () => sessionStorage.setItem(moved, JSON.stringify(figures().map(({ model }) => model?.moved))));
+  if (performance.getEntriesByType("navigation")[0]?.type !== "navigate") figuresRan.then(() => {
+    const before = JSON.parse(sessionStorage.getItem(moved)) ?? [];
+    figures().forEach(({ model }, place) => model?.move(before[place]));
+  });
+}
+
 // Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
 // laid out, never before: to measure a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
@@ -59,6 +70,30 @@ const watch = new ResizeObserver((entries) => {
 });
 window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
 document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
+
+// A formula is copied as its TeX. The browser would copy its drawing and its words for the ear, each in many lines.
+document.addEventListener("copy", (event) => {
+  const chosen = getSelection();
+  if (event.defaultPrevented || chosen.isCollapsed) return;
+  const range = chosen.getRangeAt(0).cloneRange();
+  const around = (node) => (node.closest ? node : node.parentElement).closest(".katex");
+  const [first, last] = [around(range.startContainer), around(range.endContainer)];
+  if (first) range.setStartBefore(first);
+  if (last) range.setEndAfter(last);
+  const copy = document.createElement("div");
+  copy.append(range.cloneContents());
+  const formulas = copy.querySelectorAll(".katex");
+  if (!formulas.length) return;
+  for (const formula of formulas) {
+    const fence = formula.parentElement.matches(".katex-display") ? "$$" : "$";
+    formula.replaceWith(fence + (formula.dataset.tex ?? formula.querySelector("annotation").textContent) + fence);
+  }
+  document.body.append(copy); // so that the browser knows where its lines end
+  event.clipboardData.setData("text/plain", copy.innerText);
+  event.clipboardData.setData("text/html", copy.innerHTML);
+  copy.remove();
+  event.preventDefault();
+});
 
 // Who reports a mistake tells where: the section that is being read.
 const report = document.querySelector("a.report-mistake");

@@ -58,7 +58,7 @@ function formula(text) {
     return preformatted("text_plain", text);
   }
   window.watchWidth?.(box);
-  return element("div", "output text_latex math display", box);
+  return element("div", "output text_latex math display notranslate", box);
 }
 
 function picture(form, data, name) {
@@ -78,9 +78,9 @@ function setFormulas(box) {
     if (!/\$[^$]+\$/.test(text.data) || text.parentElement.closest("code, pre, script, style, svg")) continue;
     const parts = text.data.split(/\$([^$]+)\$/).map((part, place) => {
       if (place % 2 === 0) return part;
-      const math = element("span");
+      const math = element("span", "notranslate");
       math.innerHTML = katex.renderToString(part, { output: "htmlAndMathml", throwOnError: false, strict: "ignore" });
-      return math.firstChild;
+      return math;
     });
     text.replaceWith(...parts);
   }

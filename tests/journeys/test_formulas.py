@@ -1,0 +1,77 @@
+"""Formulas, read by a browser that translates, copied, and read on a phone."""
+
+import pytest
+
+CHAPTER = "chapters/unit-quaternions.html"
+SETTLED = "() => !document.documentElement.matches('.settling, .in-parts')"
+
+
+@pytest.fixture
+def page(browser):
+    context = browser.new_context(viewport={"width": 380, "height": 760})
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    yield context.new_page()
+    context.close()
+
+
+def open_chapter(page, site):
+    page.goto(site + CHAPTER)
+    page.wait_for_function(SETTLED)
+
+
+def test_a_browser_that_translates_leaves_formulas_alone(page, site):
+    open_chapter(page, site)
+    kept = page.evaluate(
+        "[...document.querySelectorAll('.katex')].map((formula) => formula.translate)"
+    )
+    assert len(kept) > 50 and not any(kept)
+
+
+def copied(page, selector):
+    """What a reader gets who drags over an element and copies it."""
+    page.locator(selector).first.evaluate("(box) => getSelection().selectAllChildren(box)")
+    page.keyboard.press("Control+c")
+    return page.evaluate("navigator.clipboard.readText()")
+
+
+def test_a_sentence_is_copied_with_the_tex_of_its_formulas(page, site):
+    open_chapter(page, site)
+    text = copied(page, "article section p:has(.katex)")
+    assert "$" in text and "\n" not in text.strip()
+    assert text.count("$") % 2 == 0 and "\u2061" not in text
+
+
+def test_an_equation_of_its_own_is_copied_once(page, site):
+    open_chapter(page, site)
+    text = copied(page, "article div.math.display .math-box")
+    assert text.strip().startswith("$$") and text.strip().endswith("$$")
+    assert "\\" in text and text.count("$$") == 2
+
+
+def test_part_of_a_formula_is_copied_as_the_whole_formula(page, site):
+    open_chapter(page, site)
+    page.locator("article p .katex").first.evaluate(
+        "(formula) => getSelection().selectAllChildren(formula.lastElementChild)"
+    )
+    page.keyboard.press("Control+c")
+    text = page.evaluate("navigator.clipboard.readText()")
+    assert text.startswith("$") and text.endswith("$") and text.count("$") == 2
+
+
+def test_matrices_are_whole_on_a_phone_or_scroll_with_the_keyboard(page, site):
+    open_chapter(page, site)
+    matrices = page.locator(".cell_output .math-box")
+    wide = []
+    for matrix in matrices.all():
+        matrix.scroll_into_view_if_needed()
+        page.wait_for_timeout(100)
+        hidden = matrix.evaluate("(box) => box.scrollWidth - box.clientWidth")
+        if hidden > 1:
+            wide.append(matrix)
+            matrix.focus()
+            for _ in range(20):
+                page.keyboard.press("ArrowRight")
+            page.wait_for_timeout(400)
+            left = matrix.evaluate("(box) => box.scrollWidth - box.clientWidth - box.scrollLeft")
+            assert left <= 1, "its last column cannot be reached"
+    assert len(wide) <= 2, "the matrix of a quaternion does not fit"
