@@ -59,7 +59,7 @@ turns_from_angular_velocity(lambda times: [[0, 0, 0.1 * time] for time in times]
 #: The program of all three: the cells of several notebooks, each in names of its
 #: own; what each check has replied.
 PROGRAM = r"""
-import json, os, sys
+import asyncio, json, os, sys
 
 door, folder = sys.argv[1:3]
 given = json.load(sys.stdin)
@@ -115,11 +115,11 @@ def run_in_the_page(cells):
     shell = session.start(lambda message: None)
     shell.lack({"numpy": "not loaded", "matplotlib": "not loaded", "scipy": "not loaded"})
     for number, cell in enumerate(cells):
-        outcome = json.loads(shell.run(cell, f"cell {number}"))
+        outcome = json.loads(asyncio.run(shell.run(cell, f"cell {number}")))
         if outcome["status"] == "missing":
             needed.append(cell)
             shell.lack({})
-            outcome = json.loads(shell.run(cell, f"cell {number}"))
+            outcome = json.loads(asyncio.run(shell.run(cell, f"cell {number}")))
         if outcome["status"] != "ok":
             raise RuntimeError(f"{cell}\n{outcome}")
     sys.meta_path.remove(shell.missing)

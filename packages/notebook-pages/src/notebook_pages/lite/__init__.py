@@ -168,7 +168,7 @@ def notebook_for(site, page, settings):
     """The notebook of a page: exercises as they were released, others as they are taken away."""
     notebook = stamp(notebook_of(site / notebook_address(page)))
     if page.startswith("exercises/"):
-        return nbformat.v4.writes(notebook)
+        return written(notebook)
     first = notebook.cells[0]
     notes = [
         line
@@ -183,7 +183,14 @@ def notebook_for(site, page, settings):
     setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
     if setting not in (False, "off"):
         announce_numpy(notebook, kinds_of_cells()[page], PLACES.get(setting, PLACES["folder"]))
-    return nbformat.v4.writes(notebook)
+    return written(notebook)
+
+
+def written(notebook):
+    """The notebook as JSON. Each text is one string: the interface joins the lines of cells, but
+    not those of outputs, and its table of contents fails on lists.
+    """
+    return nbformat.v4.writes(notebook, split_lines=False)
 
 
 def write_workshop(site, settings, names):

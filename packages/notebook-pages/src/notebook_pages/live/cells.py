@@ -32,7 +32,7 @@ RESULTS = REPOSITORY / "_build" / "runtime"
 #: MyST-NB's tags of cells whose code a page does not hold.
 HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
 ALONE = """
-import json, sys
+import asyncio, json, sys
 from importlib import metadata
 
 sys.path.insert(0, sys.argv[1])
@@ -59,7 +59,7 @@ metadata.entry_points = lambda **wanted: metadata.EntryPoints(
 )
 told = []
 for number, code in enumerate(json.load(sys.stdin)):
-    outcome = json.loads(shell.run(code, f"cell {number + 1}"))
+    outcome = json.loads(asyncio.run(shell.run(code, f"cell {number + 1}")))
     told.append({"outcome": outcome, "messages": messages[:]})
     messages.clear()
 json.dump(told, sys.__stdout__)

@@ -64,12 +64,14 @@
     }),
   };
 
-  const fromDisk = location.protocol === "file:";
-  const FROM_DISK = "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints.";
+  // Why this page can run no code and keep nothing, if so: its origin is no place that its own files share.
+  const apart = self.origin !== "null" ? "" : location.protocol === "file:"
+    ? "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints."
+    : "The page around this one shuts it off from its own files (its frame has a sandbox without allow-same-origin): no code runs here. Open this page in a tab of its own.";
   document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
-    if (!fromDisk) return;
+    if (!apart) return;
     event.preventDefault();
-    tools.say(FROM_DISK);
+    tools.say(apart);
   });
 
   // Only an isolated page shares memory with its Python, which can then be stopped and keeps its names. Where the
@@ -88,8 +90,7 @@
       console.info(`The page is not isolated: ${error.message}`);
       return false;
     }
-    const figures = [...document.querySelectorAll("figure.moving")].map(({ model }) => model?.moved);
-    if (!note(RUN, JSON.stringify({ page: data.page, number, line: scrollY, figures }))) return false;
+    if (!note(RUN, JSON.stringify({ page: data.page, number, line: scrollY }))) return false;
     location.reload();
     return true;
   };
@@ -115,11 +116,13 @@
         "Reload": () => location.reload(),
       });
     }
-    tools.say(now ? `${what}: ${error.message}.` : `${what}: the place of these pages does not answer. Try once more when you have a network.`);
+    // A page that is kept in the browser answers without a network.
+    if (!now || !navigator.onLine) return tools.say(`${what}: ${now ? "this browser keeps the pages without Python, and there is no network" : "the place of these pages does not answer"}. Try once more when you have a network.`);
+    tools.say(`${what}: ${error.message}.`);
   };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
   const ask = async (number) => {
-    if (fromDisk) return tools.say(FROM_DISK);
+    if (apart) return tools.say(apart);
     if (number !== undefined && (await isolate(number))) return;
     try {
       const opened = await open();
@@ -138,7 +141,7 @@
   });
   // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
   // Python waits for the first run.
-  const write = (number, point) => !fromDisk && open().then((opened) => opened.write(opened.cells[number], point), tools.explain);
+  const write = (number, point) => !apart && open().then((opened) => opened.write(opened.cells[number], point), tools.explain);
   boxes.forEach((box, number) => {
     const code = box.querySelector(".cell_input > div");
     code.tabIndex = 0;
@@ -151,11 +154,11 @@
     });
   });
   const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
-  if (answers.length && !fromDisk) addEventListener("load", () => setTimeout(() =>
+  if (answers.length && !apart) addEventListener("load", () => setTimeout(() =>
     open().then(({ cells }) => answers.forEach((number) => cells[number].edit()), () => (page = undefined))));
   // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
   const give = async (number, files) => {
-    if (fromDisk) return tools.say(FROM_DISK);
+    if (apart) return tools.say(apart);
     if (!files.length) return;
     try {
       const opened = await open();
@@ -198,7 +201,7 @@
   // The book, kept for reading without a network.
   document.querySelector("button.keep-book").addEventListener("click", async () => {
     document.querySelector("details.take-away").open = false;
-    if (fromDisk) return tools.say("This copy of the book is on your disk: it needs no network.");
+    if (apart) return tools.say(location.protocol === "file:" ? "This copy of the book is on your disk: it needs no network." : apart);
     try {
       await (await script("keep.js")).keep(tools);
     } catch (error) {
@@ -210,7 +213,7 @@
   const originals = boxes.map((box) => box.querySelector(".cell_input pre").textContent.trimEnd());
   for (const choice of document.querySelectorAll("button[data-answers]")) {
     choice.addEventListener("click", async () => {
-      if (fromDisk) return tools.say(FROM_DISK);
+      if (apart) return tools.say(apart);
       try {
         const { [choice.dataset.answers]: act } = await script("take-away.js");
         tools.say(await act(data, originals));
@@ -266,11 +269,7 @@
     edition && script("keep.js").then(({ tellOfRenewal }) => tellOfRenewal(tools)).catch(() => {}));
   if (again.page === data.page) {
     addEventListener("load", () => scrollTo(0, again.line));
-    // What the reader has moved before stands there again, before a cell asks for it.
-    window.figuresRan.then(() => {
-      document.querySelectorAll("figure.moving").forEach(({ model }, place) => model?.move(again.figures?.[place]));
-      ask(again.number);
-    });
+    window.figuresRan.then(() => ask(again.number)); // what the reader has moved stands there again (see book.js)
   }
   else if (store.isNewer) tools.say(globalThis.progress.whyNotKept());
   else if (store.keys().some(isOwn)) ask();

@@ -72,8 +72,8 @@ function watchFetching(all) {
     let answer;
     try {
       answer = await plain(address, { ...options, signal: giveUp.signal });
-    } catch (error) {
-      throw fail(errorText(error));
+    } catch {
+      throw fail("there was no answer");
     }
     if (!answer.ok) throw fail(`the server says ${answer.status}`);
     const reader = answer.body.getReader();
@@ -153,7 +153,9 @@ async function start({ runtime, pyodide, lock: listed, interrupts }) {
   watchModules();
   watchFetching(() => lock?.bytes);
   const [{ loadPyodide }] = await Promise.all([
-    import(`${runtime}${pyodide}pyodide.js`),
+    import(`${runtime}${pyodide}pyodide.js`).catch(() => {
+      throw new Error(`pyodide.js did not come from ${location.host}, or did not come as JavaScript`);
+    }),
     fetch(`${runtime}${listed}pyodide-lock.json`).then(async (answer) => (lock = await answer.json())),
   ]);
   packages = lock.packages;
@@ -248,7 +250,7 @@ async function run({ code, name, needs = [], retry, kept }) {
     if (!lacked && packageOf(module) && !(await bring(module))) lacked = module;
   }
   for (;;) {
-    const outcome = JSON.parse(shell.run(code, name));
+    const outcome = JSON.parse(await shell.run(code, name));
     takeFiles();
     // The build knows that without it the cell fails, or gives another number than the book prints. It runs all the
     // same, as it did there: the cells below may use the names that it gives before it fails.

@@ -10,6 +10,7 @@ import base64
 import builtins
 import contextlib
 import importlib
+import inspect
 import io
 import json
 import linecache
@@ -285,7 +286,7 @@ class Shell:
 
     # --- running --------------------------------------------------------------------------------
 
-    def run(self, code, name):
+    async def run(self, code, name):
         """Run one cell; return its outcome as JSON.
 
         The outcome has a ``status``: 'ok' (and whether ``plain`` Python computed in the place of
@@ -297,7 +298,7 @@ class Shell:
         self.events.trigger("pre_run_cell", types.SimpleNamespace(raw_cell=code))
         with self.printing():
             try:
-                self.execute(code, name)
+                await self.execute(code, name)
                 outcome = {"status": "ok", "plain": plain_numpy.work > 0}
             except KeyboardInterrupt:
                 outcome = {"status": "interrupted"}
@@ -319,15 +320,21 @@ class Shell:
                 stream.finish()
             sys.stdout, sys.stderr = before
 
-    def execute(self, code, name):
+    async def execute(self, code, name):
         tree = ast.parse(code, name)
-        value = None
+        last = None
         if tree.body and isinstance(tree.body[-1], ast.Expr) and not ends_in_semicolon(code):
-            value = compile(ast.Expression(tree.body.pop().value), name, "eval", dont_inherit=True)
-        exec(compile(tree, name, "exec", dont_inherit=True), self.names)
-        if value is not None and (value := eval(value, self.names)) is not None:
+            last = ast.Expression(tree.body.pop().value)
+        await self.evaluate(tree, name, "exec")
+        if last is not None and (value := await self.evaluate(last, name, "eval")) is not None:
             self.show(value, "result")
         self.show_plots()
+
+    async def evaluate(self, tree, name, mode):
+        """Run a part of a cell, which may await something outside any function."""
+        compiled = compile(tree, name, mode, ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
+        value = eval(compiled, self.names)
+        return await value if compiled.co_flags & inspect.CO_COROUTINE else value
 
     def explain(self, error, name):
         package = self.missing.cause(error)
@@ -351,7 +358,14 @@ class Shell:
 
 
 def hint(error, name):
-    """A word to those who know Jupyter's own commands, which are not Python."""
+    """A word to those who import what is not here, or know Jupyter's own commands, which are not
+    Python."""
+    if isinstance(error, ModuleNotFoundError) and "." not in (error.name or "."):
+        return (
+            f"\n\n{error.name} is not part of this page's Python, and nothing can be installed here: "
+            "it has the standard library, SymPy, and what this book's own cells use. Check the "
+            "spelling, or take the notebook away and run it in your own Jupyter."
+        )
     if not isinstance(error, SyntaxError) or error.filename != name:
         return ""
     line = (error.text or "").strip()
