@@ -362,9 +362,9 @@ def hint(error, name):
     Python."""
     if isinstance(error, ModuleNotFoundError) and "." not in (error.name or "."):
         return (
-            f"\n\n{error.name} is not part of this page's Python, and nothing can be installed here: "
-            "it has the standard library, SymPy, and what this book's own cells use. Check the "
-            "spelling, or take the notebook away and run it in your own Jupyter."
+            f"\n\n{error.name} is not part of this page's Python, and nothing can be installed "
+            "here: it has the standard library, SymPy, and what this book's own cells use. Check "
+            "the spelling, or take the notebook away and run it in your own Jupyter."
         )
     if not isinstance(error, SyntaxError) or error.filename != name:
         return ""
