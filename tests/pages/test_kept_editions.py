@@ -197,5 +197,5 @@ def test_publishing_carries_over_what_the_last_edition_names_by_its_content(edit
 def test_publishing_carries_over_nothing_else(editions):
     for path in ("../outside.js", "index.html", "runtime/wheels/0123456789ab/../../../x.js"):
         (editions(1) / install.LASTING).write_text(json.dumps([path]))
-        with pytest.raises(ValueError, match="not named by its content"):
+        with pytest.raises(ValueError, match="not a hash of its content"):
             carry_over.carry_over(str(editions(1)), editions(2))

@@ -425,7 +425,7 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
     assert fetch(target, official["packages"], address) == [numpy]
     (target / numpy).unlink()
     (folder / numpy).write_bytes(b"another file")
-    with pytest.raises(RuntimeError, match="is not the file that Pyodide's list names"):
+    with pytest.raises(RuntimeError, match="is not the file in Pyodide's list"):
         fetch(target, official["packages"], address)
     assert not (target / numpy).exists()
 

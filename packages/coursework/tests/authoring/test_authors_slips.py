@@ -75,18 +75,18 @@ def changed(old, new, text=QUESTION):
             {"check": "check('trial/other', answer)"},
             "stands before its check; what is checked so far: trial/other",
         ),
-        ({"question": changed("kind='expression', ", "")}, "trial/one: say of which kind it is"),
+        ({"question": changed("kind='expression', ", "")}, "trial/one: give its kind"),
         (
             {"question": changed("symbols", "symbol")},
-            "a question has no `symbol`. Did you mean `symbols`?",
+            "`question` has no argument `symbol`. Did you mean `symbols`?",
         ),
         (
             {"question": changed("'x')", "'x', hints=['Think.'])")},
-            "`hints` is a dictionary with texts as its keys",
+            "`hints` must be a dictionary whose keys are strings",
         ),
         (
             {"question": changed("'x')", "'x', hints={'opposite': 'Think.'})")},
-            "hints of 'opposite' are a list of texts",
+            "hints of 'opposite' must be a list of strings",
         ),
         (
             {"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")},
@@ -94,7 +94,7 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": changed("'x')", "'x', after={'a/b': 'Think.'})")},
-            "hints of 'a/b' are a list of texts",
+            "hints of 'a/b' must be a list of strings",
         ),
         (
             {"question": changed("'x')", "'x', credit={'oposite': 0.5})")},
@@ -102,15 +102,15 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": changed("'x')", "'x', credit={'opposite': 50})")},
-            "is a share from 0 to 1, and this is 50",
+            "must be a fraction from 0 to 1, not 50",
         ),
         (
             {"question": changed("'x')", "'x', tolerance=0, relative=0.01)")},
-            "more than zero, and this is 0. With `rel",
+            "more than zero, not 0. With `rel",
         ),
         (
             {"question": changed("'x')", "'x', relative=2)")},
-            "`relative` is a share between 0 and 1, and this is 2",
+            "`relative` must be a fraction between 0 and 1, not 2",
         ),
         (
             {
@@ -118,14 +118,14 @@ def changed(old, new, text=QUESTION):
                     "expression', symbols='x'", "function', result='expression', calls=[1, 2]"
                 )
             },
-            "`calls` is a list of calls, each a list of its arguments: calls=[[1], [2]]",
+            "`calls` must be a list of calls, each a list of arguments; calls=[[1], [2]]",
         ),
         (
             {"answer": changed("3 * x", "3.14 * x", ANSWER)},
-            "the solution has 3.14 for pi, and a student who takes all",
+            "the solution has 3.14 for pi, so a student with all",
         ),
         ({"answer": changed("3 * x", "3.1416 * x", ANSWER)}, "the solution has 3.1416 for pi"),
-        ({"before": [("code", DRAWN)]}, "trial/one: students would not see n, which is drawn"),
+        ({"before": [("code", DRAWN)]}, "trial/one: you draw n, but students would not see it"),
         (
             {
                 "before": [("code", changed("[1, 2, 3]", "[0.1 + 0.2, 1, 2]", DRAWN))],
@@ -135,41 +135,41 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": changed("'x')", "'x', worth='two')")},
-            "`worth` is a number of points, and this is 'two'",
+            "`worth` must be a number of points, not 'two'",
         ),
         (
             {"question": changed("'x')", "'x', mistakes={x: 'It is more.'})")},
-            "`mistakes` is a dictionary with texts",
+            "`mistakes` must be a dictionary whose",
         ),
         (
             {
                 "question": changed("expression', symbols='x'", "measurement'"),
                 "answer": changed("3 * x", "3.2", ANSWER),
             },
-            "is a number with its unit, such as `(3.2, 'kN m')`. This is 3.2.",
+            "give a number and its unit, such as `(3.2, 'kN m')`. Here it is 3.2.",
         ),
         (
             {
                 "question": changed("expression', symbols='x'", "measurement'"),
                 "answer": changed("3 * x", "(25, '°C')", ANSWER),
             },
-            "`°C` is no unit that is known here",
+            "`°C` is not a unit we know",
         ),
         (
             {"question": changed("symbols='x'", "symbols={'x': (1e11, 3e11)}")},
-            "'x' is tried from 1e+11 to 3e+11; a range is at most 10000 wide. It need not",
+            "'x' is tried from 1e+11 to 3e+11, but a range must be at most 10000 wide. It need",
         ),
         (
             {"question": changed("symbols='x'", "symbols={'x': (1, float('inf'))}")},
-            "'x' is tried from 1 to inf; a range is at most 10000 wide",
+            "'x' is tried from 1 to inf, but a range must be at most 10000 wide",
         ),
         (
             {"before": [("code", DRAWN)], "text": "Add {{m}}."},
-            "its text shows {{m}}, which is not drawn; drawn are n.",
+            "its text shows {{m}}, which you have not drawn; you have drawn n.",
         ),
         (
             {"before": [("code", changed("trial/one", "trial/none", DRAWN))], "text": "Add {{n}}."},
-            "trial/none: trial.ipynb draws what varies in it, and asks no such question; it asks "
+            "trial/none: trial.ipynb draws variants for it, but asks no such question; it asks "
             "trial/one.",
         ),
     ],
@@ -188,7 +188,10 @@ def test_a_slip_is_refused_and_explained(tmp_path, slip, said):
             {"question": changed("'x')", "'x', mistakes={'Not so.': x + 2 * x})")},
             "gives the right answer: Not so.",
         ),
-        ({"before": [("code", DRAWN)], "text": "Add {{n}}."}, "students say nowhere who they are"),
+        (
+            {"before": [("code", DRAWN)], "text": "Add {{n}}."},
+            "all students would get the same numbers",
+        ),
     ],
 )
 def test_the_release_refuses_what_would_not_work(tmp_path, slip, said):
@@ -265,5 +268,5 @@ def test_variants_with_one_answer_are_refused(tmp_path):
     made = made_in(tmp_path)
     before = [("code", "student('')"), ("code", DRAWN)]
     sources(made.sources, before=before, text="Of {{n}} apples, give `answer`.")
-    with pytest.raises(AuthorError, match="trial/one: all of its 3 variants have one answer"):
+    with pytest.raises(AuthorError, match="trial/one: all of its 3 variants have the same answer"):
         release(made, run=False)

@@ -88,7 +88,7 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
         and "grade" in blocks[3]
         and len(blocks) == 5
     )
-    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parent)))
+    blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parents[1])))
     (rules,) = re.findall(r"```toml\n(time-zone.*?)```", MANUAL, re.S)
     (tmp_path / "solve.py").write_text(SOLVE)
     handing_in = (

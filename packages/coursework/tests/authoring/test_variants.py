@@ -696,8 +696,8 @@ def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch)
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ("count=6", "count=13", "there are 12 different variants; 13 are wanted"),
-        ("lever = draw", "draw", "stands one `name = draw"),
+        ("count=6", "count=13", "there are only 12 different variants, not 13"),
+        ("lever = draw", "draw", "exactly one `name = draw"),
     ],
 )
 def test_an_author_is_told(tmp_path, old, new, says):

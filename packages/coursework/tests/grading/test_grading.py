@@ -736,7 +736,7 @@ def test_feedback_leads_to_the_chapter_and_to_a_solution_that_is_released(course
         "https://book.example/{student}",
     ):
         said.write_text(f'chapter = "{address}"')
-        with pytest.raises(ValueError, match="is an address with {notebook}"):
+        with pytest.raises(ValueError, match="must be an address with {notebook}"):
             regrade(copied, solutions=solutions)
 
 

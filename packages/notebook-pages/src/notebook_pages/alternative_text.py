@@ -48,7 +48,7 @@ def check(app, doctree, docname):
         for text in texts:
             if not says_something(text):
                 logger.warning(
-                    "a figure has no alternative text (found %r): say in words what it shows",
+                    "a figure has no alternative text (found %r); describe in words what it shows",
                     text or "",
                     location=where(node) or docname,
                     type="website",

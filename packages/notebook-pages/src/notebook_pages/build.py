@@ -66,7 +66,7 @@ def main():
     start = time.monotonic()
     made_from = unchanged.of_sources()
     if unchanged.is_unchanged(made_from):
-        print(f"Nothing has changed since this was built: {HTML / 'index.html'}")
+        print(f"Nothing has changed since the last build: {HTML / 'index.html'}")
         return
     # With these comes Sphinx: where all is built, nobody waits for it.
     from . import install, lite, whole_book
@@ -79,13 +79,13 @@ def main():
     if ahead:
         ahead.wait()
     if code == 0 and (missing := missing_pages()):
-        print("These pages did not come out:", ", ".join(missing), file=sys.stderr)
+        print("These pages are missing from the build:", ", ".join(missing), file=sys.stderr)
         code = 1
     if code:
         # Sphinx warns of a page only when it reads it: without this, a second try would find
         # nothing to do and call the same faulty book built.
         forget_site()
-        sys.exit("The book was not built: see the warnings above.")
+        sys.exit("The book could not be built: see the warnings above.")
     lite.write(HTML)
     whole_book.withdraw_outdated()
     install.write_list(HTML)

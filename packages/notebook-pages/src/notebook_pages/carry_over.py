@@ -64,7 +64,7 @@ def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
             or ".." in PurePosixPath(path).parts
         ):
             raise ValueError(
-                f"{LASTING} of {previous} names {path!r}, which is not named by its content"
+                f"{LASTING} of {previous} lists {path!r}, whose name is not a hash of its content"
             )
         place = site / path
         if not place.exists() and (content := read(path)) is not None:
@@ -77,18 +77,21 @@ def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
 def main() -> None:
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(
-            "python -m notebook_pages.carry_over PREVIOUS [SITE]: where the last edition is, and "
-            "the new one's folder"
+            "usage: python -m notebook_pages.carry_over PREVIOUS [SITE], with the address of the "
+            "last edition and the folder of the new one"
         )
     previous, site = sys.argv[1], Path(*sys.argv[2:]) if sys.argv[2:] else HTML
     carried = carry_over(previous, site)
     if carried is None:
-        print(f"Nothing is carried over: at {previous} no edition lists what lasts ({LASTING}).")
+        print(
+            f"Nothing to carry over: the edition at {previous} has no list of lasting files "
+            f"({LASTING})."
+        )
     else:
         size = sum((site / path).stat().st_size for path in carried)
         print(
-            f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for the tabs "
-            "that are open."
+            f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for readers "
+            "who still have it open."
         )
 
 

@@ -46,7 +46,7 @@ def publish(parts, workshop, site):
     """
     if parts["format"] != FORMAT:
         raise ValueError(
-            f"the parts of the course are of format {parts['format']}; these pages are made of "
+            f"the parts of the course have format {parts['format']}, but these pages need format "
             f"{FORMAT}"
         )
     named = os.environ.get("NOTEBOOK_PAGES_FETCHED")
@@ -54,9 +54,8 @@ def publish(parts, workshop, site):
     fetched = next((place for place in places if (place / "node_modules" / "katex").is_dir()), None)
     if fetched is None:
         raise RuntimeError(
-            f"What pages are made with is not in {places[0]}: KaTeX, the typefaces, Python for "
-            "browsers. "
-            "`python -m notebook_pages.set_up` in that folder fetches them."
+            f"KaTeX, the typefaces and Python for browsers are not in {places[0]}. Run `python -m "
+            "notebook_pages.set_up` in that folder to download them."
         )
     workshop, site = Path(workshop).resolve(), Path(site).resolve()
     write_book(parts, workshop)
@@ -68,7 +67,7 @@ def publish(parts, workshop, site):
         [sys.executable, "-m", "notebook_pages.build"], cwd=workshop, env=environment
     )
     if done.returncode:
-        raise RuntimeError("The pages of the course were not made: see above.")
+        raise RuntimeError("The pages of the course could not be built: see above.")
     if site.exists():
         shutil.rmtree(site)
     shutil.copytree(workshop / "_build" / "html", site)

@@ -15,7 +15,7 @@ HARDEST = 3
 def difficulty(text):
     level = directives.positive_int(text)
     if level > HARDEST:
-        raise ValueError(f"difficulty is from 1 to {HARDEST}, not {level}")
+        raise ValueError(f"difficulty must be from 1 to {HARDEST}, not {level}")
     return level
 
 

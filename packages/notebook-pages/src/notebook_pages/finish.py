@@ -102,7 +102,7 @@ def write(site):
         rules = f'<meta http-equiv="Content-Security-Policy" content="{policy(text, elsewhere)}">'
         text, count = CHARSET.subn(lambda match: match[1] + rules, text)
         if count != 1:
-            raise RuntimeError(f"{page} must say once how it is encoded; it does {count} times")
+            raise RuntimeError(f"{page} must declare its encoding once, not {count} times")
         if text != before:
             page.write_text(text, "utf8")
 

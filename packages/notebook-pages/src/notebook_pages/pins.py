@@ -182,9 +182,9 @@ def main():
     if sys.version_info[:2] != oldest:
         wanted, this = (".".join(map(str, version[:2])) for version in (oldest, sys.version_info))
         sys.exit(
-            f"Pins must serve the oldest Python that the book supports, {wanted}, and are found by "
-            f"it; this is {this}. "
-            f"Remove .venv, then: make PYTHON=python{wanted} renew-pins"
+            f"Renew the pins with the oldest Python that the book supports, {wanted}, since they "
+            f"must work there; this is {this}. Remove .venv, then: make PYTHON=python{wanted} "
+            "renew-pins"
         )
     new, reports = {CONSTRAINTS: constraints()}, []
     for path in WHEELS:

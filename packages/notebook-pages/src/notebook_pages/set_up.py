@@ -74,16 +74,14 @@ PARTS = {"packages": fetch_packages, "wheels": fetch_wheels}
 def main(names):
     if unknown := set(names) - set(PARTS):
         sys.exit(
-            f"there is no {', '.join(sorted(unknown))} to set up: say {' or '.join(PARTS)}, or "
+            f"there is no {', '.join(sorted(unknown))} to set up; give {' or '.join(PARTS)}, or "
             "nothing for both"
         )
     for name in names or PARTS:
         try:
             PARTS[name]()
         except subprocess.CalledProcessError as error:
-            sys.exit(
-                f"What pages are made with was not fetched: see above (code {error.returncode})"
-            )
+            sys.exit(f"Could not download what the pages need: see above (code {error.returncode})")
 
 
 if __name__ == "__main__":

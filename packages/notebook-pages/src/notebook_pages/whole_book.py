@@ -173,7 +173,7 @@ def make_zip(settings):
 
 def main():
     if not (HTML / FRONT).is_file():
-        sys.exit("There is no book yet to take away: run `make book` first.")
+        sys.exit("There is no built book yet. Run `make book` first.")
     made_from = unchanged.of_sources()
     settings = yaml.load(Path("_config.yml").read_text("utf8"), YAML)
     withdraw_outdated()

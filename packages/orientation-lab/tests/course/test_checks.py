@@ -909,7 +909,7 @@ def test_the_values_of_an_answer_do_not_stand_in_what_is_sealed():
         ({"kind": "riddle"}, "none of"),
         ({"frames": None}, "needs 'frames'"),
         ({"symbols": "theta"}, "cannot be read"),
-        ({"turns": TURNS[::-1]}, "turns do not give the right answer"),
+        ({"turns": TURNS[::-1]}, "is not the right answer"),
         ({"answer": ...}, "cannot be read"),
     ],
 )

@@ -50,7 +50,7 @@ def test_nothing_to_try_is_not_a_pass(tmp_path):
             ]
         )
     write_source(tmp_path / "text", ("markdown", "# Nothing is asked here"))
-    with pytest.raises(SystemExit, match="ask no question"):
+    with pytest.raises(SystemExit, match="have no questions"):
         main(
             ["selftest", "--sources", str(tmp_path / "text"), "--page", str(tmp_path / "page.html")]
         )

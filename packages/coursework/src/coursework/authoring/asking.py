@@ -60,7 +60,9 @@ def with_answers(path: str | Path, reply: str, target: str | Path) -> list[str]:
             cell["source"], cell["outputs"] = block, []
             answered.append(name)
     if not answered:
-        raise AuthorError("No block of Python in the reply assigns an answer of this notebook.")
+        raise AuthorError(
+            "The reply has no block of Python that assigns an answer of this notebook."
+        )
     Path(target).parent.mkdir(parents=True, exist_ok=True)
     nbformat.write(notebook, target)
     return answered
@@ -74,5 +76,5 @@ def _read(path: str | Path) -> NotebookNode:
     try:
         notebook: NotebookNode = nbformat.read(path, as_version=4)
     except (OSError, ValueError) as error:  # nbformat's own errors are of values
-        raise AuthorError(f"{path} is no notebook that can be read: {error}") from None
+        raise AuthorError(f"cannot read {path} as a notebook: {error}") from None
     return notebook

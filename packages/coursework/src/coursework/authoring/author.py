@@ -276,7 +276,10 @@ class AuthoredQuestion:
                 continue
             if len(edges_near(self.public, numbers)) <= MOST_EDGES:
                 return
-        raise AuthorError(f"{self.name}: no points were found at which the answer is well placed.")
+        raise AuthorError(
+            f"{self.name}: found no points at which to compare this answer reliably. Is "
+            "it well defined for all values of its symbols?"
+        )
 
     def _varying(self) -> set[int]:
         """Which entries of the answer take both signs at some values of the symbols."""
@@ -294,11 +297,11 @@ class AuthoredQuestion:
         build = kinds()[self.public.kind].build
         if build is None:
             raise AuthorError(
-                f"{self.name}: an answer of the kind {self.public.kind!r} is not made of turns."
+                f"{self.name}: an answer of the kind {self.public.kind!r} cannot have `turns`."
             )
         built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
-            raise AuthorError(f"{self.name}: the turns do not give the right answer.")
+            raise AuthorError(f"{self.name}: the product of the `turns` is not the right answer.")
 
     def _demand_notes(self) -> None:
         """Hints and credit belong to mistakes that the question knows: for
@@ -314,8 +317,7 @@ class AuthoredQuestion:
                 if key not in known:
                     raise AuthorError(
                         f"{self.name}: `{argument}` names {key!r}, and this question knows no such "
-                        "mistake. "
-                        f"It knows {', '.join(repr(one) for one in known)}."
+                        f"mistake. It knows {', '.join(repr(one) for one in known)}."
                     )
 
     def _catalogued(self) -> list[Mistake]:
@@ -584,9 +586,7 @@ class Pages:
         """
         places = self.places()
         if len(places) >= sealing.NO_PAGE:
-            raise AuthorError(
-                "A question has more mistakes and hints of its own than there is room for."
-            )
+            raise AuthorError("A question has too many mistakes and hints of its own. Remove some.")
         for key in sorted(self.contents):
             content, solution = self.contents[key]
             if solution:
@@ -654,7 +654,7 @@ def _demand_arguments(name: str, given: set[str]) -> None:
     for one in sorted(given - set(known)):
         close = difflib.get_close_matches(one, known, 1)
         raise AuthorError(
-            f"{name}: a question has no `{one}`."
+            f"{name}: `question` has no argument `{one}`."
             + (f" Did you mean `{close[0]}`?" if close else "")
         )
 
@@ -673,18 +673,19 @@ def _demand_forms(
             isinstance(value, dict) and all(isinstance(key, str) for key in value)
         ):
             raise AuthorError(
-                f"{name}: `{argument}` is a dictionary with texts as its keys: {example}."
+                f"{name}: `{argument}` must be a dictionary whose keys are strings, such as "
+                f"{example}."
             )
     for note, steps in [*(hints or {}).items(), *(after or {}).items()]:
         if not isinstance(steps, (list, tuple)) or not all(isinstance(step, str) for step in steps):
-            raise AuthorError(f"{name}: the hints of {note!r} are a list of texts.")
+            raise AuthorError(f"{name}: the hints of {note!r} must be a list of strings.")
     for note, share in (credit or {}).items():
         if not _is_number(share) or not 0 <= share <= 1:
             raise AuthorError(
-                f"{name}: the credit of {note!r} is a share from 0 to 1, and this is {share!r}."
+                f"{name}: the credit of {note!r} must be a fraction from 0 to 1, not {share!r}."
             )
     if worth is not None and (not _is_number(worth) or worth < 0):
-        raise AuthorError(f"{name}: `worth` is a number of points, and this is {worth!r}.")
+        raise AuthorError(f"{name}: `worth` must be a number of points, not {worth!r}.")
 
 
 def _demand_rubric(name: str, rubric: object, worth: float) -> None:
@@ -694,13 +695,14 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
     for line, points in rubric.items():
         if not _is_number(points) or abs(points) > worth:
             raise AuthorError(
-                f"{name}: the line {line!r} of the rubric is worth {points!r}, of {worth} points."
+                f"{name}: the line {line!r} of the rubric is worth {points!r}, but the question "
+                f"has {worth} points."
             )
     earned = sum(points for points in rubric.values() if points > 0)
     if earned < worth:
         raise AuthorError(
-            f"{name}: the lines of its rubric come to {earned} of {worth} points: nobody could "
-            "have all."
+            f"{name}: the lines of its rubric add up to {earned} of {worth} points, so nobody "
+            "could earn all."
         )
 
 
@@ -710,17 +712,14 @@ def _demand_tolerance(name: str, tolerance: object, relative: object) -> None:
     """
     if tolerance is not None and (not _is_number(tolerance) or tolerance <= 0):
         also = (
-            " With `relative`, it is what an answer of zero may be off by."
+            " With `relative`, it is the tolerance of an answer of zero."
             if relative is not None
             else ""
         )
-        raise AuthorError(
-            f"{name}: `tolerance` is what an answer may be off by, more than zero, and this is "
-            f"{tolerance!r}.{also}"
-        )
+        raise AuthorError(f"{name}: `tolerance` must be more than zero, not {tolerance!r}.{also}")
     if relative is not None and (not _is_number(relative) or not 0 < relative < 1):
         raise AuthorError(
-            f"{name}: `relative` is a share between 0 and 1, and this is {relative!r}."
+            f"{name}: `relative` must be a fraction between 0 and 1, not {relative!r}."
         )
 
 
@@ -733,9 +732,8 @@ def _demand_calls(name: str, calls: object) -> None:
         or not all(isinstance(one, (list, tuple)) for one in calls)
     ):
         raise AuthorError(
-            f"{name}: `calls` is a list of calls, each a list of its arguments: calls=[[1], [2]] "
-            "calls the function with 1, and then with 2. "
-            f"This is {calls!r}."
+            f"{name}: `calls` must be a list of calls, each a list of arguments; calls=[[1], [2]] "
+            f"calls the function with 1, and then with 2. Here it is {calls!r}."
         )
 
 
@@ -774,7 +772,9 @@ def question(
         The question is not well posed.
     """
     if kind not in kinds():
-        raise AuthorError(f"{name}: the kind {kind!r} is none of {', '.join(sorted(kinds()))}.")
+        raise AuthorError(
+            f"{name}: there is no kind {kind!r}. The kinds are {', '.join(sorted(kinds()))}."
+        )
     known, values = kinds()[kind], kinds()[result or kind]
     _demand_arguments(name, {*rest} - {*values.arguments})
     _demand_forms(
@@ -786,25 +786,21 @@ def question(
         about = {"kind": kind, **(known.public(answer) if known.public else {})}
     except (TypeError, LookupError, AttributeError, UnknownUnit) as error:
         what = (
-            f"`{error}` is no unit that is known here."
+            f"`{error}` is not a unit we know."
             if isinstance(error, UnknownUnit)
-            else f"This is {answer!r}."
+            else f"Here it is {answer!r}."
         )
         raise AuthorError(
-            f"{name}: the right answer cannot be read. "
-            f"The solution of a question of kind {kind!r} is a number with its unit, such as "
-            "`(3.2, 'kN m')`. "
-            f"{what}"
+            f"{name}: the right answer cannot be read. For the kind {kind!r}, give a number and "
+            f"its unit, such as `(3.2, 'kN m')`. {what}"
         ) from None
     if rest.get("rubric") and not known.by_a_person:
         raise AuthorError(
-            f"{name}: a rubric is for answers that a person reads, of the kind 'free text'."
+            f"{name}: only the kind 'free text' has a `rubric`, since a person marks it."
         )
     _demand_rubric(name, rest.get("rubric"), rest.get("worth", 1))
     if rest.get("partial") and kind not in PARTS:
-        raise AuthorError(
-            f"{name}: only answers of the kinds {', '.join(PARTS)} are right in part."
-        )
+        raise AuthorError(f"{name}: only the kinds {', '.join(PARTS)} can be `partial`.")
     if isinstance(symbols, str):
         symbols = {symbol: ANGLES for symbol in symbols.replace(",", " ").split()}
     ranges = {symbol: list(limits or ANGLES) for symbol, limits in (symbols or {}).items()}
@@ -839,9 +835,8 @@ def question(
     for symbol, (low, high) in public.symbols.items():
         if not abs(high - low) <= WIDEST:  # of what is no number, too
             raise AuthorError(
-                f"{name}: {symbol!r} is tried from {low:g} to {high:g}; a range is at most "
-                f"{WIDEST} wide. "
-                "It need not be that of practice, since forms are compared: (0.5, 3) does for each "
-                "length, force or stiffness."
+                f"{name}: {symbol!r} is tried from {low:g} to {high:g}, but a range must be at "
+                f"most {WIDEST} wide. It need not be realistic, since we compare forms: (0.5, 3) "
+                "will do for any length, force or stiffness."
             )
     return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

@@ -104,8 +104,8 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     closed = sum(one.worth for one in asked.values() if one.possible)
     points = sum(one.worth for one in asked.values())
     lines.append(
-        f"{closed:g} of {points:g} points have a closed answer, which trying finds within "
-        f"{MOST:,} tries. A script that builds formulas finds more."
+        f"{closed:g} of {points:g} points have an answer that a script finds within {MOST:,} "
+        "tries. A script that builds formulas finds more."
     )
     if exercises:
         fixed = sum(one.worth for one in exercises if one.variants == 1)

@@ -72,8 +72,8 @@ def find_course(start: str | Path = ".") -> Course:
     course = _course_around(start)
     if course is None:
         raise AuthorError(
-            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. "
-            "`coursework new COURSE` makes a course that has one."
+            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. Create a "
+            "course with `coursework new COURSE`."
         )
     return course
 
@@ -115,13 +115,13 @@ def _read(path: Path) -> Course:
         raise AuthorError(f"{path}: {error}") from None
     if said.get("variants", BY_NAME) != BY_NAME:
         raise AuthorError(
-            f'{path}: variants = "{BY_NAME}", or nothing; this is {said["variants"]!r}.'
+            f'{path}: set variants = "{BY_NAME}" or leave it out; it is {said["variants"]!r}.'
         )
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it has texts under the names title, {', '.join((*TEXTS, *DEFAULTS))}, and "
-            "nothing else" + (f"; what is {unknown[0]!r}?" if unknown else ".")
+            f"{path}: it may only set title, {', '.join((*TEXTS, *DEFAULTS))}, each to a string"
+            + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}
@@ -130,7 +130,7 @@ def _read(path: Path) -> Course:
             r"https?://[^{}\s]*(\{(notebook|question)\}[^{}\s]*)+", others[name]
         ):
             raise AuthorError(
-                f"{path}: `{name}` is an address with {{notebook}} or {{question}} in it, and "
-                f"{others[name]!r} is none."
+                f"{path}: `{name}` must be an address with {{notebook}} or {{question}} in it, "
+                f"not {others[name]!r}."
             )
     return Course(path.parent, said.get("title", path.parent.name), **places, **others)

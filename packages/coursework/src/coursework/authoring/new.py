@@ -148,7 +148,7 @@ def new(folder: str | Path) -> list[str]:
 
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir() if folder.is_dir() else [folder]):
-        raise AuthorError(f"{folder} is there already; nothing was changed.")
+        raise AuthorError(f"{folder} already exists; we changed nothing.")
     title = re.sub(r"[-_\s]+", " ", folder.resolve().name).strip().capitalize()
     for name, text in FILES.items():
         place = folder / name
@@ -174,7 +174,7 @@ def new(folder: str | Path) -> list[str]:
     made = sorted(path for path in folder.rglob("*") if path.is_file())
     return [
         *(f"made  {path}" for path in made),
-        f"The course works as it is: `cd {shlex.quote(str(folder))}`, then `coursework try "
+        f"The course is ready. Try it: `cd {shlex.quote(str(folder))}`, then `coursework try "
         f"{NOTEBOOK}/area`.",
-        f"Students get {course.archive}.",
+        f"Give your students {course.archive}.",
     ]

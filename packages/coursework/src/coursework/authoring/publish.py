@@ -81,10 +81,10 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
     site = Path(site).resolve()
     make = _maker()
     if site.exists() and any(site.iterdir()) and not (site / "index.html").is_file():
-        raise AuthorError(f"{site} holds something that is no site; nothing was changed.")
+        raise AuthorError(f"{site} exists and is not a site; we changed nothing.")
     if not any(course.exercises.glob("*.ipynb")):
         raise AuthorError(
-            f"There are no exercises in {course.exercises}: `coursework release` makes them."
+            f"There are no exercises in {course.exercises}. Build them with `coursework release`."
         )
     with tempfile.TemporaryDirectory() as folder:
         parts = parts_of(course, folder)
@@ -140,15 +140,12 @@ def _maker() -> Callable[[Parts, Path, Path], None]:
     offers = list(metadata.entry_points(group=GROUP))
     if not offers:
         raise AuthorError(
-            "Nothing here makes pages from notebooks. "
-            "Install notebook-pages beside coursework, from its folder in the repository of "
-            "coursework; `python -m notebook_pages.set_up` then fetches what pages are made with."
+            "Publishing needs notebook-pages. Install it from its folder in the repository of "
+            "coursework, then run `python -m notebook_pages.set_up` to download its parts."
         )
     if len(offers) > 1:
         named = " and ".join(f"{offer.dist.name} ({offer.value})" for offer in offers if offer.dist)
-        raise AuthorError(
-            f"More than one package makes pages: {named}. Leave one of them installed."
-        )
+        raise AuthorError(f"Several packages make pages: {named}. Uninstall all but one.")
     make: Callable[[Parts, Path, Path], None] = offers[0].load()
     return make
 
@@ -170,4 +167,6 @@ def _fetch_wheels(archive: Path, target: Path) -> None:
             cwd=Path(folder, "exercises"),
         )
     if done.returncode:
-        raise AuthorError("pip could not fetch all wheels: see above. The pages are made.")
+        raise AuthorError(
+            "The site is built, but pip could not download all the wheels: see above."
+        )

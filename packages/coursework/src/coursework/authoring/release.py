@@ -208,9 +208,8 @@ def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
         client.execute()
     except CellExecutionError as error:
         raise AuthorError(
-            f"The notebook for students does not run with its blanks as they are: {error.ename}: "
-            f"{error.evalue}. "
-            "Does a cell that is no solution use an answer? "
+            f"The notebook for students does not run with its blanks empty: {error.ename}: "
+            f"{error.evalue}. Does a cell outside the solutions use an answer? "
             f"{error.traceback.partition(chr(10) * 3)[0]}"
         ) from None
     for cell in notebook.cells:
@@ -259,10 +258,9 @@ def _release_one(path: Path, course: Course) -> Made:
             raise AuthorError(f"{name}, in {path.name}: {fault}")
     if source.rules and not source.asks_who and source.name != CHAPTERS:
         raise AuthorError(
-            f"{path.name}: students say nowhere who they are, so all would get the same numbers. "
-            "Near the top, write a "
-            'cell `student("")`, with `from coursework import check, hint, student, '
-            "variant` above it."
+            f"{path.name}: all students would get the same numbers, since the notebook never calls "
+            '`student`. Near the top, add a cell `student("")`, with `from coursework import '
+            "check, hint, student, variant` above it."
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
@@ -304,9 +302,9 @@ def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
         found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:
             raise AuthorError(
-                f"{question}: all of its {len(found)} variants have one answer, {found[0][:60]}: "
-                "what is drawn does not change it. "
-                "Draw what the answer depends on, or ask it without variants."
+                f"{question}: all of its {len(found)} variants have the same answer, "
+                f"{found[0][:60]}. Vary something that the answer depends on, or ask the question "
+                "without variants."
             )
 
 
@@ -317,7 +315,7 @@ def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
             file = course.sources / f"{one.partition('/')[0]}.ipynb"
             if not file.is_file() or one not in names_asked(file):
                 raise AuthorError(
-                    f"{question}: `after` names '{one}', and no notebook asks such a question."
+                    f"{question}: `after` names '{one}', but no notebook asks that question."
                 )
 
 
@@ -505,7 +503,7 @@ def release(
 
 
 def _demand_sources(course: Course, known: Collection[str]) -> None:
-    """Whoever names the wrong folder must not lose another course's exercises."""
+    """Refuse a folder that holds another course's exercises, so that none are lost."""
     others = [
         path
         for folder, suffix in ((course.exercises, ".ipynb"), (course.sealed, ".json"))
@@ -516,8 +514,7 @@ def _demand_sources(course: Course, known: Collection[str]) -> None:
         raise AuthorError(
             f"{others[0]} is made of no notebook in {course.sources}"
             + (f", and neither are {len(others) - 1} other files" if others[1:] else "")
-            + ". Nothing was changed: delete what is no longer wanted yourself, or name other "
-            "folders."
+            + ". We changed nothing. Delete the files you no longer want, or name other folders."
         )
 
 

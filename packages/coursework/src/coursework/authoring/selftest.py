@@ -128,7 +128,7 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
             )
     words = kinds()[question.public.kind].text or question.public.kind == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
-        faults.append(f"The right answer was tried in {len(forms)} forms only.")
+        faults.append(f"We tried the right answer in only {len(forms)} forms.")
     there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
     sealed = (
         notebook_questions(question.name.partition("/")[0], question.number)[question.name]
@@ -137,7 +137,9 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
     )
     expected = "recorded" if question.public.exam else "correct"
     if sealed and judge(question.name, sealed, question.plain).outcome != expected:
-        faults.append("The right answer does not open what is sealed: make the release anew.")
+        faults.append(
+            "The right answer does not open the sealed question. Run `coursework release` again."
+        )
     named, unmoved = _try_mistakes(question, faults)
     blank = _judge(question, ...)
     if blank.outcome != "not attempted":
@@ -175,7 +177,7 @@ def _try_text(question: AuthoredQuestion) -> Finding:
         else [f"Its answers get {outcomes}."]
     )
     if not question.rubric:
-        faults.append("Nothing says what a person looks for: give a `rubric`.")
+        faults.append("Graders need a `rubric`: say what to look for.")
     name, kind = question.name, question.public.kind
     return Finding(name, kind, [], [], [], None, question.worth, faults)
 
@@ -208,7 +210,7 @@ def _try_mistakes(
             continue
         except KeyError:
             faults.append(
-                f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not known: '
+                f'The mistake "{mistake.note}" gets "{reply.outcome}", and is not recognised: '
                 f"{reply.messages}"
             )
             continue
@@ -438,7 +440,7 @@ def selftest(
         tried = list(pool.map(_try_notebook, paths, [course] * len(paths)))
     findings = [finding for found, _ in tried for finding in found]
     if not findings:
-        raise AuthorError(f"The notebooks in {course.sources} ask no question.")
+        raise AuthorError(f"The notebooks in {course.sources} have no questions.")
     texts = released_texts(course.exercises, course.sealed, course.archive)
     leaked = [leak for _, secrets in tried for leak in found_in(texts, secrets)]
     if page:

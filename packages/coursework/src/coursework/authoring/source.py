@@ -108,9 +108,9 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     found = sorted(Path(folder).glob("*.ipynb"))
     if not found:
         raise author.AuthorError(
-            f"There is no notebook with solutions in {folder}. "
-            "If the solutions are kept in a private repository, get them first; without them "
-            "everything builds, but nothing is released or graded."
+            f"There is no notebook with solutions in {folder}. If you keep the solutions in a "
+            "private repository, fetch them first. Without them you can build everything, but "
+            "release and grade nothing."
         )
     unknown = sorted(set(only) - {path.stem for path in found})
     if unknown:
@@ -219,17 +219,15 @@ def read_source(
                 + (f"; what is checked so far: {', '.join(answers)}." if answers else ".")
             )
         if name in questions:
-            raise author.AuthorError(f"{name}: there are two questions of this name.")
+            raise author.AuthorError(f"{name}: two questions have this name.")
         if name.partition("/")[0] != path.stem:
             raise author.AuthorError(
-                f"{name}: a question of this notebook is named '{path.stem}/...'."
+                f"{name}: name each question of this notebook '{path.stem}/...'."
             )
         if only is not None and name not in only:
             return
         if "kind" not in about:
-            raise author.AuthorError(
-                f"{name}: say of which kind it is: kind='expression', for example."
-            )
+            raise author.AuthorError(f"{name}: give its kind, for example kind='expression'.")
         if name not in rules:
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)
@@ -338,9 +336,8 @@ def _demand_pi(file: str, notebook: NotebookNode) -> None:
             found = PI_ROUNDED.search(re.sub(r"#.*", "", region))
             if found:
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the solution has {found[0]} for pi, and a student who "
-                    "takes all digits would be told that the value is wrong. "
-                    "Write `sm.pi` or `math.pi`."
+                    f"{file}, cell {number}: the solution has {found[0]} for pi, so a student "
+                    "with all the digits would be marked wrong. Write `sm.pi` or `math.pi`."
                 )
 
 
@@ -350,8 +347,8 @@ def _demand_few_digits(name: str, shown: Mapping[str, str]) -> None:
         found = re.search(rf"\d*\.\d{{{MOST_PLACES + 1},}}", text)
         if found:
             raise author.AuthorError(
-                f"{name}: its text would show {found[0]} for {parameter}. Round it where it is "
-                "drawn: round(value, 3)."
+                f"{name}: its text would show {found[0]} for {parameter}. Round it where you draw "
+                "it: round(value, 3)."
             )
 
 
@@ -375,7 +372,7 @@ def _demand_hidden(file: str, notebook: NotebookNode, variables: Mapping[str, st
         for node in ast.walk(ast.parse(posed(text, owners))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "question":
                 raise author.AuthorError(
-                    f"{file}, cell {number}: the question stands between `### BEGIN HIDDEN TESTS` "
+                    f"{file}, cell {number}: put the question between `### BEGIN HIDDEN TESTS` "
                     "and `### END HIDDEN TESTS`, or students would get it."
                 )
 
@@ -396,7 +393,7 @@ def _demand_shown(
     for name in rules:
         if name not in questions:
             raise author.AuthorError(
-                f"{name}: {file} draws what varies in it, and asks no such question; it asks "
+                f"{name}: {file} draws variants for it, but asks no such question; it asks "
                 f"{', '.join(questions)}."
             )
         braces = dict.fromkeys(re.findall(r"\{\{(\w+)\}\}", texts[name]))
@@ -405,16 +402,15 @@ def _demand_shown(
         # Braces within braces may be TeX; a parameter that is shown nowhere makes it a slip.
         if unknown and unshown:
             raise author.AuthorError(
-                f"{name}: its text shows {{{{{unknown[0]}}}}}, which is not drawn; drawn are "
-                f"{', '.join(given[name])}."
+                f"{name}: its text shows {{{{{unknown[0]}}}}}, which you have not drawn; you have "
+                f"drawn {', '.join(given[name])}."
             )
         unseen = [one for one in unshown if not re.search(rf"\b{one}\b", code)]
         # What `where` ties to others may stand for them.
         if unseen and not rules[name].picture and not rules[name].where:
             raise author.AuthorError(
-                f"{name}: students would not see {unseen[0]}, which is drawn: neither its text, "
-                f"which would show it as {{{{{unseen[0]}}}}}, nor a cell that they get, nor a "
-                "picture."
+                f"{name}: you draw {unseen[0]}, but students would not see it. Show it in the "
+                f"text as {{{{{unseen[0]}}}}}, in one of their cells, or in a picture."
             )
 
 
@@ -428,7 +424,7 @@ def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
         if found:
             if after is None or after.cell_type != "markdown":
                 raise author.AuthorError(
-                    f"{found[1]}: the text of the question comes next after what may vary in it."
+                    f"{found[1]}: put the text of the question right after its variants."
                 )
             texts[found[1]] = after.source
     return texts
@@ -611,7 +607,8 @@ def checked_in(codes: Iterable[str]) -> dict[str, str]:
             name, answer = node.args
             if not isinstance(name, ast.Constant) or not isinstance(answer, ast.Name):
                 raise author.AuthorError(
-                    f"{ast.unparse(node)}: a check has a text, and the plain name of an answer."
+                    f"{ast.unparse(node)}: write check with a string and the plain name of an "
+                    "answer."
                 )
             found[str(name.value)] = answer.id
     return found

@@ -81,9 +81,9 @@ class Rule:
                     break
             else:
                 raise AuthorError(
-                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are {order} different "
-                    f"variants; {self.count} are wanted. "
-                    "Give longer lists, or a smaller count."
+                    f"{self.name}: after {MOST_ATTEMPTS} attempts there are only {order} "
+                    f"different variants, not {self.count}. Give longer lists, or a smaller "
+                    "count."
                 )
         return found[number]
 
@@ -137,7 +137,7 @@ def drawn_in(text: str) -> tuple[str, str] | None:
     ]
     if len(calls) != 1:
         raise AuthorError(
-            "Between the marks for variants stands one `name = draw(...)`; here are "
+            "Put exactly one `name = draw(...)` between the marks for variants; here there are "
             f"{len(calls)}:\n{region[1]}"
         )
     return calls[0]

@@ -177,7 +177,7 @@ def notebook_for(site, page, settings):
     ]
     if len(notes) != 1:
         raise RuntimeError(
-            f"the notebook of {page} does not say how to run it, or says it in other words"
+            f"the notebook of {page} does not say how to run it in the expected words"
         )
     first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
     setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
@@ -259,7 +259,7 @@ def bring_answers_first(target):
     after, count = start.subn(lambda found: wait + found[0], before)
     if count != 1:
         raise RuntimeError(
-            f"{page} starts in another way than it did: answers of the pages would not come into it"
+            f"{page} starts differently now, so answers from the pages would not reach it"
         )
     page.write_text(after, "utf8")
 
@@ -315,7 +315,7 @@ def build_interface(target):
         command, cwd=WORKSHOP, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
     )
     if done.returncode:
-        sys.exit(f"JupyterLite was not built:\n{done.stdout.decode()}")
+        sys.exit(f"JupyterLite could not be built:\n{done.stdout.decode()}")
     bring_answers_first(apart)
     shutil.rmtree(target, ignore_errors=True)
     shutil.move(apart, target)

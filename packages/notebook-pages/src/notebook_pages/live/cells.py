@@ -203,11 +203,9 @@ def classify(cells):
                 needs.add("numpy")
             if not needs and known:
                 raise RuntimeError(
-                    f"cell {position + 1} gives another result in the page than the stored one (is "
-                    "that one old? "
-                    "`make notebooks`):\n"
-                    f"{cell.source}\n"
-                    f"{outcome.get('traceback', told['messages'])}"
+                    f"cell {position + 1} gives a different result in the page from the stored "
+                    "one (if that is out of date, run `make "
+                    f"notebooks`):\n{cell.source}\n{outcome.get('traceback', told['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])
         kinds.append(

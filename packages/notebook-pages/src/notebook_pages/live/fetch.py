@@ -26,8 +26,7 @@ def fetch(folder, packages, address):
             content = answer.read()
         if runtime.sha256(content) != print_:
             raise RuntimeError(
-                f"{address}{wheel.name} is not the file that Pyodide's list names; nothing of it "
-                "was kept"
+                f"{address}{wheel.name} is not the file in Pyodide's list, so we did not keep it"
             )
         wheel.write_bytes(content)
         fetched.append(wheel.name)
@@ -40,13 +39,13 @@ def main():
     try:
         fetched = fetch(folder, runtime.official_lock()["packages"], address)
     except (OSError, RuntimeError) as error:
-        sys.exit(f"Not all wheels could be fetched from {address}: {error}")
+        sys.exit(f"Could not download all the wheels from {address}: {error}")
     size = sum(path.stat().st_size for path in folder.glob("*.whl")) / 1e6
     print(
-        f"{len(fetched)} wheels fetched; {folder} holds {size:.0f} MB, each file as its makers "
-        "name it."
+        f"{len(fetched)} wheels downloaded; {folder} holds {size:.0f} MB, each file under its "
+        "official name."
     )
-    print(f"`BOOK_NUMPY={folder} make book` puts them beside the pages.")
+    print(f"`BOOK_NUMPY={folder} make book` adds them to the site.")
 
 
 if __name__ == "__main__":

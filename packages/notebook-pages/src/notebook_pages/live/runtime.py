@@ -199,7 +199,7 @@ def numerical_packages(setting, target, official, address):
             continue
         wheel = REPOSITORY / setting / package["file_name"]
         if not wheel.is_file():
-            raise ConfigError(f"numpy_in_the_page: there is no {package['file_name']} in {setting}")
+            raise ConfigError(f"numpy_in_the_page: no {package['file_name']} in {setting}")
         content = wheel.read_bytes()
         if sha256(content) != package["sha256"]:
             raise ConfigError(
