@@ -1,6 +1,6 @@
 """Answers that trying finds: how many a question allows whose answer is closed.
 
-What can be checked without a server can be tried without one, at about a hundredth of a second a
+A check that needs no server lets a program try answers, at about a hundredth of a second a
 try. Where an answer is one of a few words, an order, or a handful of small whole numbers, trying
 them all finds it. This counts no more than that, so it understates what a script can build: most
 answers are formulas, and a script that knows the subject's formulas finds many of those too.
