@@ -3,6 +3,7 @@
 import concurrent.futures
 import hashlib
 import json
+import math
 import threading
 from dataclasses import replace
 
@@ -71,6 +72,7 @@ NEARLY = (
 BLANK = "Put your answer in place of the `...` and run the cells again."
 STRAY = "The answer holds `y`; this question has the symbols `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
+NUMBERS_ONLY = "The question is asked with `x`, and your answer holds numbers only."
 FORM = "If not: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
 
 
@@ -85,7 +87,7 @@ FORM = "If not: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
         ([x, 0.3, 5], ("wrong", "", f"{DECIMALS} {ALL_WRONG}")),
         ([x, sm.sqrt(2) / 3, 6], ("wrong", "", ALL_WRONG)),
         ([x, sm.Rational(4714, 10000), 5], ("wrong", "", ALL_WRONG)),  # near, and not rounded
-        ([1, sm.sqrt(2) / 3, 6], ("wrong", "", ALL_WRONG)),  # no symbol at all: none is missed
+        ([1, sm.sqrt(2) / 3, 6], ("wrong", "", NUMBERS_ONLY)),
         (["x", 1, 2], ("invalid", "shape")),
         (
             ...,
@@ -114,7 +116,18 @@ def test_a_symbol_that_is_missing_is_named():
     assert questions.what_can_be_said(asked, plain) == f"{wrong} It holds no `z`."
     holds = questions.what_can_be_said(asked, to_plain(sm.Symbol("z")))
     assert holds == f"{wrong} It holds no `x` and no `phi`."
-    assert questions.what_can_be_said(asked, to_plain(3)) == wrong
+    only = "The question is asked with `x`, `phi`, `z`, and your answer holds numbers only."
+    assert questions.what_can_be_said(asked, to_plain(3)) == only
+
+
+def test_degrees_are_told_from_radians():
+    turns = Question("vector", salt="s", tolerance=0.001, length=2)
+    known = {text_of(turns, [0.5, -1]): Locker((CORRECT,))}
+    known[text_of(turns, [-0.5, -1])] = Locker((mistake("A sign."),))
+    degrees = said(turns, known, [math.degrees(0.5), math.degrees(-1)])
+    assert degrees[:2] == ("wrong", "in degrees") and "in degrees" in degrees[2]
+    both = said(turns, known, [math.degrees(-0.5), math.degrees(-1)])
+    assert both[1] == "in degrees, and authored" and both[2].endswith("A sign.")
 
 
 def test_a_reply_holds_what_was_opened():
@@ -141,7 +154,7 @@ def test_what_is_right_for_others_is_said_before_anything_else():
 
 ROUGH = Question("vector", salt="s", tolerance=0.01, length=2)
 CENTRE = [sm.Rational(1, 3), 2]
-OFF = "off by more than the 0.01 that is allowed. Was it rounded too far, here or on the way? Keep "
+OFF = "off by more than the 0.01 that is allowed. If you rounded, here or on the way, keep "
 
 
 def rough(*answers):
@@ -175,13 +188,13 @@ def test_an_answer_is_the_nearest_that_is_known(answer, expected):
 
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
     vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
-    few = {0.33: ("2 places", "0.004"), 1.3: ("1 place", "0.005"), 10.3: ("1 place", "0.01")}
-    enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
-    few[0.2] = ("1 place", "0.004")
+    few = {0.33: ("2 places", "0.004"), 0.87: ("2 places", "0.005")}
+    # Exact vectors have such components, and nobody has rounded those.
+    enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5, 0.6, 0.8, 0.28, 0.96)
     for entry, (places, allowed) in few.items():
         assert said(vector, {}, [entry, 1])[2] == (
-            f"Was this rounded? `{entry:g}` has {places} after the point, and an answer may be off "
-            f"by {allowed} at most: if so, keep all digits until the end. {FORM}"
+            f"`{entry:g}` has {places} after the point, and an answer may be off by {allowed} at "
+            f"most: if you rounded, keep all digits until the end. {FORM}"
         )
     assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
 
@@ -200,7 +213,7 @@ def test_numbers_that_nearly_fit_together_may_be_rounded():
     third = [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
     right, coarse, wrong = (said(unit, {}, answer) for answer in third)
     assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
-    assert coarse[2].startswith("The numbers nearly fit together. Were they rounded too far? ")
+    assert coarse[2].startswith("The numbers nearly fit together. If you rounded, ")
     assert "0.999" in coarse[3]
     assert len(wrong) == 3 and wrong[2].endswith("this one has length 0.866.")
     exact = Question("vector", salt="s", unit_vector=True)

@@ -136,9 +136,13 @@ def test_a_reply_as_text():
     for outcome, (_, word, _) in OUTCOMES.items():
         assert repr(Reply("a/b", outcome)) == f"{word}: a/b"
     assert reply.plain_text(r"$\hat{n}_x$ of `A_B`, $\mathbf{R}\cdot\mathrm{d}x$") == (
-        "n_x of A_B, Rcdotdx"
+        "n_x of A_B, R·dx"
     )
     assert reply.plain_text(r"${}^{A}\mathbf{C}^{B}$ ${}^A\mathbf{C}^B$") == "A_C_B A_C_B"
+    product = r"$\left({}^A\mathbf{C}^N\right)^T\,{}^B\mathbf{C}^N = 2\cos\tfrac{\theta}{2}$"
+    assert reply.plain_text(product) == "(A_C_N)^T B_C_N = 2 cos theta/2"
+    rates = r"$\dot\psi, \frac{a + b}{\sqrt{2}}, 90^\circ, \mathbf{r}\times\mathbf{v}$"
+    assert reply.plain_text(rates) == "psi', (a + b)/(sqrt(2)), 90°, r×v"
 
 
 BEGINS = '<div class="coursework-reply" role="status" data-outcome="wrong"'

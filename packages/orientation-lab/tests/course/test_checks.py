@@ -1006,7 +1006,7 @@ def test_one_answer_gets_one_diagnosis():
 
 
 @pytest.mark.parametrize(
-    ("answer", "rounded"), [("0.87", True), ("0.9", True), ("0.8660254", False), ("0.5", False)]
+    ("answer", "rounded"), [("0.87", True), ("0.6", False), ("0.8660254", False), ("0.5", False)]
 )
 def test_numbers_with_fewer_places_than_the_tolerance_are_called_rounded(answer, rounded):
     one = make("trial/few", "vector", [0.8660254, 0.31], length=2)

@@ -44,7 +44,7 @@ def outdated() -> list[str]:
 
 def watch() -> None:
     """Follow the cells of the kernel in which this runs, if it is one."""
-    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    shell: Any = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
     if hasattr(shell, "events"):
         shell.events.register("pre_run_cell", begins)
         shell.events.register("post_run_cell", ends)

@@ -42,6 +42,8 @@ NOT_IN_THIS_CATALOGUE = (
 )
 #: Faults of the form that no right value makes good.
 ALWAYS_WRONG = ("not unit length",)
+#: The note of an answer in degrees, where radians are asked for.
+IN_DEGREES = "in degrees"
 #: Up to so many tolerances from the right answer, its locker opens,
 #: and one is told that it is close.
 NEARLY = 3
@@ -476,9 +478,8 @@ def _close(name: str, question: Question) -> Reply:
     """The reply to an answer that rounding has made wrong, or seems to have."""
     allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
     said = (
-        f"This is close, but off by more than{allowed} allowed. Was it rounded too far, here or on "
-        "the way? "
-        "Keep all digits until the end."
+        f"This is close, but off by more than{allowed} allowed. If you rounded, here or on the "
+        "way, keep all digits until the end."
     )
     return Reply(name, "wrong", "rounded too far", [said])
 
@@ -540,6 +541,8 @@ def _not_known(
         )
     for (slip, why, turned), of_slip in zip(others, lockers):
         known = _known_in(question, turned, of_slip)
+        if known and known.outcome == "correct" and slip == IN_DEGREES:
+            return Reply(name, "wrong", slip, [message(question, slip, {})])
         if known and known.outcome != "correct":
             note, details = known.notes[0]
             if note == slip:
@@ -592,6 +595,16 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
             numbers = [undo(question, numbers) for numbers in reading.numbers]
             if None not in numbers:
                 yield name, said, Reading(numbers)
+        angles = question.quantity in (None, "angle")
+        if angles and question.kind_of_values in ("expression", "vector", "matrix"):
+            said = "it is in degrees, and in radians it has another mistake."
+            yield (
+                IN_DEGREES,
+                said,
+                Reading(
+                    [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
+                ),
+            )
 
 
 def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
@@ -609,8 +622,8 @@ def _few_digits(question: Question, plain: Plain) -> str:
     """What is said of numbers that are given to fewer places than the answer
     may be off by: they may be rounded.
 
-    It follows from what the student wrote and from the tolerance alone, so it
-    tells nothing of the right answer.
+    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the
+    right answer. The components of exact vectors, such as 0.6 and 0.8, are plain fractions.
     """
     if question.tolerance is None:
         return ""
@@ -619,12 +632,11 @@ def _few_digits(question: Question, plain: Plain) -> str:
         if "e" not in digits:
             places = len(digits.partition(".")[2])
             allowed = absolute + relative * abs(float(digits))
-            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
+            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > SMALL:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
-                    "Was this rounded? "
                     f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
-                    f"{allowed:.1g} at most: if so, keep all digits until the end."
+                    f"{allowed:.1g} at most: if you rounded, keep all digits until the end."
                 )
     return ""
 
@@ -635,9 +647,7 @@ def _coarse(question: Question, reading: Reading) -> str:
     """
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
-    return (
-        "The numbers nearly fit together. Were they rounded too far? Keep all digits until the end."
-    )
+    return "The numbers nearly fit together. If you rounded, keep all digits until the end."
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
@@ -666,9 +676,12 @@ def _precision(plain: Plain) -> tuple[bool, bool]:
 
 def what_can_be_said(question: Question, plain: Plain) -> str:
     """What a wrong answer has right, so that its author does not look for the fault there."""
-    said = kind_of_values(question).wrong
     named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
     missing = [symbol for symbol in question.symbols if not {symbol, *spellings(symbol)} & named]
-    if question.every_symbol and named and missing:
+    symbols = ", ".join(f"`{symbol}`" for symbol in question.symbols)
+    if symbols and not named:
+        return f"The question is asked with {symbols}, and your answer holds numbers only."
+    said = kind_of_values(question).wrong
+    if question.every_symbol and missing:
         said += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
     return said

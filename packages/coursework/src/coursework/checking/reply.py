@@ -203,7 +203,30 @@ def plain_text(message: str) -> str:
     return MARKED.sub(lambda found: found[1] or found[3] or _formula_as_text(found[2]), message)
 
 
+#: What TeX of formulas is written as where it cannot be set, the innermost braces first.
+WRITTEN_OUT = (
+    (r"\\(left|right|displaystyle)(?![A-Za-z])", ""),
+    (r"\\[,;: ]|\\quad", " "),
+    (r"\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?", r"\1_C_\2"),
+    (r"\\(?:math\w+|text|operatorname|vec|bar|hat|boldsymbol)\{([^{}]*)\}", r"\1"),
+    (r"\\[td]?frac\{(\\?\w+)\}\{(\\?\w+)\}", r"\1/\2"),
+    (r"\\[td]?frac\{([^{}]*)\}\{([^{}]*)\}", r"(\1)/(\2)"),
+    (r"\\sqrt\{([^{}]*)\}", r"sqrt(\1)"),
+    (r"\\dot(?:\{([^{}]*)\}|\s?(\\?\w+))", r"\1\2'"),
+    (r"\^?\{?\\circ\}?", "°"),
+    (r"\\cdot\s?", "·"),
+    (r"\\times\s?", "×"),
+    (r"\\otimes\s?", "⊗"),
+    (r"\\pm\s?", "±"),
+    # Two words stay two.
+    (r"(?<=[A-Za-z0-9)\]])\\(?=[A-Za-z])", " "),
+)
+
+
 def _formula_as_text(source: str) -> str:
-    source = re.sub(r"\{\}\^\{?(\w+)\}?\\mathbf\{C\}\^\{?(\w+)\}?", r"\1_C_\2", source)
-    source = re.sub(r"\\hat\{(\w)\}_(\w)", r"\1_\2", source)
-    return re.sub(r"\\math\w+\{(\w+)\}", r"\1", source).replace("\\", "")
+    before = ""
+    while before != source:
+        before = source
+        for tex, text in WRITTEN_OUT:
+            source = re.sub(tex, text, source)
+    return " ".join(source.replace("\\", "").split())
