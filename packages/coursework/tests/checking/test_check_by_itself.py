@@ -364,9 +364,8 @@ def test_a_code_opens_the_worked_solution(desk):
 def offered(said, order):
     name = SAW + ("/sibling", "/sibling-2")[order]
     return (
-        f"You had help: {said}. For the rest of the points of `{SAW}`, solve it with other numbers "
-        f"and without help: `variant('{name}')` shows them, and `check('{name}', ...)` checks your "
-        "answer."
+        f"You had help: {said}. For practice, solve it with other numbers and without help: "
+        f"`variant('{name}')` shows them, and `check('{name}', ...)` checks your answer."
     )
 
 
@@ -386,11 +385,11 @@ def test_who_had_help_is_offered_a_sibling(desk):
     assert "You had help: it was shown." in check(f"{SAW}/sibling", "right").messages[1]
 
 
-def test_who_had_none_is_told_what_a_sibling_counts(desk):
+def test_who_had_none_is_told_so_at_a_sibling(desk):
     assert check(SAW, "right").messages == ["Said."]
     assert check(f"{SAW}/sibling", "right").messages == [
         "Said.",
-        f"Solved without help: with a right answer to `{SAW}` itself, it counts in full.",
+        "Solved without help.",
     ]
     check(ARM, "half")
     assert check(ARM, "right").messages == ["Said."]  # all have the same numbers
@@ -436,22 +435,11 @@ def test_the_progress_with_several_questions(desk):
         "*gone*: 0 of 1 right, 0 of 1 points. Still open: `gone/a`.",
         f"*levers*: 1 of 2 right, 3 of 5 points. Still open: `{ARM}`.",
         f"*texts*: 0 of 1 right, 0 of 4 points. Taken down, and marked later: `{WORDS}`.",
-        f"Right with help, so that a sibling earns the rest: `{SAW}`.",
     ]
     put(gone=Entry("correct", help="hint"), arm=Entry("correct", help="hint"))
     lines = check_module.progress().messages
     assert lines[0] == "3 of the 4 questions that you have tried are right."
     assert lines[2] == "*levers*: 2 of 2 right, 5 of 5 points."
-    assert lines[-1].endswith(f"earns the rest: `{SAW}`.")
-    for sibling, done in ((Entry("correct", help="hint"), 0), (Entry("wrong"), 0),
-                          (Entry("correct"), 1)):  # fmt: skip
-        put(sibling=sibling)
-        assert len(check_module.progress().messages) == 5 - done
-    put(sibling=Entry("wrong"))
-    for variants, told in ((2, 1), (1, 0)):
-        asked = Question("expression", variant=Variant(count=variants))
-        desk.questions[SAW] = Sealed(asked, worth=3)
-        assert len(check_module.progress().messages) == 4 + told
     put(saw=Entry("wrong"))
     lines = check_module.progress().messages
     assert lines[2] == f"*levers*: 1 of 2 right, 2 of 5 points. Still open: `{SAW}`."

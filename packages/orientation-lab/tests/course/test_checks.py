@@ -248,7 +248,7 @@ def reply_to(one, answer):
         (
             simple_dcm("x", sm.Rational(1, 3)),
             "",
-            "a direction cosine matrix, but not the right one",
+            "is asked with theta, alpha, varphi, and your answer holds numbers only",
         ),
         (..., "", "in place of"),
         (None, "", "in place of"),

@@ -7,7 +7,6 @@ notebook from top to bottom, would disagree.
 
 import re
 import sys
-from typing import Any
 
 #: What a line of code sets: a function, or names on the left of an equals sign. It is
 #: read by its words, since a cell may have failed because it is no Python.
@@ -25,15 +24,15 @@ def names_set_by(code: str) -> set[str]:
     return {name for sets in SETS.findall(code) for name in re.findall(r"\w+", " ".join(sets))}
 
 
-def begins(info: Any) -> None:
+def begins(info: object) -> None:
     """Note that a cell begins: it may call a check of what it has just set."""
-    _running[0] = info.raw_cell or ""
+    _running[0] = getattr(info, "raw_cell", None) or ""
     _failed.difference_update(names_set_by(_running[0]))
 
 
-def ends(result: Any) -> None:
+def ends(result: object) -> None:
     """Note which names a cell has not set, or only on the way to an error."""
-    if not result.success:
+    if not getattr(result, "success", True):
         _failed.update(names_set_by(_running[0]))
 
 
@@ -44,7 +43,7 @@ def outdated() -> list[str]:
 
 def watch() -> None:
     """Follow the cells of the kernel in which this runs, if it is one."""
-    shell: Any = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
-    if hasattr(shell, "events"):
-        shell.events.register("pre_run_cell", begins)
-        shell.events.register("post_run_cell", ends)
+    shell = sys.modules["IPython"].get_ipython() if "IPython" in sys.modules else None
+    if events := getattr(shell, "events", None):
+        events.register("pre_run_cell", begins)
+        events.register("post_run_cell", ends)

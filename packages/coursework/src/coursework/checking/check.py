@@ -167,11 +167,7 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.variants)
     if not help_had:
-        reply.messages += (
-            [f"Solved without help: with a right answer to `{asked}` itself, it counts in full."]
-            if order
-            else []
-        )
+        reply.messages += ["Solved without help."] if order else []
     elif siblings:
         said = f"You had help: {HELP.get(help_had, 'it was shown')}."
         if order == len(siblings):
@@ -179,8 +175,7 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
             return
         reply.sibling = siblings[order]
         reply.messages.append(
-            f"{said} For the rest of the points of `{asked}`, solve it with other numbers and "
-            "without help: "
+            f"{said} For practice, solve it with other numbers and without help: "
             f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks "
             "your answer."
         )
@@ -230,8 +225,12 @@ def progress() -> Reply:
     the record beside this notebook.
     """
     kept, student = Progress.read(), identity()
-    known = {name: entry for name in kept.entries if (entry := _entry(kept, name, student)).outcome}
-    record = {name: entry for name, entry in known.items() if not without_sibling(name)[1]}
+    known = {name: _entry(kept, name, student) for name in kept.entries}
+    record = {
+        name: entry
+        for name, entry in known.items()
+        if entry.outcome and not without_sibling(name)[1]
+    }
     others = _right_for_others(kept, student)
     if not record:
         return Reply(
@@ -247,7 +246,6 @@ def progress() -> Reply:
     for notebook in sorted({name.split("/")[0] for name in record}):
         lines.append(_of_notebook(notebook, record, right))
     lines += others
-    lines += _right_with_help(known, right, student)
     lines += _worth_another_look(record)
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
@@ -275,28 +273,6 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
             f"{', '.join(f'`{name}`' for name in sorted(taken_down))}."
         )
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
-
-
-def _right_with_help(known: Mapping[str, Entry], right: set[str], student: str) -> list[str]:
-    """The questions whose points are not all earned, since they were right
-    with help and no sibling without.
-    """
-    alone = {
-        without_sibling(name)[0]
-        for name, entry in known.items()
-        if entry.outcome == "correct" and not entry.help
-    }
-    found = []
-    for name in sorted(right - alone):
-        try:
-            count = find_question(name, student).question.variants
-        except (LookupError, RuntimeError):
-            continue  # a question of another release
-        if known[name].help and count > 1:
-            found.append(f"`{name}`")
-    return (
-        [f"Right with help, so that a sibling earns the rest: {', '.join(found)}."] if found else []
-    )
 
 
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:

@@ -55,7 +55,7 @@ class Reply:
     details : dict
         What the message of the mistake needed to know.
     sibling : str
-        The sibling of the question that earns the rest of its points; empty where there is none.
+        The sibling of the question for practice after help; empty where there is none.
     opened : Locker or None
         What else the answer opened: the place of the worked solution, hints for other questions.
     known : KnownAnswer or None

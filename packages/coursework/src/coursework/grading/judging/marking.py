@@ -38,9 +38,6 @@ from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
-#: The share of the points of an answer that was reached with help, where its author names none,
-#: until a sibling of the question is solved without.
-WITH_HELP = 0.8
 #: A wrong answer of more nodes is not tried on the other variants of its question: nothing depends
 #: on it but what the student is told, and one that was made to cost time would cost it for each of
 #: them.
@@ -412,7 +409,7 @@ def mark_with_siblings(
             if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
                 return _by_a_sibling(question.contract, found, sibling)
     if found.outcome == "correct" and had and (question.siblings or question.second_chances):
-        share = question.contract.credit.get("help", WITH_HELP)
+        share = question.contract.credit.get("help", 1)
         said = (
             f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without "
             "help earns the rest."
