@@ -188,15 +188,17 @@ def test_an_answer_is_the_nearest_that_is_known(answer, expected):
 
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
     vector = Question("vector", salt="s", tolerance=0.004, relative=0.001, length=2)
-    few = {0.33: ("2 places", "0.004"), 0.87: ("2 places", "0.005")}
-    # Exact vectors have such components, and nobody has rounded those.
-    enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5, 0.6, 0.8, 0.28, 0.96)
+    few = {0.33: ("2 places", "0.004"), 1.3: ("1 place", "0.005"), 10.3: ("1 place", "0.01")}
+    enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
+    few[0.2] = ("1 place", "0.004")
     for entry, (places, allowed) in few.items():
         assert said(vector, {}, [entry, 1])[2] == (
             f"`{entry:g}` has {places} after the point, and an answer may be off by {allowed} at "
             f"most: if you rounded, keep all digits until the end. {FORM}"
         )
     assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
+    # Nobody has rounded the components of an exact vector.
+    assert {said(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8])} == {ALL_WRONG}
 
 
 def test_large_decimal_fractions_are_as_exact_as_their_digits():

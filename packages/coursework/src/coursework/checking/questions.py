@@ -8,6 +8,7 @@ plug-in.
 import functools
 import hashlib
 import json
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -623,22 +624,31 @@ def _few_digits(question: Question, plain: Plain) -> str:
     may be off by: they may be rounded.
 
     It follows from what the student wrote and from the tolerance alone, so it tells nothing of the
-    right answer. The components of exact vectors, such as 0.6 and 0.8, are plain fractions.
+    right answer. Components that make an exact length together, such as 0.6 and 0.8, are exact.
     """
     if question.tolerance is None:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
-    for digits in (str(node[1]) for node in plain["nodes"] if node[0] == "float"):
-        if "e" not in digits:
+    floats = [str(node[1]) for node in plain["nodes"] if node[0] == "float"]
+    squares = [Fraction(digits) ** 2 for digits in floats]
+    for order, digits in enumerate(floats):
+        others = squares[:order] + squares[order + 1 :]
+        lengths = [sum(squares), *(squares[order] + other for other in others)] if others else []
+        if "e" not in digits and not any(map(_is_square, lengths)):
             places = len(digits.partition(".")[2])
             allowed = absolute + relative * abs(float(digits))
-            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > SMALL:
+            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
                 count = f"{places} place{'' if places == 1 else 's'}"
                 return (
                     f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
                     f"{allowed:.1g} at most: if you rounded, keep all digits until the end."
                 )
     return ""
+
+
+def _is_square(number: Fraction) -> bool:
+    """Whether a fraction is the square of another."""
+    return all(math.isqrt(part) ** 2 == part for part in (number.numerator, number.denominator))
 
 
 def _coarse(question: Question, reading: Reading) -> str:
