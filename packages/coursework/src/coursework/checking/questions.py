@@ -7,6 +7,7 @@ plug-in.
 
 import functools
 import hashlib
+import itertools
 import json
 import math
 import re
@@ -65,6 +66,8 @@ COARSE = 0.005
 #: Denominators up to which a decimal fraction is plainly that fraction: one with few
 #: digits, and one with all of them.
 SMALL, LARGE = 64, 1000
+#: So many decimal fractions of an answer are looked at for an exact length.
+MOST_LOOKED_AT = 16
 
 
 #: What is known of a fingerprint, or nothing.
@@ -630,19 +633,23 @@ def _few_digits(question: Question, plain: Plain) -> str:
         return ""
     absolute, relative = (float(part) for part in tolerances(question))
     floats = [str(node[1]) for node in plain["nodes"] if node[0] == "float"]
-    squares = [Fraction(digits) ** 2 for digits in floats]
-    for order, digits in enumerate(floats):
-        others = squares[:order] + squares[order + 1 :]
-        lengths = [sum(squares), *(squares[order] + other for other in others)] if others else []
-        if "e" not in digits and not any(map(_is_square, lengths)):
-            places = len(digits.partition(".")[2])
-            allowed = absolute + relative * abs(float(digits))
-            if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
-                count = f"{places} place{'' if places == 1 else 's'}"
-                return (
-                    f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
-                    f"{allowed:.1g} at most: if you rounded, keep all digits until the end."
-                )
+    floats = [digits for digits in floats if "e" not in digits][:MOST_LOOKED_AT]
+    squares = [Fraction(digits) ** 2 for digits in floats if float(digits)]
+    lengths = [
+        sum(squares, Fraction()),
+        *(one + other for one, other in itertools.combinations(squares, 2)),
+    ]
+    if len(squares) > 1 and any(map(_is_square, lengths)):
+        return ""
+    for digits in floats:
+        places = len(digits.partition(".")[2])
+        allowed = absolute + relative * abs(float(digits))
+        if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
+            count = f"{places} place{'' if places == 1 else 's'}"
+            return (
+                f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
+                f"{allowed:.1g} at most: if you rounded, keep all digits until the end."
+            )
     return ""
 
 
