@@ -42,9 +42,8 @@ def _explain_zero(components: Sequence[float], where: str) -> None:
             f"compute with; divide it by its largest component"
         )
     raise ValueError(
-        f"axis{where} is {tuple(components)}: a zero vector points nowhere, so there is nothing to "
-        "turn about. "
-        "Was a difference of equal vectors taken?"
+        f"axis{where} is {tuple(components)}: a zero vector has no direction, so it cannot be an "
+        "axis. Did you subtract two equal vectors?"
     )
 
 

@@ -61,8 +61,7 @@ def _read(value: Values, name: str) -> Sequence[Column]:
         flat = array.reshape(*array.shape[: array.ndim - len(item)], math.prod(item))
         return [flat[..., k] for k in range(math.prod(item))]
     raise ValueError(
-        f"{name} is neither a direction cosine matrix, of shape (3, 3), nor a quaternion, of shape "
-        "(4,)"
+        f"{name} must be a direction cosine matrix, of shape (3, 3), or a quaternion, of shape (4,)"
     )
 
 
@@ -73,8 +72,8 @@ def _read_both(
     if len(one) != len(other):
         kinds = {9: "a direction cosine matrix", 4: "a quaternion"}
         raise ValueError(
-            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}: "
-            "convert one of them"
+            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}; convert "
+            "one of them"
         )
     return one, other
 
@@ -144,7 +143,7 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
         )
     shapes = [getattr(entries[0], "shape", ()) for entries in (one, other)]
     if () not in shapes and shapes[0] != shapes[1]:
-        raise ValueError(f"batches of shapes {shapes[0]} and {shapes[1]} cannot be compared")
+        raise ValueError(f"cannot compare batches of shapes {shapes[0]} and {shapes[1]}")
     return all(
         _columns_match(first, second, tolerance) for first, second in at_random_points(one, other)
     )
@@ -220,9 +219,9 @@ def diagnose(
     """
     answer, truth = _read_both(given, expected, "given", "expected")
     if not (_is_one(answer) and _is_one(truth)):
-        raise ValueError("diagnose looks at one answer at a time, not at a batch")
+        raise ValueError("diagnose takes one answer at a time, not a batch")
     if (angles is None) != (sequence is None):
-        raise ValueError("angles and sequence belong together: give both, or neither")
+        raise ValueError("give both angles and sequence, or neither")
     turns: Sequence[Entry] | None = None
     if angles is not None:
         turns = (
@@ -326,7 +325,7 @@ def _turns(
         )
     values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
     if not all(map(match, truths, _body_fixed(values, sequence))):
-        raise ValueError(f"expected is not the body fixed orientation {sequence} of these angles")
+        raise ValueError(f"expected is not the body fixed {sequence} orientation of these angles")
     return values, sequence
 
 

@@ -206,8 +206,8 @@ class _Numbers(Variable):
                 f" (item {[int(k) for k in numpy.unravel_index(worst, batch)]})" if batch else ""
             )
             raise ValueError(
-                f"the conversion has no derivative at {arguments[0][0]}{where}: "
-                "a small change makes a large one there, as of Euler angles at gimbal lock"
+                f"the conversion has no derivative at {arguments[0][0]}{where}: a small change in "
+                "the input makes a large one in the result, as for Euler angles at gimbal lock"
             )
         return found.reshape(count, *batch, *shape)
 
@@ -282,7 +282,7 @@ def jacobian(
     Griewank and Walther (2008), chapter 3.
     """
     if along not in ("target", "source"):
-        raise ValueError(f"along is {along!r}, where 'target' or 'source' was expected")
+        raise ValueError(f"along must be 'target' or 'source', not {along!r}")
     if is_symbolic(value):
         return _jacobian_of_symbols(conversion, value, further, along)
     import numpy
@@ -354,8 +354,9 @@ def propagate_covariance(
     largest = float(numpy.sqrt(numpy.max(numpy.diagonal(result, axis1=-2, axis2=-1), initial=0)))
     if largest > LARGE:
         warnings.warn(
-            f"a standard deviation comes out as {largest:.3g}: the first order says little at that "
-            "size. Near gimbal lock, give the covariance of the small turn instead of the angles'",
+            f"a standard deviation comes out as {largest:.3g}, which is too large for a "
+            "first-order covariance. Near gimbal lock, use the covariance of the small rotation "
+            "instead of that of the angles",
             stacklevel=2,
         )
     return result

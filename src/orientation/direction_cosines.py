@@ -88,8 +88,8 @@ def simple_dcm(axis: str, angle: Values) -> Array | Matrix:
     """
     if not isinstance(axis, str) or axis not in AXES:
         raise ValueError(
-            f"axis is {axis!r}, where 'x', 'y' or 'z' was expected; for another direction use "
-            "dcm_from_axis_angle, and for -y turn about y through the negative angle"
+            f"axis must be 'x', 'y' or 'z', not {axis!r}; for another direction use "
+            "dcm_from_axis_angle, and for -y rotate about y through the negative angle"
         )
     first = AXES.index(axis)
     second, third = (first + 1) % 3, (first + 2) % 3

@@ -52,13 +52,13 @@ def layout_of(sequence: str) -> Layout:
         pass
     if isinstance(sequence, str) and sequence.lower() in _LAYOUTS:
         cause = (
-            f"write {sequence.lower()!r}: sequences are lower case and body fixed; for turns about "
-            f"the axes of the frame that stays, there are functions named space_fixed"
+            f"write {sequence.lower()!r}: sequences are lower case and body fixed; for rotations "
+            "about the axes of the fixed frame, use the functions named space_fixed"
         )
     elif isinstance(sequence, str) and len(sequence) == 3 and not set(sequence) - set(AXES):
         cause = (
-            "two turns in a row about one axis are one turn, so such a sequence does not reach "
-            "every orientation"
+            "two successive rotations about one axis are a single rotation, so this sequence "
+            "cannot describe every orientation"
         )
     else:
         cause = f"the twelve are {', '.join(SEQUENCES)}"

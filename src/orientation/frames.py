@@ -226,7 +226,7 @@ class Frames:
         edges = self._edges_between(frame, reference)
         if len(edges) != 1:
             raise ValueError(
-                f"no orientation connects {frame} and {reference} directly: the path is "
+                f"no orientation connects {frame} and {reference} directly; the path is "
                 f"{self.path(frame, reference)}"
             )
         return self._of(
@@ -251,7 +251,7 @@ class Frames:
     def _with(self, frame: str, reference: str, *turns: _Turn) -> Frames:
         for name in (frame, reference):
             if not isinstance(name, str) or not name.strip():
-                raise ValueError(f"a frame is named by a string such as 'A', not {name!r}")
+                raise ValueError(f"the name of a frame must be a string such as 'A', not {name!r}")
         if frame == reference:
             raise ValueError(f"{frame} cannot be oriented with respect to itself")
         edge = _Edge(frame, reference, turns)
@@ -428,8 +428,8 @@ def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> No
     shapes = [turn.batch() for turn in edge.turns if turn.batch()]
     if shapes:
         raise ValueError(
-            f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}; a ReferenceFrame "
-            "holds one orientation"
+            f"{edge.frame} in {edge.reference} is a batch of shape {shapes[0]}, but a "
+            "ReferenceFrame holds one orientation"
         )
     turn, *others = edge.turns
     if not others and isinstance(turn, _AxisTurn):
@@ -459,8 +459,8 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
     shapes = dict.fromkeys(turn.batch() for turn in turns if turn.batch())
     if shapes and any(turn.is_symbolic() for turn in turns):
         raise ValueError(
-            "this path holds symbols and a batch of numbers: put numbers in for the symbols first, "
-            "or one item for the batch"
+            "this path has both symbols and a batch of numbers. First substitute numbers for the "
+            "symbols, or choose one item of the batch"
         )
     if shapes:
         import numpy
@@ -469,7 +469,7 @@ def _product(turns: Sequence[_Turn]) -> Array | Matrix:
             numpy.broadcast_shapes(*shapes)
         except ValueError:
             raise ValueError(
-                "the batches along this path do not fit each other: their shapes are "
+                "the batches along this path have incompatible shapes: "
                 f"{' and '.join(map(str, shapes))}"
             ) from None
     joined: list[_Turn] = []

@@ -71,12 +71,11 @@ def turns_from_angular_velocity(
     import numpy
 
     if order not in ORDERS:
-        raise ValueError(f"order is {order!r}, where 1, 2 or 4 was expected")
+        raise ValueError(f"order must be 1, 2 or 4, not {order!r}")
     times = number_array(times, (), "times")
     if times.ndim != 1 or len(times) < 2:
         raise ValueError(
-            f"times has shape {times.shape}, where the ends of one interval or more were expected, "
-            "(n + 1,)"
+            f"times must have shape (n + 1,), the ends of one interval or more, not {times.shape}"
         )
     starts, steps = times[:-1], numpy.diff(times)[:, None]
 
@@ -86,8 +85,8 @@ def turns_from_angular_velocity(
         )
         if found.shape not in ((3,), (len(starts), 3)):
             raise ValueError(
-                f"angular_velocity(times) has shape {found.shape} for {len(starts)} times, where "
-                f"({len(starts)}, 3) was expected"
+                f"angular_velocity(times) must have shape ({len(starts)}, 3) for {len(starts)} "
+                f"times, not {found.shape}"
             )
         return numpy.broadcast_to(found, (len(starts), 3))
 
@@ -134,7 +133,7 @@ def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
     start, turns = number_array(start, (3, 3), "start"), number_array(turns, (3,), "turns")
     for name, array, expected in (("start", start, "(3, 3)"), ("turns", turns, "(n, 3)")):
         if array.ndim != 2:
-            raise ValueError(f"{name} has shape {array.shape}, where {expected} was expected")
+            raise ValueError(f"{name} must have shape {expected}, not {array.shape}")
     demand_dcm(start.ravel().tolist(), name="start")
     dcms = numpy.empty((len(turns) + 1, 3, 3))
     dcms[0] = start

@@ -44,7 +44,7 @@ def angle_between(first: Values, second: Values) -> Scalars:
     Raises
     ------
     ValueError
-        If one of them is not a direction cosine matrix, or the batches do not fit each other.
+        If one of them is not a direction cosine matrix, or the batches have incompatible shapes.
 
     Examples
     --------
@@ -122,12 +122,10 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     import numpy
 
     if metric not in METRICS:
-        raise ValueError(f"metric is {metric!r}, where 'entries' or 'angle' was expected")
+        raise ValueError(f"metric must be 'entries' or 'angle', not {metric!r}")
     dcms = number_array(dcms, (3, 3), "dcms")
     if dcms.ndim != 3 or not len(dcms):
-        raise ValueError(
-            f"dcms has shape {dcms.shape}, where (n, 3, 3) with at least one of them was expected"
-        )
+        raise ValueError(f"dcms must have shape (n, 3, 3) with at least one item, not {dcms.shape}")
     check_dcm(dcms)
     shares = _shares(weights, len(dcms))
     average = numpy.tensordot(shares, dcms, axes=1)
@@ -151,13 +149,12 @@ def _shares(weights: Values | None, count: int) -> Array:
     weights = number_array(weights, (), "weights")
     if weights.shape != (count,):
         raise ValueError(
-            f"weights has shape {weights.shape}, where ({count},) was expected, one for each "
-            "orientation"
+            f"weights must have shape ({count},), one for each orientation, not {weights.shape}"
         )
     if weights.min() < 0 or weights.sum() == 0:
         raise ValueError(
-            f"weights are from {weights.min():g} to {weights.max():g}: none may be negative, nor "
-            "all zero"
+            f"weights must not be negative or all zero; these are from {weights.min():g} to "
+            f"{weights.max():g}"
         )
     shares: Array = weights / weights.sum()
     return shares

@@ -310,7 +310,7 @@ def columns_of(
     Raises
     ------
     ValueError
-        If the batches do not fit each other.
+        If the batches have incompatible shapes.
     """
     import numpy
 
@@ -326,7 +326,7 @@ def columns_of(
             described = " and ".join(
                 f"{name} {array.shape}" for array, (name, _, _) in zip(arrays, arguments)
             )
-            raise ValueError(f"the batches do not fit each other: {described}") from None
+            raise ValueError(f"the batches have incompatible shapes: {described}") from None
         arrays = [
             numpy.broadcast_to(array, batch + item)
             for array, (_, _, item) in zip(arrays, arguments)
@@ -404,7 +404,7 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
         and all(getattr(entry, "ndim", 0) for entry in value)
     ):
         raise ValueError(
-            f"{name} is a sequence of {len(value)} arrays, which can be read in two ways: join "
+            f"{name} is a sequence of {len(value)} arrays, which can be read in two ways. Join "
             "separate components with numpy.stack(..., axis=-1), or a list of items with "
             "numpy.stack(...)"
         )
@@ -511,9 +511,8 @@ def _floats(value: object, name: str) -> object:
         return float(value)  # type: ignore[arg-type]  # whether it is one is what is asked
     except TypeError:
         raise SymbolsNotPossible(
-            f"{name} holds {value}, and this conversion needs numbers: which branch it takes "
-            "depends on their sizes and signs. "
-            "Put numbers in first, with .subs(...)"
+            f"{name} holds {value}, and this conversion needs numbers, since its branch depends "
+            "on their sizes and signs. First substitute numbers, with .subs(...)"
         ) from None
 
 
@@ -536,8 +535,8 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
 
     if hasattr(value, "to_matrix"):
         raise TypeError(
-            f"{name} is the vector {value}: give its components along one frame, which its method "
-            "to_matrix finds"
+            f"{name} is the vector {value}; give its components along one frame, from its method "
+            "to_matrix"
         )
     nested = _listed(value)
     shape: tuple[int, ...] = ()
@@ -548,7 +547,7 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
         entries = [entry for row in nested for entry in (row if isinstance(row, list) else [row])]
     if shape != item:
         raise WrongShape(
-            _shape_message(name, shape, item) + " (SymPy expressions come one item at a time)"
+            _shape_message(name, shape, item) + " (give SymPy expressions one item at a time)"
         )
     try:
         components: list[Expression] = [sympy.sympify(entry, strict=True) for entry in entries]

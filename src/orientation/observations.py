@@ -80,8 +80,8 @@ def _triad(pair: Array, name: str) -> Array:
     if not numpy.all(sine > PARALLEL):
         raise ValueError(
             f"the two {name} directions are parallel or opposite (the sine of their angle is "
-            f"{sine.min():.1e}): the turn around them cannot be found. "
-            "Take a second direction well away from the first."
+            f"{sine.min():.1e}), so they do not determine the rotation around them. Take a second "
+            "direction well away from the first."
         )
     across = across / sine
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)
@@ -94,7 +94,7 @@ def unit_directions(directions: Array, name: str) -> Array:
     length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
     if not numpy.all(length > 0):
         raise ValueError(
-            f"{name} holds a direction of length zero: was a measurement missing, and written as 0?"
+            f"{name} has a direction of length zero. Was a missing measurement stored as 0?"
         )
     units: Array = directions / length
     return units
@@ -161,8 +161,8 @@ def dcm_from_directions(
     margin = gap / max(allowed, numpy.finfo(float).tiny)
     if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):
         raise ValueError(
-            f"the directions do not fix an orientation (margin {numpy.min(margin):.1e}): they lie "
-            "along one line, or observed and reference are mirror images of each other. "
+            f"the directions do not determine an orientation (margin {numpy.min(margin):.1e}): "
+            "they lie along one line, or observed and reference are mirror images of each other. "
             "Is one of the two frames left-handed?"
         )
     return fitted
@@ -215,7 +215,7 @@ def directions_covariance(observed: Numbers, deviations: Values) -> Array:
     information = weights.sum() * numpy.eye(3) - (weights * units).swapaxes(-1, -2) @ units
     if not numpy.all(numpy.linalg.eigvalsh(information)[..., 0] > PARALLEL**2 * numpy.sum(weights)):
         raise ValueError(
-            "the directions lie along one line: nothing is known of the turn around it"
+            "the directions lie along one line, so they do not determine the rotation around it"
         )
     covariance: Array = numpy.linalg.inv(information)
     return covariance
@@ -232,15 +232,15 @@ def _weighted(
     )
     if observed.ndim < 2 or observed.shape[-1] != 3 or observed.shape[-2:] != reference.shape[-2:]:
         raise ValueError(
-            f"observed and reference are lists of as many directions with three components each; "
-            f"these have the shapes {observed.shape} and {reference.shape}"
+            "observed and reference must have the same number of directions, with three "
+            f"components each; their shapes are {observed.shape} and {reference.shape}"
         )
     if deviations is None:
         deviations = numpy.ones(observed.shape[-2])
     deviations = number_array(deviations, (observed.shape[-2],), "deviations")
     if not numpy.all(deviations > 0):
         raise ValueError(
-            "a standard deviation is a positive number of radians; one of these is "
+            "a standard deviation must be a positive number of radians; one of these is "
             f"{deviations.min():g}"
         )
     spread: Array = deviations[:, None] ** -2.0

@@ -33,7 +33,7 @@ def _length_excess(
 def _explain_length(components: Sequence[float], where: str, name: str = "quaternion") -> None:
     length = sum(entry * entry for entry in components) ** 0.5
     if length == 0:
-        cause = "the zero quaternion is no orientation"
+        cause = "the zero quaternion describes no orientation"
     elif abs(length - 1) < 0.001:
         cause = (
             "were its components rounded when an instrument or a program printed them? "
@@ -315,9 +315,8 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(
-            f"the orientations{where} are half a turn apart: both ways round are equally long, so "
-            "there is no shorter one to follow. "
-            "Go by way of a third orientation"
+            f"the orientations{where} are half a turn apart, so both ways round are equally long "
+            "and neither is shorter. Interpolate through a third orientation"
         )
 
     def formula(

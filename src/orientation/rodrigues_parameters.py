@@ -113,9 +113,9 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
         if dcm_excess(NUMBERS, *entries) > TOLERANCE:
             explain_dcm(entries, where)
         raise ValueError(
-            f"dcm{where} is half a turn: its Rodrigues parameters, the tangent of half the angle, "
-            "are infinite. "
-            f"Modified Rodrigues parameters, a quaternion or a rotation vector can hold it"
+            f"dcm{where} is half a turn, where the Rodrigues parameters, tangents of half the "
+            "angle, are infinite. Use modified Rodrigues parameters, a quaternion or a rotation "
+            "vector"
         )
 
     def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
@@ -251,7 +251,8 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, no turn at all: its shadow would be infinitely long"
+            f"vector{where} is {components}, which is no rotation, so its shadow would be "
+            "infinitely long"
         )
 
     def formula(

@@ -209,9 +209,7 @@ def test_batches():
     assert same_orientation(np.zeros((0, 3, 3)), np.zeros((0, 3, 3)))
     quaternions = np.concatenate([random_unit_vectors(50, 2, size=4), np.eye(4)])
     assert same_orientation(quaternions, quaternions * np.resize([[1], [-1], [-1]], (54, 1)))
-    with pytest.raises(
-        ValueError, match=r"batches of shapes \(2, 3\) and \(5,\) cannot be compared"
-    ):
+    with pytest.raises(ValueError, match=r"cannot compare batches of shapes \(2, 3\) and \(5,\)"):
         same_orientation(dcms, random_dcms(5, 3))
 
 
@@ -585,12 +583,12 @@ def test_bad_input():
     dcm, quaternion = composed(NUMBERS, "zxy"), (1, 0, 0, 0)
     for function in (same_orientation, diagnose):
         with pytest.raises(
-            ValueError, match="is a direction cosine matrix and .* is a quaternion: convert one"
+            ValueError, match="is a direction cosine matrix and .* is a quaternion; convert one"
         ):
             function(dcm, quaternion)
-        with pytest.raises(ValueError, match="is neither a direction cosine matrix, of shape"):
+        with pytest.raises(ValueError, match="must be a direction cosine matrix, of shape"):
             function(dcm, (1, 2, 3))
-        with pytest.raises(ValueError, match="is neither"):
+        with pytest.raises(ValueError, match="must be a direction cosine matrix"):
             function(theta, dcm)
         name = "given" if function is diagnose else "first"
         for spoilt, said in (
@@ -615,14 +613,14 @@ def test_bad_input():
     ):
         with pytest.raises(error, match=f"^angles{said}"):
             diagnose(dcm.T, dcm, angles, "zxy")
-    with pytest.raises(ValueError, match="angles and sequence belong together"):
+    with pytest.raises(ValueError, match="give both angles and sequence"):
         diagnose(dcm.T, dcm, NUMBERS)
-    with pytest.raises(ValueError, match="angles and sequence belong together"):
+    with pytest.raises(ValueError, match="give both angles and sequence"):
         diagnose(dcm.T, dcm, sequence="zxy")
     with pytest.raises(ValueError, match="'zzx' is not a sequence"):
         diagnose(dcm.T, dcm, NUMBERS, "zzx")
     with pytest.raises(
-        ValueError, match="expected is not the body fixed orientation yxz of these angles"
+        ValueError, match="expected is not the body fixed yxz orientation of these angles"
     ):
         diagnose(dcm.T, dcm, NUMBERS, "yxz")
 

@@ -208,7 +208,7 @@ def test_a_mean_does_not_depend_on_the_order_nor_on_one_far_away():
 
 @pytest.mark.parametrize(
     "weights, words",
-    [([1, 2], "one for each"), ([1, -1, 1], "none may be negative"), ([0, 0, 0], "nor all zero")],
+    [([1, 2], "one for each"), ([1, -1, 1], "must not be negative"), ([0, 0, 0], "nor all zero")],
 )
 def test_bad_weights_are_refused(weights, words):
     with pytest.raises(ValueError, match=words):

@@ -194,7 +194,7 @@ def test_a_filter_keeps_its_own_numbers_and_refuses_what_is_no_orientation():
     assert (covariance == np.eye(6)).all() and (estimate.covariance[1] == np.eye(6)).all()
     with pytest.raises(ValueError, match="dcm is not orthogonal"):
         MultiplicativeKalmanFilter(2 * np.eye(3), covariance, 0.1, 0.1)
-    with pytest.raises(ValueError, match="observed holds a direction of length zero"):
+    with pytest.raises(ValueError, match="observed has a direction of length zero"):
         estimate.observe(np.zeros((3, 3)), (0, 0, 1.0), 0.1)
 
 

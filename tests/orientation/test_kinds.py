@@ -175,7 +175,7 @@ def test_arguments_are_broadcast(function, batches):
         grid[3, 2], function(first[3], *(batch[2] for batch in rest)), atol=2e-15
     )
     with pytest.raises(
-        ValueError, match=r"the batches do not fit each other: .* \(12.* and .* \(11"
+        ValueError, match=r"the batches have incompatible shapes: .* \(12.* and .* \(11"
     ):
         function(first, *(batch[:11] for batch in rest))
 
@@ -571,7 +571,7 @@ def test_sequences_that_are_none(call):
 )
 def test_axes_that_are_none(axis):
     with pytest.raises(
-        ValueError, match="axis is .*, where 'x', 'y' or 'z' was expected; .*dcm_from_axis_angle"
+        ValueError, match="axis must be 'x', 'y' or 'z', not .*; .*dcm_from_axis_angle"
     ):
         simple_dcm(axis, 0.1)
 

@@ -113,7 +113,7 @@ def test_what_does_not_fix_an_orientation_is_refused():
     with pytest.raises(ValueError, match="one line"):
         directions_covariance([[1, 0, 0], [1, 0, 0]], [0.1, 0.1])
     for observed, reference in ((np.eye(3), np.eye(3)[:2]), 2 * [np.eye(3)[0]], 2 * [np.eye(2)]):
-        with pytest.raises(ValueError, match="as many directions"):
+        with pytest.raises(ValueError, match="the same number of directions"):
             dcm_from_directions(observed, reference)
 
 

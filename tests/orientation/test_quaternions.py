@@ -200,7 +200,7 @@ def test_lengths_multiply_and_are_not_restored():
 @pytest.mark.parametrize(
     "quaternion, said",
     [
-        ((0, 0, 0, 0), "has length 0, not 1: the zero quaternion is no orientation"),
+        ((0, 0, 0, 0), "has length 0, not 1: the zero quaternion describes no orientation"),
         ((0.7071, 0.7071, 0, 0), "has length 0.99999.*, not 1: were its components rounded when"),
         ((0.97, 0, 0, 0), "has length 0.97, not 1: were its components rounded, or integrated"),
         ((0, 1.04, 0, 0), "has length 1.04, not 1: were its components rounded, or integrated"),

@@ -22,7 +22,7 @@ BLANK = re.compile(r"^(\w+) = \.\.\.|^def (\w+)", re.M)
 
 
 def as_text(path: str | Path) -> str:
-    """Give what stands in a notebook: its text, its code and what its questions print.
+    """Return the text of a notebook, its code and what its questions print.
 
     Of a picture its text alternative is given. A variant is everybody's, as it was released.
     """
@@ -40,7 +40,7 @@ def as_text(path: str | Path) -> str:
 
 
 def with_answers(path: str | Path, reply: str, target: str | Path) -> list[str]:
-    """Write a notebook with the answers of a reply, and give the names that have one.
+    """Write a notebook with the answers of a reply, and return the names it answers.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What an author writes of a question, and what is sealed of it.
+"""Questions as their authors write them, and as we seal them.
 
 In the notebook with the solutions, the cell that checks an answer goes on, between nbgrader's marks
 for hidden tests, with a call of :func:`question`:
@@ -54,14 +54,12 @@ from ..checking.reading import (
 from ..checking.reply import Reply
 from ..checking.units import UnknownUnit
 
-#: What answers without symbols may be off by, if the question says
-#: nothing: three decimals are enough.
+#: The default tolerance of answers without symbols: three decimals are enough.
 TOLERANCE = 5e-4
-#: How wide the range of a symbol may be: each check looks through
-#: all quarter turns in it for points.
+#: The widest range of a symbol, since each check searches all quarter turns in it for points.
 WIDEST = 10_000
-#: A mistake is known up to so many tolerances beyond the edge of
-#: its cell, which rounding may cross.
+#: We recognise a mistake up to this many tolerances beyond the edge of its cell, since rounding may
+#: cross the edge.
 REACH = 0.5
 #: What is known of an answer is rounded to this share of what it may be off by; no finer than its
 #: doubles hold, and never to more than the last share: a seal must not follow from the last bits,
@@ -70,12 +68,11 @@ ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-1")
 #: Where rounding tips from one number to the next: no number of few
 #: digits or small denominator lies there.
 TIPS = MP.mpf("0.6371")
-#: Edges of cells that an answer may be near: beyond each there is another
-#: locker, and one for every combination.
+#: The most edges of cells near an answer: each adds a locker beyond it, and every combination too.
 MOST_EDGES = 6
-#: The same for those who have other numbers: each cell costs a slow hash at release.
+#: The same for students with other numbers, since each cell costs a slow hash at release.
 MOST_EDGES_FOR_OTHERS = 2
-#: The pages of a first variant are filled up to a multiple of this.
+#: We pad the pages of a first variant to a multiple of this.
 PAGES_TOGETHER = 4
 
 
@@ -84,7 +81,7 @@ Turn = tuple[Any, Any]
 
 
 class AuthorError(ValueError):
-    """A question is not well posed; the message says which and why."""
+    """A question has a fault; the message names the question and the reason."""
 
 
 class Entry(NamedTuple):
@@ -202,8 +199,7 @@ class AuthoredQuestion:
         )
         self._settle_points()
         self._demand_turns()
-        # What the author says of a mistake is closer to the question than
-        # what the catalogue says of it.
+        # The author's words on a mistake fit the question better than those of the catalogue.
         self.mistakes = [
             *(
                 Mistake("authored", {"text": text}, wrong)
@@ -250,7 +246,7 @@ class AuthoredQuestion:
         What is asked of a salt is so weak that nearly every answer would be content with nearly
         every salt: the choice tells nothing of the answer.
         """
-        # Each variant has a salt of its own, so that a guess is worth nothing for the others.
+        # Each variant has its own salt, so that a guess at one is no help with the others.
         number = self.number
         seed = f"{self.name} variant {number}" if number else self.name
         varying = None
@@ -392,7 +388,7 @@ class AuthoredQuestion:
     def _same(self, one: _Known, other: _Known) -> bool:
         if one.reading.text is not None or other.reading.text is not None:
             return one.reading.text == other.reading.text
-        # What differs from the right answer by no more than its tolerance is the right answer.
+        # An answer within the tolerance of the right answer is the right answer.
         return within(
             self.public, one.numbers, other.numbers, 1 if other.outcome == "correct" else 0.1
         )
@@ -401,8 +397,7 @@ class AuthoredQuestion:
         steps = [
             step
             for note, details in one.notes
-            # Those for one mistake of the author's are named by what it says;
-            # `authored` is for all of them.
+            # An author's hints name one mistake by its words, and all of them by `authored`.
             for key in dict.fromkeys((str(details["text"]) if note == "authored" else note, note))
             for step in self.hints.get(key, [])
         ]

@@ -1,4 +1,4 @@
-"""Answers that trying finds: how many a question allows whose answer is closed.
+"""Count the answers that a question allows, if a script could try them all.
 
 A check that needs no server lets a program try answers, at about a hundredth of a second a
 try. Where an answer is one of a few words, an order, or a handful of small whole numbers, trying
@@ -72,7 +72,7 @@ def _whole_numbers(question: AuthoredQuestion) -> int | None:
 
 
 def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
-    # What a solution prints is for its author.
+    # Only the author needs what a solution prints.
     with contextlib.redirect_stdout(io.StringIO()):
         source = read_source(path, edition=course.edition)
     return {
@@ -82,7 +82,7 @@ def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
 
 
 def counted(course: Course, only: Collection[str] = ()) -> list[str]:
-    """Say what trying finds of the questions of some notebooks, and what a copy is worth.
+    """Report the points that a script finds in some notebooks, and those that a copy earns.
 
     Returns
     -------

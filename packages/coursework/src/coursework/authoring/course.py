@@ -11,7 +11,7 @@ FILE = "course.toml"
 
 
 class Course(NamedTuple):
-    """What ``course.toml`` says; all paths are absolute.
+    """The settings in ``course.toml``; all paths are absolute.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Course(NamedTuple):
     variants: str = ""
 
 
-#: What a course may say that is no path.
+#: The settings of a course that are not paths.
 TEXTS = ("package", "edition", "chapter", "solution", "variants")
 BY_NAME = "by name"
 DEFAULTS = {

@@ -17,7 +17,7 @@ from ..checking.plugins import kinds
 from ..checking.question import Question
 from ..checking.units import BASE, unit
 
-#: What an author or a student writes: an expression, a matrix, a list, a text or a function.
+#: An answer as authors and students write it: an expression, matrix, list, string or function.
 Answer: TypeAlias = Any
 #: Puts entries into the shape of an answer.
 Put: TypeAlias = Callable[[Iterable[Answer]], Answer]

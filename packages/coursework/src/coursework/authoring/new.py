@@ -1,4 +1,4 @@
-"""``coursework new``: a small course that works at once."""
+"""``coursework new``: create a small course, ready to use."""
 
 import re
 import shlex
@@ -113,10 +113,10 @@ Exercises in notebooks that check themselves and hold no answers.
 | `wheels/` | the packages of coursework that this course was made with | everybody |
 
     python -m pip install -r requirements.txt
-    coursework try first-steps/area      # what students will hear
-    coursework release                   # makes exercises/ and build/exercises.zip
-    coursework publish                   # makes build/site, where notebook-pages is installed
-    coursework selftest                  # tries every question, looks for leaks
+    coursework try first-steps/area      # shows a question with every reply
+    coursework release                   # builds exercises/ and build/exercises.zip
+    coursework publish                   # builds build/site, if notebook-pages is installed
+    coursework selftest                  # tests every question, and looks for leaks
     coursework grade SUBMISSIONS --out MARKS
 
 **Before you publish this folder**: `solutions/` holds every answer. Keep it in a private repository

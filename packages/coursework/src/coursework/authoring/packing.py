@@ -123,7 +123,7 @@ def archive(course: Course, target: str | Path | None = None) -> Path:
         packages = {path.name: path.read_bytes() for path in wheels}
     files = {
         "README.txt": README.format(title=course.title).encode("utf8"),
-        # The manifest has the digest of each.
+        # The manifest lists the digest of each file.
         "requirements.txt": "".join(
             f"{one}\n"
             for one in [*(f"./{name}" for name in packages), "jupyterlab", "latex2mathml"]
@@ -196,7 +196,7 @@ def dated(
                 return stated
             stated = next_version(stated)
         files = unknown + named("diff", "--name-only", "--relative", "HEAD")
-    # Of a file that is gone, the folder that it stood in tells when.
+    # The folder of a deleted file holds the time of the deletion.
     written = [(path if path.exists() else path.parent).stat().st_mtime for path in files]
     latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
     return f"{stated}.dev{latest:%Y%m%d%H%M%S}"

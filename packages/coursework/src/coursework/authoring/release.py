@@ -295,9 +295,7 @@ def _answer_of(question: AuthoredQuestion) -> str:
 
 
 def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
-    """Variants with one answer are one question: what a classmate
-    has found is right for everybody.
-    """
+    """Refuse variants with one answer, since a classmate's answer would be right for everybody."""
     for question in answers[0]:
         found = [one[question].answer for one in answers if question in one]
         if len(found) > 1 and len(set(found)) == 1:

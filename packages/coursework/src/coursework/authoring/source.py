@@ -306,7 +306,7 @@ def read_source(
 
 
 def _demand_marks(text: str, where: str) -> None:
-    """Marks that are not understood would leave a solution in what students get."""
+    """Refuse a misspelt mark, since it would leave a solution in the students' notebook."""
     open_one = ""
     for line in text.splitlines():
         found = MARK.fullmatch(line)
