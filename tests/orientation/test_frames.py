@@ -211,7 +211,7 @@ def test_batches_that_do_not_fit_are_refused():
         )
         with pytest.raises(
             ValueError,
-            match=r"batches along this path have incompatible shapes: .* \(2,\) and \(3,\)",
+            match=r"batches along this path have incompatible shapes: \(2,\) and \(3,\)",
         ):
             frames.dcm("C", "A")
         frames = Frames().orient_axis("B", "A", "z", np.zeros(2)).orient_axis("C", "B", axis, psi)
@@ -229,7 +229,7 @@ def test_batches_that_do_not_fit_are_refused():
 )
 def test_a_batch_is_no_reference_frame(frames):
     with pytest.raises(
-        ValueError, match=r"B in A is a batch of shape \(2,\); a ReferenceFrame holds one"
+        ValueError, match=r"B in A is a batch of shape \(2,\), but a ReferenceFrame holds one"
     ):
         frames.reference_frames()
 
@@ -451,12 +451,15 @@ def test_a_frame_in_itself():
 @pytest.mark.parametrize(
     "orient, said",
     [
-        (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis is 'q'"),
+        (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis must be .* not 'q'"),
         (lambda frames: frames.orient_axis("B", "A", "z", np.nan), "angle is nan"),
-        (lambda frames: frames.orient_axis("B", "A", (0, 0, 0), 1), "a zero vector points nowhere"),
+        (
+            lambda frames: frames.orient_axis("B", "A", (0, 0, 0), 1),
+            "a zero vector has no direction",
+        ),
         (
             lambda frames: frames.orient_axis("B", "A", (0, 0, 0), psi),
-            "a zero vector points nowhere",
+            "a zero vector has no direction",
         ),
         (lambda frames: frames.orient_axis("B", "A", "z", (psi, psi)), r"^angle has shape \(2,\)"),
         (lambda frames: frames.orient_axis("B", "A", 3, 1), r"axis has shape \(\)"),
@@ -509,7 +512,7 @@ def test_an_orientation_is_replaced():
     frames = Frames().orient_axis("A", "N", "z", 0.1).orient_axis("B", "A", "x", 0.2)
     other = frames.without("N", "A").orient_axis("A", "N", "z", 0.5)
     assert same_orientation(other.dcm("B", "N"), simple_dcm("x", 0.2) @ simple_dcm("z", 0.5))
-    with pytest.raises(ValueError, match="no orientation connects B and N directly: .*B - A - N"):
+    with pytest.raises(ValueError, match="no orientation connects B and N directly; .*B - A - N"):
         frames.without("B", "N")
 
 

@@ -530,7 +530,7 @@ def test_what_is_no_expression_is_told(function, batches):
         ):
             function(wrong, *rest)
     with pytest.raises(
-        TypeError, match=f"^{name} is the vector N.x: give its components along one frame"
+        TypeError, match=f"^{name} is the vector N.x; give its components along one frame"
     ):
         function(me.ReferenceFrame("N").x, *rest)
 
@@ -551,7 +551,7 @@ def test_sequences_that_are_none(call):
     for sequence in ("zzx", "xyy", "xxx"):
         with pytest.raises(
             ValueError,
-            match=f"'{sequence}' is not a sequence .*: two turns in a row about one axis",
+            match=f"'{sequence}' is not a sequence .*: two successive rotations about one axis",
         ):
             call(sequence)
     for sequence in ("ZXY", "Zxz"):
@@ -580,8 +580,8 @@ def test_axes_that_are_none(axis):
 @pytest.mark.parametrize("angle", [0.5, theta, np.zeros(2)])
 def test_axes_without_a_direction(function, angle):
     for axis, said in (
-        ((0, 0, 0), "a zero vector points nowhere"),
-        ((0.0, -0.0, 0), "a zero vector points nowhere"),
+        ((0, 0, 0), "a zero vector has no direction"),
+        ((0.0, -0.0, 0), "a zero vector has no direction"),
         ((1e-200, 0, 0), "too short"),
         ((0, 1e200, 0), "too long"),
     ):

@@ -96,7 +96,7 @@ def test_covariance_is_what_many_noisy_measurements_show():
 
 
 def test_what_does_not_fix_an_orientation_is_refused():
-    for size, said in ((2, "the two {} directions are parallel"), (0, "{} holds .* length zero")):
+    for size, said in ((2, "the two {} directions are parallel"), (0, "{} has .* length zero")):
         bad, good = [[1, 0, 0], [size, 0, 0]], np.eye(3)[:2]
         for name, pair in (("observed", (bad, good)), ("reference", (good, bad))):
             with pytest.raises(ValueError, match=said.format(name)):

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 MARKS = "the folder that `coursework grade --out` made"
-SOLUTIONS = "folder of the notebooks with solutions (default: as course.toml says)"
+SOLUTIONS = "folder of the notebooks with solutions (default: the one in course.toml)"
 
 
 def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to those of ``coursework``."""
     grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
     grade.add_argument(
-        "submissions", help="a folder, a zip of Canvas, Moodle or Brightspace, or a notebook"
+        "submissions", help="a folder, a zip from Canvas, Moodle or Brightspace, or a notebook"
     )
     grade.add_argument(
         "--out", required=True, metavar="MARKS", help="folder for marks, feedback and reports"
@@ -35,21 +35,21 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         action="append",
         default=[],
         metavar="NAME",
-        help="grade this assignment only (default: all that term.toml names)",
+        help="grade only this assignment (default: all in term.toml)",
     )
-    grade.add_argument("--student", help="the one student who handed all of it in")
+    grade.add_argument("--student", help="the student, if one student handed in everything")
     grade.add_argument(
         "--dry-run",
         action="store_true",
-        help="say whose each file is, how that is known, and how many would be run; run nothing",
+        help="show whose each file is, how the grader knows, and how many it would run; run none",
     )
     grade.add_argument(
-        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
     )
     grade.add_argument(
         "--workers",
         type=int,
-        help="how many notebooks are run at a time (default: one for each processor)",
+        help="number of notebooks to run at a time (default: one per processor)",
     )
     grade.add_argument(
         "--scheduler",
@@ -59,42 +59,44 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     grade.add_argument(
         "--keys",
         metavar="FOLDER",
-        help="the keys of that cluster, as `coursework cluster` made them",
+        help="folder of the cluster's keys, from `coursework cluster`",
     )
     grade.add_argument(
         "--allow-weak-isolation",
         action="store_true",
-        help="run students' code even if this machine cannot keep it apart; only on a machine that "
-        "you can afford to lose",
+        help="run students' code even if this machine cannot isolate it; use it only on a machine "
+        "that you can afford to lose",
     )
     grade.add_argument(
         "--as-listed",
         action="store_true",
-        help="go on even if many notebooks claim to be somebody else's than the list says",
+        help="grade by the list even if many notebooks claim to be somebody else's",
     )
     regrade = commands.add_parser(
-        "regrade", help="judge the stored answers again, after a question or a decision changed"
+        "regrade", help="judge the stored answers again after a question or a decision has changed"
     )
     regrade.add_argument("out", metavar="MARKS", help=MARKS)
     regrade.add_argument("--solutions", help=SOLUTIONS)
     regrade.add_argument(
-        "--dry-run", action="store_true", help="say which marks would move, and move none"
+        "--dry-run", action="store_true", help="show which marks would change, and change none"
     )
     regrade.add_argument(
-        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
     )
     review = commands.add_parser(
-        "review", help="judge answers on a page that this machine alone sees"
+        "review", help="judge answers on a page that only this machine can open"
     )
     review.add_argument("out", metavar="MARKS", help=MARKS)
     review.add_argument("--grader", help="your name, for the journal (default: your user name)")
     review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument("--port", type=int, default=0, help="the port (default: any that is free)")
     review.add_argument(
-        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+        "--port", type=int, default=0, help="port for the page (default: any free one)"
+    )
+    review.add_argument(
+        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
     )
     merge = commands.add_parser(
-        "merge", help="take in decisions and appeals: another grader's journal, or a table"
+        "merge", help="add another grader's decisions, or a table of decisions or appeals"
     )
     merge.add_argument("out", metavar="MARKS", help=MARKS)
     merge.add_argument(
@@ -105,37 +107,37 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "filled in; or a table of appeals with the columns student, question and words",
     )
     merge.add_argument(
-        "--grader", help="who decided what stands in a table (default: your user name)"
+        "--grader", help="the grader whose decisions a table holds (default: your user name)"
     )
     merge.add_argument(
-        "--dry-run", action="store_true", help="say what would be taken in, and take in nothing"
+        "--dry-run", action="store_true", help="show what would be added, and add nothing"
     )
     merge.add_argument(
-        "--yes", action="store_true", help="let marks move that were given, whoever gains or loses"
+        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
     )
     term = commands.add_parser(
-        "term", help="what a whole course comes to by MARKS/term.toml: pages, totals, statistics"
+        "term", help="write the totals, pages and statistics of a course from MARKS/term.toml"
     )
     term.add_argument(
         "new",
         nargs="?",
         choices=["new"],
-        help="write term.toml instead, with each choice explained",
+        help="write term.toml instead, with every choice explained",
     )
     term.add_argument("out", metavar="MARKS", help=MARKS)
     term.add_argument("--solutions", help=SOLUTIONS)
-    term.add_argument("--roster", metavar="FILE.csv", help="with new: who is in the course")
+    term.add_argument("--roster", metavar="FILE.csv", help="with new: the students of the course")
     term.add_argument(
         "--earlier",
         nargs="+",
         default=[],
         metavar="counts.json",
-        help="the counts of other years, to compare",
+        help="counts of earlier years, to compare",
     )
     term.add_argument(
-        "--dry-run", action="store_true", help="print the table of the course, and keep nothing"
+        "--dry-run", action="store_true", help="print the table of the course, and write nothing"
     )
-    export = commands.add_parser("export", help="hand the marks on")
+    export = commands.add_parser("export", help="export the marks and the pages of feedback")
     export.add_argument("out", metavar="MARKS", help=MARKS)
     export.add_argument(
         "--lms",
@@ -145,75 +147,77 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     export.add_argument(
         "--filled",
         metavar="FILE.csv",
-        help="where the filled gradebook goes (default: FILE-filled.csv)",
+        help="file for the filled gradebook (default: FILE-filled.csv)",
     )
     export.add_argument(
         "--column",
-        help="the column to fill, by its name or the beginning of it (default: that of term.toml)",
+        help="the column to fill: its name, or how it begins (default: the one in term.toml)",
     )
     export.add_argument(
         "--name",
         action="append",
         default=[],
         metavar="OURS=THEIRS",
-        help="what a column is called in a gradebook of another language, such as --name "
-        "identifier=ID",
+        help="name of a column in a gradebook in another language, such as --name identifier=ID",
     )
     export.add_argument(
         "--as-of",
         metavar="TIME",
         type=_moment,
-        help="hand on what had been decided and was due by then, such as 2026-12-01T12:00 "
+        help="export the marks that were decided and due by then, such as 2026-12-01T12:00 "
         "(default: now)",
     )
     export.add_argument(
-        "--dry-run", action="store_true", help="say what would be filled in, and write nothing"
+        "--dry-run", action="store_true", help="show what would be filled in, and write nothing"
     )
     export.add_argument(
         "--overwrite",
         action="append",
         default=[],
         metavar="STUDENT",
-        help="replace a mark that somebody entered for this student by hand; an excuse stays",
+        help="replace a mark that somebody entered by hand for this student; an excuse stays",
     )
     export.add_argument(
         "--assignment",
-        help="the assignment whose points are handed on (default: each whose column, as term.toml "
-        "says, is in the gradebook)",
+        help="the assignment to export (default: all whose columns in term.toml are in the "
+        "gradebook)",
     )
     export.add_argument(
         "--feedback",
         metavar="FILE.zip",
-        help="write the pages of feedback, named for your system to take them back",
+        help="write the pages of feedback, under names that your system recognises",
     )
     export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
     export.add_argument(
         "--gradescope",
         metavar="results.json",
-        help="write the results of a Gradescope autograder, for one student",
+        help="write one student's results for Gradescope",
     )
     export.add_argument("--student", help="the student for --gradescope, if there are several")
     gradescope = commands.add_parser(
-        "gradescope", help="make an autograder of one assignment for Gradescope"
+        "gradescope", help="build a Gradescope autograder for one assignment"
     )
     gradescope.add_argument("marks", metavar="MARKS", help="a folder with term.toml")
     gradescope.add_argument(
-        "--out", required=True, metavar="FILE.zip", help="where the autograder goes"
+        "--out", required=True, metavar="FILE.zip", help="file for the autograder"
     )
     gradescope.add_argument("--solutions", help=SOLUTIONS)
     gradescope.add_argument("--assignment", required=True, metavar="NAME", help="the assignment")
-    why = commands.add_parser("why", help="tell how a mark came to be what it is")
-    why.add_argument("student", metavar="STUDENT")
-    why.add_argument("assignment", metavar="ASSIGNMENT")
+    why = commands.add_parser("why", help="explain a mark, with its history")
+    why.add_argument("student", metavar="STUDENT", help="the student's ID")
+    why.add_argument("assignment", metavar="ASSIGNMENT", help="the assignment's name")
     why.add_argument("--marks", default="marks", metavar="MARKS", help=MARKS)
     cluster = commands.add_parser(
-        "cluster", help="start the scheduler of a cluster, or a machine that works for it"
+        "cluster", help="start the scheduler of a cluster, or one of its workers"
     )
     cluster.add_argument(
-        "--keys", required=True, metavar="FOLDER", help="its keys; they are made if there are none"
+        "--keys",
+        required=True,
+        metavar="FOLDER",
+        help="folder of the keys; new ones are made if it has none",
     )
     cluster.add_argument(
-        "--host", help="the address of this machine at which the others reach the scheduler"
+        "--host", help="start the scheduler, at this address, where the others can reach it"
     )
     cluster.add_argument(
         "--port", type=int, default=8786, help="the scheduler's port (default: %(default)s)"
@@ -221,34 +225,36 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     cluster.add_argument(
         "--worker",
         metavar="ADDRESS",
-        help="work for the scheduler at this address, such as tls://...",
+        help="start a worker for the scheduler at this address, such as tls://host:8786",
     )
     cluster.add_argument(
-        "--workers", type=int, help="how many notebooks at a time (default: one for each processor)"
+        "--workers",
+        type=int,
+        help="number of notebooks to run at a time (default: one per processor)",
     )
-    sample = commands.add_parser("sample-class", help="make a class to try grading on")
+    sample = commands.add_parser("sample-class", help="make an invented class to try grading on")
     sample.add_argument("--out", required=True, help="folder for the class")
     sample.add_argument(
-        "--students", type=int, default=200, help="how many students (default: %(default)s)"
+        "--students", type=int, default=200, help="number of students (default: %(default)s)"
     )
     sample.add_argument(
         "--seed",
         type=int,
         default=1,
-        help="another seed makes another class (default: %(default)s)",
+        help="random seed of the class (default: %(default)s)",
     )
     sample.add_argument(
         "--notebooks",
         default="",
-        help="the exercises to hand in, separated by commas; they become one notebook (default: "
-        "the first)",
+        help="names of the exercises, separated by commas; each student hands in one notebook with "
+        "all of them (default: the first)",
     )
     sample.add_argument("--solutions", help=SOLUTIONS)
     sample.add_argument(
         "--layout",
         default="folders",
         choices=("folders", "canvas", "moodle", "brightspace", "nbgrader"),
-        help="how they are handed in (default: %(default)s)",
+        help="form of the hand-ins (default: %(default)s)",
     )
 
 
