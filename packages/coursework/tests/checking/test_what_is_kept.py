@@ -191,6 +191,11 @@ def test_who_works_here_is_said_once(folder, capsys):
     assert capsys.readouterr().out.startswith(
         "The numbers below are those of ann ä, as you have said before.\n"
     )
+    # The same name, stored in other characters, changes nothing; another name is told.
+    identity.student("Ann A\u0308\u200b")
+    assert "until now" not in capsys.readouterr().out and identity.identity() == monkey
+    identity.student("Anne Ä")
+    assert "You are anne ä; until now you were ann ä." in capsys.readouterr().out
     for count, student, told in ((1, "", ""), (2, "ann", ""), (2, "", identity.FORGOTTEN)):
         asked = Question("expression", variant=Variant(count=count))
         assert identity.forgotten(student, asked) == told

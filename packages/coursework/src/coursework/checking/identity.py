@@ -6,6 +6,8 @@ and would learn from the grader that they earn nothing: so it is said beside eve
 and in each reply to one.
 """
 
+import unicodedata
+from contextlib import suppress
 from pathlib import Path
 
 from .progress import Progress
@@ -35,17 +37,18 @@ def student(identity: str = "") -> None:
         As your instructor's roster has it; capitals and spaces around it make no difference.
     """
     global _identity
-    _identity = plain_identity(identity)
-    try:
+    _identity, before = plain_identity(identity), ""
+    with suppress(OSError, UnicodeError):
+        before = plain_identity(KEPT.read_text("utf8"))
+    if not _identity and before:
+        _identity = before
+        print(f"The numbers below are those of {_identity}, as you have said before.")
+    elif before not in ("", _identity):
+        print(f"You are {_identity}; until now you were {before}. Your numbers change with that.")
+    with suppress(OSError):  # a folder that cannot be written to: each notebook asks anew
         if _identity:
             KEPT.parent.mkdir(exist_ok=True)
             KEPT.write_text(_identity, "utf8")
-        elif KEPT.is_file():
-            _identity = plain_identity(KEPT.read_text("utf8"))
-            if _identity:
-                print(f"The numbers below are those of {_identity}, as you have said before.")
-    except (OSError, UnicodeError):
-        pass  # a folder that cannot be written to: then it is said anew in each notebook
     for whose, names in (Progress.read().right_for_others(_identity) if _identity else {}).items():
         print(
             f"With {f'the numbers of {whose}' if whose else 'the numbers that everybody sees'} you "
@@ -60,8 +63,15 @@ def identity() -> str:
 
 
 def plain_identity(identity: str) -> str:
-    """An identity as it is compared: without spaces around it and without capitals."""
-    return " ".join(str(identity).split()).casefold()
+    """An identity as it is compared: however its letters are stored, and without
+    invisible characters, capitals and spaces around it.
+
+    >>> plain_identity("Zoe\u0308\u200b") == plain_identity(" ZO\u00cb")
+    True
+    """
+    letters = unicodedata.normalize("NFKC", str(identity))
+    shown = "".join(letter for letter in letters if unicodedata.category(letter) != "Cf")
+    return " ".join(shown.split()).casefold()
 
 
 def forgotten(student: str, question: Question) -> str:

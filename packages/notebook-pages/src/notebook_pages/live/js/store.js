@@ -237,8 +237,9 @@ function sound(text) {
   return isObject(found) ? found : {};
 }
 
-// Names as coursework compares them: without spaces around them, and whatever their capitals.
-export const plainName = (name) => name.trim().split(/\s+/).join(" ").toUpperCase();
+// Names as coursework compares them: however their letters are stored, without invisible characters and spaces around
+// them, and whatever their capitals.
+export const plainName = (name) => name.normalize("NFKC").replace(/\p{Cf}/gu, "").trim().split(/\s+/).join(" ").toUpperCase();
 
 // Whether two entries are of the same numbers; one of a question without variants knows its place among them alone.
 const ofSameNumbers = (one, other) =>
