@@ -51,7 +51,7 @@ def found(all_lines, pattern):
 
 
 def faults():
-    """What chapters lack: one sentence for each, which begins with the place."""
+    """Return a sentence for each part that a chapter lacks, beginning with the place."""
     solutions, asked = [line for path in SOLUTIONS for line in lines(path)], lines(CHAPTERS_SOURCE)
     solved = found(solutions, r"{solution-start} (\S+)")
     sealed = found(asked, r"question\(['\"](chapters/[^'\"]+)")

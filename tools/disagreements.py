@@ -18,7 +18,7 @@ OURS = f"{shlex.quote(sys.executable)} -m orientation_workbench explain --json"
 
 
 def judged(case, verdict, faults):
-    """What an answer is worth: right, not decided, false, or not read."""
+    """Classify an answer as right, not decided, false, or not read."""
     truth, _, words = case["truth"].partition(": ")
     if verdict == "bad input":
         return "right" if truth == "unreadable" else "not read"

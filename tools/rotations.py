@@ -13,7 +13,7 @@ FILE = rotations.FOLDER / "scenes.json"
 
 
 def written(*arguments):
-    """What ``js/stills.js`` writes, as text."""
+    """Return the output of ``js/stills.js`` as text."""
     stills = rotations.FOLDER / "js" / "stills.js"
     script = esbuild("--bundle", "--platform=node", "--log-level=error", stills)
     run = [NODE, "-", *arguments]

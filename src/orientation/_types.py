@@ -36,7 +36,7 @@ class Symbolic(Protocol):
 
 
 class Expression(Symbolic, Protocol):
-    """What formulas do with an expression of SymPy."""
+    """The operations that formulas use on a SymPy expression."""
 
     def __add__(self, other: Expression | float, /) -> Expression: ...
     def __radd__(self, other: float, /) -> Expression: ...

@@ -235,7 +235,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     raise ValueError(f"{name}{where} is not orthogonal: {fault}. {cause}")
 
 
-#: What every conversion from a direction cosine matrix asks of it first.
+#: Every conversion from a direction cosine matrix checks this first.
 DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
 
 

@@ -145,7 +145,7 @@ class MultiplicativeKalmanFilter:
 
     @property
     def state(self) -> FilterState:
-        """What the filter knows now."""
+        """Return the filter's present estimate."""
         return FilterState(self.dcm, self.bias, self.covariance)
 
     def turn(self, angular_velocity: Values, step: Values) -> Prediction:

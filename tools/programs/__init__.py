@@ -1,1 +1,1 @@
-"""What other programs answer, asked anew: ``python -m tools.programs`` prints what changed."""
+"""Compare the answers of other programs with the stored ones: ``python -m tools.programs``."""

@@ -20,7 +20,7 @@ def says_something(text):
 
 
 def spoken_text(tag, page):
-    """What a screen reader says for ``tag``, or ``None`` where it is told to skip it."""
+    """Return the text that a screen reader speaks for ``tag``, or ``None`` if it skips it."""
     if any(element.get("aria-hidden") == "true" for element in [tag, *tag.parents]):
         return None
     if tag.name == "img":

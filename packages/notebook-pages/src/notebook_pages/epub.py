@@ -108,7 +108,7 @@ def written_out(styles):
 
 
 def in_xml(text):
-    """What HTML allows and XML does not, put right."""
+    """Turn HTML that XML does not allow into XML."""
     for element in text.find_all(ALIVE.split(", ")[:5]):
         element.decompose()
     for element in text.select(ALIVE):
@@ -144,7 +144,7 @@ def in_xml(text):
 
 
 def files(site, title, author):
-    """What is in the book, by name: text or bytes."""
+    """Return the files of the book, text or bytes, by name."""
     pages = ["index", *(page for _, names in parts() for page in names)]
     texts = {page: article(site, page, as_mathml) for page in pages}
     styles = {

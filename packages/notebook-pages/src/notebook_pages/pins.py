@@ -59,7 +59,7 @@ def oldest_python():
 
 
 def resolve(*arguments):
-    """What pip would install: a list of its reports on each package. Nothing is installed."""
+    """List pip's reports on each package that it would install, without installing any."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.json")
         command = [
@@ -129,7 +129,7 @@ def wheels(old, versions):
 
 
 def missing(reports):
-    """What wheels for browsers need there and no list has: one sentence for each."""
+    """Return a sentence for each package that wheels for browsers need and no list has."""
     browser = default_environment() | {
         "python_version": "3.14",
         "python_full_version": "3.14.0",

@@ -155,7 +155,7 @@ def number_questions(app, doctree):
 
 
 def name_of(box):
-    """What a question is called on its page."""
+    """Return the name of a question on its page."""
     return f"Prediction {box['place']}" if box["predicts"] else f"Question {box['place']}"
 
 

@@ -31,7 +31,7 @@ def notebook_pages():
 
 
 def notebook_address(page):
-    """Where in the site the notebook of a page is."""
+    """Return the path in the site of the notebook of a page."""
     return f"{FOLDER}/{page if page.startswith('exercises/') else page.rsplit('/', 1)[-1]}.ipynb"
 
 

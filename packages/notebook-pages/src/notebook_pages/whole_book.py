@@ -77,7 +77,7 @@ def digest(files, *programs):
 
 
 def stamps():
-    """What each of them would be made from now."""
+    """Return a digest of the present sources of each."""
     files = site_files()
     kinds = tuple(f"{page}.html" for page in pages())
     printed = {

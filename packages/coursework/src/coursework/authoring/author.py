@@ -228,7 +228,7 @@ class AuthoredQuestion:
         return far_from_last_bits(self.public, read(self.public, plain))
 
     def find(self, text: str) -> Locker | None:
-        """What is known of a fingerprint, as a locker holds it; or ``None``."""
+        """Return the entry of a fingerprint, as a locker holds it; or ``None``."""
         if text in self.entries:
             return Locker(tuple(self.entries[text].answers))
         return Locker() if text in self.near else None
@@ -639,7 +639,7 @@ def to_page(markdown: str, formula: Callable[[str], str] | None = None) -> str:
 
 
 def _demand_arguments(name: str, given: set[str]) -> None:
-    """What a question may say beside the arguments of :func:`question`."""
+    """Refuse an argument that :func:`question` does not have."""
     known = [
         parameter.name
         for function in (question, AuthoredQuestion.__init__)
@@ -657,7 +657,7 @@ def _demand_arguments(name: str, given: set[str]) -> None:
 def _demand_forms(
     name: str, mistakes: object, hints: Any, after: Any, credit: Any, worth: object
 ) -> None:
-    """What an author says of a question has the form that the manual shows."""
+    """Refuse arguments whose form is not the one in the manual."""
     for argument, value, example in (
         ("mistakes", mistakes, "{'what the student is told': the_wrong_answer}"),
         ("hints", hints, "{'opposite': ['the first step', 'the second']}"),
@@ -684,7 +684,7 @@ def _demand_forms(
 
 
 def _demand_rubric(name: str, rubric: object, worth: float) -> None:
-    """Where the lines of a rubric have points, all points can be earned by them."""
+    """Refuse a rubric whose lines do not add up to the points of the question."""
     if not isinstance(rubric, dict):
         return
     for line, points in rubric.items():

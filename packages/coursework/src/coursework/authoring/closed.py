@@ -25,7 +25,7 @@ MOST = 2**16
 
 
 class Asked(NamedTuple):
-    """What matters of a question here: its points, its variants, and the possible answers."""
+    """A question with its points, its variants, and the number of possible answers."""
 
     worth: float
     variants: int

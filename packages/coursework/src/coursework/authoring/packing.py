@@ -1,4 +1,4 @@
-"""What students download: the notebooks, the sealed questions, and the package that checks them."""
+"""Pack the notebooks, the sealed questions and the package of checks for students to download."""
 
 import base64
 import hashlib
@@ -177,7 +177,7 @@ def dated(
     """
 
     def git(*arguments: str) -> str:
-        """What git says, or nothing where there is no git, or no repository that it would read."""
+        """Return git's answer, or nothing without git or a repository that it can read."""
         if not shutil.which("git"):
             return ""
         done = subprocess.run(

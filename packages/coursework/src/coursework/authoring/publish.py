@@ -98,7 +98,7 @@ def publish(course: Course, site: str | Path, room: bool = False) -> Path:
 
 
 def parts_of(course: Course, folder: str | Path) -> Parts:
-    """What the pages of a course are made from."""
+    """Return the parts from which the pages of a course are built."""
     if course.package:
         module, _, function = course.package.partition(":")
         wheels, plugin = list(getattr(import_module(module), function)(folder)), ""

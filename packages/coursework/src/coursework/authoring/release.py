@@ -307,7 +307,7 @@ def _demand_answers(answers: Sequence[Mapping[str, AboutAnswer]]) -> None:
 
 
 def _demand_later(course: Course, after: Mapping[str, Iterable[str]]) -> None:
-    """What a right answer opens hints for is asked somewhere."""
+    """Refuse hints for a later question that no notebook asks."""
     for question, later in after.items():
         for one in later:
             file = course.sources / f"{one.partition('/')[0]}.ipynb"
@@ -359,7 +359,7 @@ def _release_variant(
 
 
 def _versions() -> Iterator[str]:
-    """What computes the answers of a notebook, with its version, as far as it is installed."""
+    """Return the installed versions of the packages that compute the answers."""
     yield platform.python_version()
     for name in ("mpmath", "sympy", "numpy", "scipy", "matplotlib"):
         with contextlib.suppress(metadata.PackageNotFoundError):

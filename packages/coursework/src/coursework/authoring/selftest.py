@@ -78,7 +78,7 @@ NO_LEAK = (
 
 
 class Finding(NamedTuple):
-    """What was found of one question; ``faults`` is empty if it is ready for students."""
+    """The results for one question; ``faults`` is empty if it is ready for students."""
 
     name: str
     kind: str
@@ -496,7 +496,7 @@ def write_page(
         f"<li>{html.escape(what)} stands in {html.escape(place)}</li>"
         for what, place in leaked or []
     )
-    # Where only a few questions are tried, nothing was looked for.
+    # A test of a few questions does not look for leaks.
     leaks_found = f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
         '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'

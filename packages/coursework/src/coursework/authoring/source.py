@@ -433,7 +433,7 @@ def _texts_of_variants(notebook: NotebookNode) -> dict[str, str]:
 def variant_drawn(
     drawn: Mapping[str, Any], text: str, number: int = 0, count: int = 1, edition: str = ""
 ) -> Variant:
-    """What is shown and given of what was drawn for a variant."""
+    """Return the drawn values of a variant that students see or get."""
     return Variant(
         number,
         count,
@@ -653,7 +653,7 @@ def in_variants(text: str) -> str:
 
 
 def blank(region: str, owners: Mapping[str, str]) -> str:
-    """What stands in place of a solution."""
+    """Return the blank that replaces a solution."""
     functions = {
         node.name: node
         for node in ast.parse(textwrap.dedent(region)).body

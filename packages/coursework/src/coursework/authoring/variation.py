@@ -32,7 +32,7 @@ COUNT = 16
 MOST_ATTEMPTS = 400
 
 
-#: What a parameter is drawn from: a list, or a function of chance.
+#: The source of a parameter: a list to choose from, or a function of a random generator.
 Pool = Iterable[Any] | Callable[[random.Random], Any]
 
 

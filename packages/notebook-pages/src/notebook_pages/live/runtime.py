@@ -96,7 +96,7 @@ def with_dependencies(names, packages):
 
 @contextmanager
 def one_at_a_time():
-    """Whoever comes second waits, and finds what the first has made."""
+    """Let a second process wait, and use what the first has made."""
     COMPILED.mkdir(parents=True, exist_ok=True)
     with open(COMPILED / "lock", "w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -111,7 +111,7 @@ def our_packages_in(wheel):
 
 
 def compiled_form(wheel):
-    """Where the compiled form of a wheel is kept, whether it is there or not."""
+    """Return the path of a compiled wheel, whether it exists or not."""
     program = b"".join(path.read_bytes() for path in (*COMPILER, PYODIDE / "package.json"))
     digest = sha256(program + "\n".join(our_packages_in(wheel)).encode() + wheel.read_bytes())
     return COMPILED / digest[:12] / wheel.name
