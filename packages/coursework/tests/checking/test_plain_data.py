@@ -591,3 +591,9 @@ def test_borders_of_what_is_read():
         node = ["Add", *[0] * (count - 1)]
         data = {"value": ["blank"], "nodes": [NODES[0], node]}
         assert is_read(data) == (count == 60_000)
+
+
+@pytest.mark.parametrize("answer", [map(abs, [1]), {1: 2, 3: 4}.values(), {1: 2, 3: 4}.keys()])
+def test_what_is_no_list_yet_is_to_be_made_one(answer):
+    with pytest.raises(NotPlain, match=r"write `list\(...\)` around it"):
+        to_plain(answer)

@@ -205,7 +205,7 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             "stray symbol",
             f"The answer holds `{'x' * 40}`; this question has the symbols `a`, `b`.",
         ),
-        (EXPRESSION, sm.zoo, "undefined", "for some values of its symbols: division by zero."),
+        (EXPRESSION, sm.zoo, "undefined", "The answer has no finite value: division by zero."),
         (EXPRESSION, sm.Integer(10) ** 61 * sm.E, "too large", "the value is beyond 10^60."),
         (EXPRESSION, sm.I, "not real", "The answer has an imaginary part; the question asks for"),
         (MEASUREMENT, (7, "furlong"), "unknown unit", "`furlong` is no unit that is known here."),

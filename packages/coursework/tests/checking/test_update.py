@@ -232,3 +232,13 @@ def test_what_is_installed_is_not_installed_again(work, tmp_path, monkeypatch):
         )
         said = update(archive, folder)[-1]
         assert said == f"Now run this:\n\n    {command} -m pip install {both}\n"
+
+
+def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):
+    files = {"one.ipynb": notebook("one"), "._one.ipynb": b"\0\5\26\7", "README.txt": b"one"}
+    files["manifest.json"] = manifest(
+        {"one.ipynb": files["one.ipynb"], "README.txt": b"one"}
+    ).encode()
+    archive = zipped(tmp_path / "exercises.zip", files)
+    update(archive, work)
+    assert "one.ipynb" in contents(work) and "._one.ipynb" not in contents(work)

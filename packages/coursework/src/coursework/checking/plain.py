@@ -28,7 +28,7 @@ import numbers
 import re
 import sys
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, KeysView, Sequence, ValuesView
 from types import FrameType, ModuleType
 from typing import Protocol, TypeAlias, TypedDict, TypeGuard, cast
 
@@ -289,6 +289,9 @@ class _Writer:
         if isinstance(answer, dict) and len(answer) == 1:
             # What `solve` gives for one unknown: {theta: pi/4}.
             return self.value(next(iter(answer.values())), depth)
+        if isinstance(answer, (Iterator, KeysView, ValuesView)):
+            kind = type(answer).__name__[:40]
+            raise NotPlain(f"This is of type `{kind}`: write `list(...)` around it.")
         if isinstance(answer, (list, tuple, set, frozenset)):
             return self.parts(_in_order(answer), depth)
         return self.of_sympy(answer, depth)

@@ -257,9 +257,8 @@ def _number(question: Question, result: Any) -> Number:
         )
         raise Fault("stray symbol", f"The answer holds `{name}`; {wanted}.") from None
     except Undefined as error:
-        raise Fault(
-            "undefined", f"The answer has no finite value for some values of its symbols: {error}."
-        ) from None
+        somewhere = " for some values of its symbols" if question.symbols else ""
+        raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
     except TooLarge as error:
         raise Fault("too large", f"The answer is not worked out: {error}.") from None
     except NotSupported as error:

@@ -161,7 +161,12 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
         )
     try:
         with zipfile.ZipFile(archive_file) as box:
-            entries = [entry for entry in sorted(box.namelist()) if not entry.endswith("/")]
+            # A Mac's own archives hold a file with ._ before its name beside each.
+            entries = [
+                entry
+                for entry in sorted(box.namelist())
+                if not entry.endswith("/") and not Path(entry).name.startswith("._")
+            ]
             files = {_place(entry): box.read(entry) for entry in entries}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
         raise ArchiveRefused(
