@@ -317,12 +317,11 @@ def _judge_code(question: AuthoredQuestion, code: str) -> str:
 
 def _tells_nothing(line: str) -> bool:
     """Whether a line is an import, a mark, or the head of a function, a
-    class or a loop over what has a name.
+    class or a loop over what has a name or only counts.
     """
-    return (
-        re.match(r"\s*(import |from \w[\w.]* import |def |### |class |for \w+ in \w+:$)", line)
-        is not None
-    )
+    loop = r"for \w+ in (\w+|range\(\d+\)):$"
+    head = rf"\s*(import |from \w[\w.]* import |def |### |class |{loop})"
+    return re.match(head, line) is not None
 
 
 def _writings(answer: object) -> list[str]:
