@@ -30,7 +30,7 @@ MAY_IMPORT = {
 #: In grading, what follows a notebook on its way uses only what comes before it,
 #: and what stands beside the rooms.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
-BESIDE = ("locks", "record", "store", "tables", "versions", "workers")
+BESIDE = ("locks", "reading", "record", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages"
 OURS = {*PACKAGES, "notebook_pages"}
 

@@ -1155,7 +1155,7 @@ def regrade(
         judge = closing.enter_context(Judge(questions, Contracts(store.folder), store.log))
         candidates = (marked(record, judge, standing, policies) for record in store.all())
         laboratory = settle(store, journal, candidates, agree, REJUDGED, dry_run)
-        laboratory.write(store.folder)
+        reports.write_moves(laboratory, store.folder)
         if dry_run or not laboratory.agreed:
             return laboratory
         for line in said_of_people(store, standing):
@@ -1178,7 +1178,7 @@ def bring_in_decisions(
         standing = journal.standing()
         candidates = (with_decisions(record, standing) for record in store.all())
         laboratory = settle(store, journal, candidates, agree, DECIDED)
-        laboratory.write(store.folder)
+        reports.write_moves(laboratory, store.folder)
         for line in said_of_people(store, standing):
             print(line, file=show or sys.stderr)
         reports.write_all(store)

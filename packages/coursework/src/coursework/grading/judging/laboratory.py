@@ -11,12 +11,11 @@ variant have its points, or it counts for nobody.
 import getpass
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import NamedTuple
 
 from ..record import Case, Mark, Record
-from ..store import Store, write
-from ..tables import in_a_line, number, table
+from ..store import Store
+from ..tables import in_a_line, number
 from .journal import Given, Journal, Part, new_id, now
 
 TABLE, PAGE = "regrade.csv", "regrade.html"
@@ -251,19 +250,6 @@ class Laboratory:
         if len(self.moves) > MOST_SHOWN:
             said.append(f"  ... and {len(self.moves) - MOST_SHOWN} more.")
         return said
-
-    def write(self, folder: Path) -> None:
-        """Write the table and the page."""
-        from ..reporting.templates_of_pages import page  # which takes a while
-
-        changes = sorted(change for move in self.moves for change in move.changes)
-        write(folder / TABLE, table(Change._fields, changes))
-        groups = (
-            ("Who would gain", self.gain),
-            ("Who would lose", self.lose),
-            ("What cannot be judged from what is stored, and is to be run again", self.again),
-        )
-        write(folder / PAGE, page("laboratory.html", groups=groups, lines=self.lines()))
 
 
 #: Says whether what a laboratory shows shall come to pass.

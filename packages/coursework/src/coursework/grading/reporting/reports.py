@@ -18,6 +18,7 @@ from ...checking.plain import Plain
 from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
 from ..judging.journal import case_id
+from ..judging.laboratory import PAGE, TABLE, Change, Laboratory
 from ..judging.term import Term, result_of, term_of
 from ..record import Cell, Mark, Record, RunNotebook
 from ..store import Store, file_name, write
@@ -165,6 +166,18 @@ def write_all(store: Store) -> None:
         store.folder / "report.html",
         report(classes, refused),
     )
+
+
+def write_moves(laboratory: Laboratory, folder: Path) -> None:
+    """Write what would move: the table and the page."""
+    changes = sorted(change for move in laboratory.moves for change in move.changes)
+    write(folder / TABLE, table(Change._fields, changes))
+    groups = (
+        ("Who would gain", laboratory.gain),
+        ("Who would lose", laboratory.lose),
+        ("What cannot be judged from what is stored, and is to be run again", laboratory.again),
+    )
+    write(folder / PAGE, page("laboratory.html", groups=groups, lines=laboratory.lines()))
 
 
 #: Filled in, it is a table of decisions: ``id`` and ``version`` bind each line to what it is about.
