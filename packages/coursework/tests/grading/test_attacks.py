@@ -21,6 +21,7 @@ from attacks.corpus import ATTACKS
 
 from coursework.grading.execution.sandbox import Limits, Sandbox, run_notebooks
 from coursework.grading.execution.scratch import remove_folder
+from coursework.grading.record import Isolation
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="student code runs on Linux only"
@@ -204,7 +205,7 @@ def test_the_corpus_is_large_and_its_names_differ():
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
 def test_attack_ends_with_its_name_and_takes_nothing(attack, aftermath):
     result = aftermath["results"][attack.name]
-    assert result["isolation"]["weak"] is False
+    assert Isolation.from_json(result["isolation"]).weak is False
     assert result["cells"][1]["outcome"] in attack.outcome.split(" or "), result["cells"]
     assert not taken(result)
     assert result["answers"]["before"].get("plain") == integer(1), "an earlier answer was lost"
@@ -244,7 +245,7 @@ def test_attacks_succeed_without_their_layers(layers, surroundings):
             if attack.without == layers:
                 surroundings.reset()
                 result = sandbox.run(surroundings.job(attack))
-                assert result["isolation"]["weak"] is True
+                assert Isolation.from_json(result["isolation"]).weak is True
                 assert taken(result), (attack.name, result["cells"][1], sandbox.report)
                 surroundings.heard()
     surroundings.reset()

@@ -20,6 +20,7 @@ from coursework.grading.execution import isolation, scratch, system_calls
 from coursework.grading.execution.isolation import LANDLOCK, LAYERS, LIMITS, NAMESPACES, SECCOMP
 from coursework.grading.execution.sandbox import Limits, Sandbox, WeakIsolation, run_notebooks
 from coursework.grading.execution.warm_parent import WarmParent
+from coursework.grading.record import Isolation
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="student code runs on Linux only"
@@ -37,7 +38,7 @@ def test_every_attempt_is_stopped_and_the_result_says_by_what():
         assert sandbox.report["not stopped"] == []
         result = sandbox.run(HONEST)
     assert result["answers"]["q"]["plain"]["nodes"] == [["integer", "42"]]
-    assert result["isolation"]["weak"] is False
+    assert Isolation.from_json(result["isolation"]).weak is False
     assert {SECCOMP, LIMITS, "no privileges"} <= set(result["isolation"]["layers"])
     assert {NAMESPACES, LANDLOCK} & set(result["isolation"]["layers"])
 
@@ -52,7 +53,7 @@ def test_no_student_code_runs_where_isolation_is_weak(without):
     assert "--allow-weak-isolation" in str(refused.value)
     # Only who says so gets it, and every result tells.
     [result] = run_notebooks([HONEST], workers=1, without=without, allow_weak_isolation=True)
-    assert result["isolation"]["weak"] is True
+    assert Isolation.from_json(result["isolation"]).weak is True
     assert result["isolation"]["not stopped"]
     assert not set(without) & set(result["isolation"]["layers"])
 

@@ -83,7 +83,6 @@ def test_without_the_check_the_variable_counts(sandbox):
         "outcome": "recorded",
         "plain": integer(4),
         "from": "variable",
-        "cell": None,
     }
     assert result["answers"]["blank"]["plain"]["value"] == ["blank"]
     assert result["answers"]["none"] == {"outcome": "missing"}
