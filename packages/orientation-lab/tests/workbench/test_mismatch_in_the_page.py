@@ -236,8 +236,15 @@ def test_both_say_the_same_of_broken_text(count):
 def test_every_example_of_the_page_shows_what_it_is_there_for():
     verdicts = []
     for first, second, *sides in EXAMPLES.values():
-        programs = [side.get("program") for side in sides] or [None, None]
-        verdicts.append(
-            explain(first, second, first_program=programs[0], second_program=programs[1]).verdict
+        known = [dict(side) for side in sides] or [{}, {}]
+        programs = [side.pop("program", None) for side in known]
+        found = explain(
+            first,
+            second,
+            first_program=programs[0],
+            second_program=programs[1],
+            first_declared=known[0],
+            second_declared=known[1],
         )
+        verdicts.append(found.verdict)
     assert verdicts == ["named"] * 7 + ["undecided", "unrelated"]

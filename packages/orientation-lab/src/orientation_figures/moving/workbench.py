@@ -34,6 +34,8 @@ EXAMPLES = {
         "<Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>",
         '"rotation": [0.16907575, 0.75588035, -0.27217138, 0.57094753]\n'
         '"rotation": [0.48353603, 0.33687159, -0.20870360, 0.78048271]',
+        {},
+        {"program": "glTF"},
     ),
     "Angles in Unity (Quaternion.js 12)": (
         "w = 0.87851f; x = -0.24479f; y = -0.18215f; z = 0.36758f;",
@@ -49,6 +51,8 @@ EXAMPLES = {
     "An autopilot in NED and FRD, ROS in ENU and FLU": (
         "0.9541 0.1967 0.2260\n-0.2978 0.7045 0.6442\n-0.0325 -0.6819 0.7307",
         "0.1967 0.9541 -0.2260\n-0.7045 0.2978 0.6442\n0.6819 0.0325 0.7307",
+        {"way": "rows"},
+        {"way": "rows"},
     ),
     "Level and turned about the vertical only: more than one answer": (
         "0.8776 0.4794 0\n-0.4794 0.8776 0\n0 0 1",

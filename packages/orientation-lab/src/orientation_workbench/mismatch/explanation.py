@@ -177,7 +177,8 @@ def explain(
         names = _names(best, [chain for chain in alike if _usual_order(chain, known)], ways)
         verdict = "undecided" if names else "named"
     further = ""
-    if verdict == "undecided" and not names:
+    open_still = verdict == "undecided" or (verdict == "same" and len(classes) > 1)
+    if open_still and not names:
         further = _further_pose(classes, readings, sides)
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
     return Explanation(
@@ -437,7 +438,9 @@ def _further_pose(chains, readings, sides):
     depends on how its numbers are to be read. So the pose must decide by each reading of the first
     side that fits, also by those that say the same as another.
     """
-    if len(chains) > LOOKED_AT or len(readings) > READ_AS or len(chains) == 1:
+    # From a special pose a turn or two leave zeros in one side's numbers: special again.
+    special = any(_is_special(poses) for poses, _ in sides)
+    if special or len(chains) > LOOKED_AT or len(readings) > READ_AS or len(chains) == 1:
         return table.FURTHER_POSES[-1][0]
     for words, turns in table.FURTHER_POSES:
         if all(

@@ -690,8 +690,9 @@ function turnedNumbers(reading, numbers, turns) {
   return numbersFromDcm(reading, dcm.map((row) => scale(hand, row)))[0];
 }
 
-function furtherPose(chains, readings, poses, table) {
-  if (chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return table['further poses'].at(-1)[0];
+function furtherPose(chains, readings, poses, special, table) {
+  // From a special pose a turn or two leave zeros in one side's numbers: special again.
+  if (special || chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return table['further poses'].at(-1)[0];
   const decides = ([, turns]) => readings.every((reading) => {
     const own = chains.filter(({ first }) => first.kind === reading.kind);
     const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table);
@@ -844,7 +845,7 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
   });
   return { ...asked, remarks, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
-    furtherPose: verdict !== 'undecided' || asked.names.length ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], table) };
+    furtherPose: !(verdict === 'undecided' || (verdict === 'same' && chains.length > 1)) || asked.names.length ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], special, table) };
 }
 
 // The orientations of both sides at one pose, as the simplest chain reads them: what is drawn.
