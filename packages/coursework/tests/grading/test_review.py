@@ -550,7 +550,7 @@ def test_a_hundred_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded)
 #: Before the command runs: what Windows has not, and how it locks a file. What
 #: others made knows its system already.
 ON_WINDOWS = """
-import os, subprocess, sys, types
+import os, shutil, subprocess, sys, types
 import nbformat, sympy, tornado.httpserver, tornado.ioloop, tornado.web
 for name in ("fcntl", "resource", "pwd", "grp", "termios"):
     sys.modules[name] = None
@@ -561,6 +561,8 @@ def refuses_folders(path, *more, **others):
         raise PermissionError(13, "Permission denied")
     return really_open(path, *more, **others)
 os.open = refuses_folders
+# Nor does Python remove folders there by opening them.
+shutil._use_fd_functions = False
 held = set()
 def locking(number, mode, count):
     place = (os.fstat(number).st_ino, os.lseek(number, 0, os.SEEK_CUR))
