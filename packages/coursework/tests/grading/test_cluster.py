@@ -20,6 +20,7 @@ from coursework.grading import commands
 from coursework.grading.execution import cluster_keys
 from coursework.grading.execution.sandbox import Limits, given_up
 from coursework.grading.grade import grade
+from coursework.grading.judging.journal import Journal
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [
@@ -103,7 +104,7 @@ def contents(folder):
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name not in ("run.log", "lock")
+        if path.is_file() and path.name not in ("run.log", "lock", "journal.jsonl")
     }
 
 
@@ -134,6 +135,12 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, t
             killer.join()
     assert lost and said["graded"] == 7
     assert contents(there) == contents(here)
+    # The journal says besides when marks were given, and names each line by chance.
+    given_there, given_here = (
+        {key: given.marks for key, given in Journal(folder).standing().given.items()}
+        for folder in (there, here)
+    )
+    assert given_there == given_here
 
 
 HOSTILE = """
