@@ -98,7 +98,7 @@ new-question: setup
 	@$(RUN) -m tools.new question "$(NAME)" "$(TITLE)" $(if $(KIND),--kind "$(KIND)")
 
 check: $(VENV)/ready-test setup
-	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/chapters/test_chapters.py
+	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_budget.py tests/chapters/test_chapters.py
 
 # Tests that are slow and rarely fail are left to `make test-all`.
 test: $(VENV)/ready-test book

@@ -73,13 +73,13 @@ def of_metadata(about: email.message.Message, texts: list[str]) -> Work:
         for line in about.get_all("Classifier", [])
         if line.startswith("License ::")
     ]
-    stated = about["License-Expression"] or ", ".join(classifiers) or about["License"] or ""
+    stated = about.get("License-Expression") or ", ".join(classifiers) or about.get("License", "")
     sources = [address for name, address in addresses.items() if "ource" in name or "epo" in name]
     return Work(
         about["Name"],
         about["Version"],
         stated.strip().partition("\n")[0],
-        [*sources, *addresses.values(), about["Home-page"] or ""][0],
+        [*sources, *addresses.values(), about.get("Home-page", "")][0],
         "\n\n".join(texts),
     )
 

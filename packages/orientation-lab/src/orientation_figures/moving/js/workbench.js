@@ -5,7 +5,7 @@ import { picture, SIZE } from './workbench_picture.js';
 import { button, calm, change, choice, element, follow, glide, group, liveText, numberField,
   onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
 
-const UNKNOWN = 'not known', SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
+const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
 // Of one engine and its prose: what the answer is called.
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
@@ -22,7 +22,7 @@ export function takenUp(content, programs = []) {
   for (const side of ['first', 'second']) {
     if (typeof content[side] === 'string' && content[side].length <= LONGEST) state[side] = content[side];
     const { program = UNKNOWN, kind = UNKNOWN, sequence = UNKNOWN, order = UNKNOWN, way = UNKNOWN } = content[`${side}_is`] ?? {};
-    const known = ways.includes(way) && [UNKNOWN, 'wxyz', 'xyzw'].includes(order) && KINDS.includes(kind) && [UNKNOWN, ...SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
+    const known = ways.includes(way) && [UNKNOWN, 'wxyz', 'xyzw'].includes(order) && KINDS.includes(kind) && [UNKNOWN, ...OFFERED_SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
     if (known) state[`${side}_is`] = { program, kind, sequence, order, way };
   }
   if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
@@ -51,7 +51,7 @@ export function render({ model, el }) {
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
     const kind = choice({ name: `The ${side} numbers are`, options: [[UNKNOWN, 'numbers of any kind'], ...KINDS.slice(1).map((one) => [one, one])], hidden: true, change: (value) => set({ kind: value }) });
-    const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'any sequence'], ...SEQUENCES.map((one) => [one, [...one].join('-')])],
+    const sequence = choice({ name: `Sequence of the ${side} angles`, options: [[UNKNOWN, 'any sequence'], ...OFFERED_SEQUENCES.map((one) => [one, [...one].join('-')])],
       hidden: true, change: (value) => set({ sequence: value }) });
     const program = choice({ name: `The ${side} program`, options: [[UNKNOWN, 'any program'], ...programs.map((one) => [one, one])], hidden: true,
       change: (value) => set({ program: value }) });

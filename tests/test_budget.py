@@ -1,0 +1,61 @@
+"""The house stays small: each package keeps to its line in the table of CONTRIBUTING.md."""
+
+import ast
+import re
+import subprocess
+from collections import Counter
+
+import pytest
+from places import REPOSITORY
+
+#: A folder of CONTRIBUTING's table, and the numbers in its line: statements, those of tests, and
+#: lines of JavaScript.
+ROW = re.compile(r"^\| `([^`]+)` \| ([\d,]+) \| ([\d,]+) \| ([\d,]+) \|", re.M)
+ALLOWED = {
+    folder: tuple(int(number.replace(",", "")) for number in numbers)
+    for folder, *numbers in ROW.findall((REPOSITORY / "CONTRIBUTING.md").read_text("utf8"))
+}
+
+
+def statements(text):
+    """The statements of a module; docstrings and comments are none."""
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
+    return sum(
+        not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)) for node in nodes
+    )
+
+
+def counted():
+    """What each folder of the table holds."""
+    named = subprocess.check_output(["git", "ls-files", "-z"], cwd=REPOSITORY, text=True).split("\0")
+    found = {folder: Counter() for folder in ALLOWED}
+    for name in filter(None, named):
+        folder = next((folder for folder in ALLOWED if name.startswith(folder + "/")), None)
+        if folder is None or not (REPOSITORY / name).is_file():
+            continue
+        if name.endswith(".py"):
+            parts = name.split("/")
+            tests = {"tests", "examples"} & set(parts) or parts[-1].startswith(("test_", "conftest"))
+            kind = "tests" if tests else "statements"
+            found[folder][kind] += statements((REPOSITORY / name).read_text("utf8"))
+        elif name.endswith((".js", ".mjs")):
+            found[folder]["lines"] += (REPOSITORY / name).read_text("utf8").count("\n")
+    return found
+
+
+COUNTED = counted()
+
+
+@pytest.mark.parametrize("folder", ALLOWED)
+def test_a_package_keeps_to_its_budget(folder):
+    held = tuple(COUNTED[folder][kind] for kind in ("statements", "tests", "lines"))
+    assert all(number <= most for number, most in zip(held, ALLOWED[folder])), (
+        f"{folder} holds {held} (statements, statements of tests, lines of JavaScript), where "
+        f"CONTRIBUTING.md allows {ALLOWED[folder]}: take something out, or raise the line there, "
+        "say why in it, and lower another"
+    )
+
+
+def test_every_package_has_a_budget():
+    packages = {f"packages/{path.name}" for path in (REPOSITORY / "packages").iterdir()}
+    assert packages | {"src/orientation", "tests", "tools"} == set(ALLOWED)
