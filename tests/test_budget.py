@@ -27,7 +27,9 @@ def statements(text):
 
 def counted():
     """What each folder of the table holds."""
-    named = subprocess.check_output(["git", "ls-files", "-z"], cwd=REPOSITORY, text=True).split("\0")
+    named = subprocess.check_output(["git", "ls-files", "-z"], cwd=REPOSITORY, text=True).split(
+        "\0"
+    )
     found = {folder: Counter() for folder in ALLOWED}
     for name in filter(None, named):
         folder = next((folder for folder in ALLOWED if name.startswith(folder + "/")), None)
@@ -35,7 +37,9 @@ def counted():
             continue
         if name.endswith(".py"):
             parts = name.split("/")
-            tests = {"tests", "examples"} & set(parts) or parts[-1].startswith(("test_", "conftest"))
+            tests = {"tests", "examples"} & set(parts) or parts[-1].startswith(
+                ("test_", "conftest")
+            )
             kind = "tests" if tests else "statements"
             found[folder][kind] += statements((REPOSITORY / name).read_text("utf8"))
         elif name.endswith((".js", ".mjs")):

@@ -118,6 +118,8 @@ def test_who_dictates_hello_to_a_page_turns_nothing(page, site, address):
     page.goto(site + address)
     page.wait_for_load_state("load")
     page.locator("h1").first.click()
+    # Long pages are laid out in parts, the last of them while the reader begins.
+    page.wait_for_function("!document.documentElement.classList.contains('in-parts')")
     before = page.evaluate("[location.href, document.documentElement.className]")
     page.keyboard.type("hello/all?")
     page.wait_for_timeout(300)

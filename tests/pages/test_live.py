@@ -298,7 +298,7 @@ def test_pages_hardly_grow(name):
     button = '<button class="run-page">Run this page</button>' * 3
     added = [(HTML / "_static" / "live.js").read_bytes(), (scripts.JS / "page.css").read_bytes()]
     added.append((data[0] + button).encode())
-    assert sum(len(gzip.compress(part)) for part in added) < 5000
+    assert sum(len(gzip.compress(part)) for part in added) < 5200
 
 
 def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
@@ -343,7 +343,7 @@ def test_download_is_small_enough():
     files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
     assert lock["bytes"] == sum(path.stat().st_size for path in files)
     files += (HTML / scripts.folder_name()).iterdir()
-    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_250_000
+    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_300_000
 
 
 def test_lock_names_what_is_there():

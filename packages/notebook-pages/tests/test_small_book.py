@@ -15,7 +15,7 @@ from bs4 import BeautifulSoup
 
 HERE = Path(__file__).parent
 #: Where the set-up of this working copy has put what it fetches.
-FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", HERE.parents[1]))
+FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", HERE.parents[2]))
 PAGES = ("index", "levers", "triangles")
 
 

@@ -71,6 +71,8 @@ UNUSED_FILES = (
     "sphinx-design*",
     "play-solid.svg",
     "copy-button.svg",
+    "minus.png",
+    "plus.png",
     "copybutton_funcs.js",
     "webpack-macros.html",
     "sbt-webpack-macros.html",

@@ -48,6 +48,7 @@ DRAW = "\n".join(
 )
 #: Not an answer, or not there without SciPy.
 NO_ANSWERS = {"check_dcm", "diagnose", "dcm_from_scipy_rotation", "scipy_rotation_from_dcm"}
+NO_ANSWERS |= {"jacobian", "propagate_covariance", "smooth"}
 
 
 def cells_of(path):
