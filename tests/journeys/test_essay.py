@@ -6,7 +6,8 @@ ESSAY = "rotations.html"
 # The address of each stop, and its name.
 STOPS = """() => [...document.querySelectorAll('[data-stop]')]
   .map((stop) => [stop.closest('section').id, stop.dataset.stop])"""
-SIZES = [(1300, 900), (1024, 700), (740, 360), (380, 760), (320, 200)]
+SIZES = [(1300, 900), (1024, 700), (740, 360), (380, 760)]
+ZOOMED = (320, 200)  # a window of 1280 by 800 at 400 %
 # Whether the place is seen: within the window, and under nothing else.
 SEEN = """(box) => {
   const { left, top, width, height } = box.getBoundingClientRect();
@@ -44,8 +45,20 @@ def test_a_link_to_a_stop_shows_that_stop(page, site, stop):
     heading = page.locator(f"#{stop} > h2")
     assert heading.evaluate(SEEN)
     text = page.locator(f"#{stop} > p").first
-    if page.viewport_size["height"] > 300:
-        assert text.evaluate(SEEN), "the figure lies over what it is to show"
+    assert text.evaluate(SEEN), "the figure lies over what it is to show"
+
+
+@pytest.mark.parametrize("page", [ZOOMED], indirect=True)
+@pytest.mark.parametrize("stop", ["two-motors", "lock", "your-turn"])
+def test_at_400_percent_a_link_to_a_stop_shows_its_text_and_its_still(page, site, stop):
+    """The moving figure would fill the window; each stop has its still instead."""
+    page.goto(f"{site}{ESSAY}#{stop}")
+    page.wait_for_load_state("networkidle")
+    assert page.locator(f"#{stop} > h2").evaluate(SEEN)
+    assert page.evaluate("document.documentElement.scrollWidth") <= ZOOMED[0]
+    still = page.locator(f"#{stop} svg, #{stop} img").first
+    still.scroll_into_view_if_needed()
+    assert still.is_visible()
 
 
 def test_the_figure_is_whole_and_leaves_room_for_the_text(page, site):
