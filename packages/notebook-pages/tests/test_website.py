@@ -421,6 +421,6 @@ def test_of_a_faulty_build_nothing_is_left(tmp_path, monkeypatch, end):
     monkeypatch.setattr("notebook_pages.lite.is_compiled", lambda: True)
     monkeypatch.setitem(sys.modules, "jupyter_book.cli.main", SimpleNamespace(main=build))
     (tmp_path / "_build" / "html").mkdir(parents=True)
-    with pytest.raises(SystemExit, match="not built"):
+    with pytest.raises(SystemExit, match="could not be built"):
         book.main()
     assert not (tmp_path / "_build" / "html").exists()

@@ -365,7 +365,7 @@ def test_mathematics_in_messages():
 )
 def test_one_function_makes_a_message_a_page_and_loses_no_sign(said, shown):
     assert to_html(said) == pages.message(said) == shown
-    assert plain_text("`2*a*b`, 2*a*b and $2\\pi$") == "2*a*b, 2*a*b and 2pi"
+    assert plain_text("`2*a*b`, 2*a*b and $2\\pi$") == "2*a*b, 2*a*b and 2 pi"
 
 
 def test_a_number_is_shown_with_the_digits_that_make_it_nearly_right():

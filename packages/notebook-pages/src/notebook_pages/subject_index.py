@@ -34,7 +34,9 @@ class SubjectIndex(SphinxDirective):
 
 def section_of(node):
     """The name of the section in which ``node`` stands."""
-    while node is not None and not (isinstance(node, nodes.section) and node["ids"]):
+    # The text of an exercise is a section whose name goes later: what counts is what holds it.
+    unnamed = ([], ["exercise-content"], ["solution-content"])
+    while node is not None and not (isinstance(node, nodes.section) and node["ids"] not in unnamed):
         node = node.parent
     return node["ids"][0] if node is not None else ""
 

@@ -906,7 +906,7 @@ def test_the_values_of_an_answer_do_not_stand_in_what_is_sealed():
 @pytest.mark.parametrize(
     ("about", "words"),
     [
-        ({"kind": "riddle"}, "none of"),
+        ({"kind": "riddle"}, "there is no kind .riddle."),
         ({"frames": None}, "needs 'frames'"),
         ({"symbols": "theta"}, "cannot be read"),
         ({"turns": TURNS[::-1]}, "is not the right answer"),

@@ -191,7 +191,7 @@ def test_a_planted_secret_is_found(trial, tmp_path):
                 ("code", SOLUTION),
                 ("code", f"check('other/about-x', A_C_N)\n{HIDDEN.replace('trial', 'other')}"),
             ],
-            "named 'trial/...'",
+            "name each question of this notebook 'trial/...'",
         ),
         (
             [

@@ -123,7 +123,7 @@ def test_what_is_typed_is_shown_as_text():
 
 
 def test_bad_arguments():
-    with pytest.raises(ValueError, match="two turns in a row"):
+    with pytest.raises(ValueError, match="two successive rotations"):
         SequenceExplorer("zzx")
     with pytest.raises(ValueError):
         SequenceExplorer(angles=("psi", "theta"))
