@@ -64,6 +64,7 @@ def test_every_file_that_is_served_as_others_made_it_is_covered():
         "plain-numpy",
         "piplite",
         "pyodide-kernel",
+        "widgetsnbextension",
         "ipykernel",
     }
 
