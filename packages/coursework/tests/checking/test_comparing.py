@@ -121,13 +121,22 @@ def test_a_symbol_that_is_missing_is_named():
 
 
 def test_degrees_are_told_from_radians():
-    turns = Question("vector", salt="s", tolerance=0.001, length=2)
+    turns = Question("vector", salt="s", tolerance=0.001, length=2, quantity="angle")
     known = {text_of(turns, [0.5, -1]): Locker((CORRECT,))}
     known[text_of(turns, [-0.5, -1])] = Locker((mistake("A sign."),))
     degrees = said(turns, known, [math.degrees(0.5), math.degrees(-1)])
     assert degrees[:2] == ("wrong", "in degrees") and "in degrees" in degrees[2]
     both = said(turns, known, [math.degrees(-0.5), math.degrees(-1)])
     assert both[1] == "in degrees, and authored" and both[2].endswith("A sign.")
+
+
+def test_what_may_be_asked_in_degrees_is_not_told_of_them_falsely():
+    """Two degrees and 0.0349 are one number: a mistake in the one is none in the other."""
+    box = Question("vector", salt="s", tolerance=0.005, length=2)
+    known = {text_of(box, [10, 0.2]): Locker((CORRECT,))}
+    known[text_of(box, [0.17453, 0.035])] = Locker((mistake("The angle is in radians."),))
+    assert said(box, known, [10, 2])[1] == ""
+    assert said(box, known, [572.9578, 11.459])[2].endswith("Does the question ask for radians?")
 
 
 def test_a_reply_holds_what_was_opened():

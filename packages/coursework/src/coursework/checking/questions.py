@@ -46,6 +46,8 @@ NOT_IN_THIS_CATALOGUE = (
 ALWAYS_WRONG = ("not unit length",)
 #: The note of an answer in degrees, where radians are asked for.
 IN_DEGREES = "in degrees"
+#: What is said of it where the question does not tell its unit to the check.
+PERHAPS_DEGREES = "Multiplied by $\\pi/180$, this is right. Does the question ask for radians?"
 #: Up to so many tolerances from the right answer, its locker opens,
 #: and one is told that it is close.
 NEARLY = 3
@@ -546,8 +548,9 @@ def _not_known(
     for (slip, why, turned), of_slip in zip(others, lockers):
         known = _known_in(question, turned, of_slip)
         if known and known.outcome == "correct" and slip == IN_DEGREES:
-            return Reply(name, "wrong", slip, [message(question, slip, {})])
-        if known and known.outcome != "correct":
+            said = message(question, slip, {}) if question.quantity else PERHAPS_DEGREES
+            return Reply(name, "wrong", slip, [said])
+        if known and known.outcome != "correct" and (question.quantity or slip != IN_DEGREES):
             note, details = known.notes[0]
             if note == slip:
                 # What is right once a slip is undone twice is the right answer
@@ -599,16 +602,12 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
             numbers = [undo(question, numbers) for numbers in reading.numbers]
             if None not in numbers:
                 yield name, said, Reading(numbers)
+        # Without a quantity the question may ask for degrees: then only the right answer counts.
         angles = question.quantity in (None, "angle")
         if angles and question.kind_of_values in ("expression", "vector", "matrix"):
             said = "it is in degrees, and in radians it has another mistake."
-            yield (
-                IN_DEGREES,
-                said,
-                Reading(
-                    [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
-                ),
-            )
+            radians = [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
+            yield IN_DEGREES, said, Reading(radians)
 
 
 def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
