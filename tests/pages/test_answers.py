@@ -58,7 +58,11 @@ class Tab:
         return self
 
     def write(self, number, code):
-        self.page.locator("div.cell").nth(number - 1).locator(".cm-content").focus()
+        cell = self.page.locator("div.cell").nth(number - 1)
+        # Only the cells of answers have an editor from the beginning.
+        if not cell.locator(".cm-content").count():
+            cell.locator(".cell_input pre").click()
+        cell.locator(".cm-content").focus()
         self.page.keyboard.press("Control+a")
         self.page.keyboard.insert_text(code)
         self.wait(number, code)
