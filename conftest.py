@@ -65,7 +65,18 @@ def pytest_configure(config):
     config.addinivalue_line(
         "markers",
         "sampled(number, of=None): of a test's cases, of a file's tests, or of a file's tests with "
-        "the same `of`, only so many run every time, spread evenly over all; the rest are long",
+        "the same `of`, only so many run, spread evenly over all; the rest are further cases",
+    )
+    config.addinivalue_line(
+        "markers", "further: a case much like others that run; only `--every-case` runs it too"
+    )
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--every-case",
+        action="store_true",
+        help="also run the cases that are much like others (for whoever changes what they test)",
     )
 
 
@@ -87,21 +98,24 @@ def pytest_collection():
 
 
 @pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
-def pytest_collection_modifyitems(items):
+def pytest_collection_modifyitems(config, items):
     cases = defaultdict(list)
     for item in items:
         for node, marker in item.iter_markers_with_node("sampled"):
-            if not item.get_closest_marker("long"):
-                name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked
-                if "of" in marker.kwargs:
-                    name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
-                cases[name, marker.args[0]].append(item)
+            name = node.nodeid.partition("[")[0]  # of the test, or of the file that is marked
+            if "of" in marker.kwargs:
+                name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
+            cases[name, marker.args[0]].append(item)
             break  # the closest
     for (_, number), found in cases.items():
         chosen = spread(found, number)
         for item in found:
             if item not in chosen:
-                item.add_marker(pytest.mark.long)
+                item.add_marker(pytest.mark.further)
+    if not config.getoption("every_case"):
+        further = [item for item in items if item.get_closest_marker("further")]
+        config.hook.pytest_deselected(items=further)
+        items[:] = [item for item in items if not item.get_closest_marker("further")]
 
 
 def pytest_unconfigure():

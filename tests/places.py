@@ -27,11 +27,11 @@ def html_pages():
 
 
 def every_day(cases, *chosen):
-    """Cases for a test of which those that are chosen run every day; the others,
-    which are much like them, are long.
+    """Cases for a test of which those that are chosen run; the others are much like them, and
+    only `--every-case` runs them.
     """
     if lost := set(chosen) - set(cases):
         raise ValueError(f"not among the cases: {lost}")
     return [
-        case if case in chosen else pytest.param(case, marks=pytest.mark.long) for case in cases
+        case if case in chosen else pytest.param(case, marks=pytest.mark.further) for case in cases
     ]

@@ -50,6 +50,7 @@ CHAPTERS = [name for name in PAGES if not name.startswith(STORED)]
 
 
 @pytest.mark.long
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_results_equal_the_stored_ones(engine, site, name):
     compare(engine, site, name)

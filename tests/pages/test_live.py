@@ -260,6 +260,7 @@ def test_results_of_a_page_equal_the_stored_ones(page_that_has_run):
 
 # The build has run all cells with the same Python code.
 @pytest.mark.long
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("name", [name for name in PAGES if not name.startswith(STORED)])
 def test_results_equal_the_stored_ones(context, site, name):
     page = Page(context, site, name)

@@ -158,6 +158,7 @@ def test_any_form_of_the_right_answer_passes(one):
 
 
 @pytest.mark.long
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
 def test_a_thousand_forms_of_the_right_answer_pass(one):
     try_forms(one, 1000)
@@ -946,7 +947,7 @@ def test_products_of_quaternions_in_the_other_order_are_named():
 
 @pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
 @pytest.mark.parametrize(
-    "count", [3, pytest.param(2, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)]
+    "count", [2, 3, 4]
 )
 def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
     """And not as the transpose with all the other signs, which is

@@ -16,7 +16,7 @@ NAMES = [path.stem for path in sorted(SOURCES.glob("*.ipynb")) if path.stem != "
     ("name", "last"),
     [
         ("simple-orientations", 2),
-        *(pytest.param(name, None, marks=pytest.mark.long) for name in NAMES),
+        *(pytest.param(name, None, marks=pytest.mark.further) for name in NAMES),
     ],
 )
 def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name, last):
