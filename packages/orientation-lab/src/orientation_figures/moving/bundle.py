@@ -30,10 +30,20 @@ OWN |= {
 #: Figures that use packages of npm: what their page loads when they are seen is built from this
 #: script, and each has a style sheet of its own.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
-#: Fetches that, when the page stands and the figure is in sight.
+#: Fetches that, when the page stands and the figure is in sight. Where scripts run the stills are
+#: text until somebody needs them: on paper, and where figure and text have no room beside each
+#: other (as in essay.css).
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
+const unfold = () => { for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent; };
+addEventListener('beforeprint', unfold);
+const small = matchMedia('(max-width: 599px) and (max-height: 420px)');
+small.addEventListener('change', unfold);
 const begin = () => {
+  if (small.matches) {
+    unfold();
+    document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });  // the page has grown
+  }
   const seen = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     seen.disconnect();

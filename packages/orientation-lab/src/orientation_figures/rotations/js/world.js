@@ -696,17 +696,6 @@ const turnedPoint = (axis, angle, point) => {
   return point.map((entry, k) => c * entry + s * across[k] + (1 - c) * along * axis[k]);
 };
 
-// Where scripts run the stills are text, until somebody needs them.
-const unfold = () => { for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent; };
-addEventListener('beforeprint', unfold);
-// As in essay.css: where figure and text have no room beside each other, each stop has its still.
-const small = matchMedia('(max-width: 599px) and (max-height: 420px)');
-small.addEventListener('change', unfold);
-if (small.matches) {
-  unfold();
-  document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });   // the page has grown
-}
-
 for (const figure of document.querySelectorAll('.world:not([data-ready], [data-stills])')) {
   const sections = [...document.querySelectorAll('[data-stop]')].map((still) => ({ id: still.dataset.stop, place: still.closest('section') ?? still, still }));
   try {
@@ -716,7 +705,7 @@ for (const figure of document.querySelectorAll('.world:not([data-ready], [data-s
     if (error.message !== 'WebGL') throw error;
     // Without WebGL the stills take turns in the place of the figure.
     figure.dataset.stills = '';
-    unfold();
+    for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent;
     const still = figure.querySelector('.still');
     const show = () => {
       const line = 0.55 * innerHeight, now = sections.filter(({ place }) => place.getBoundingClientRect().top <= line).at(-1) ?? sections[0];
