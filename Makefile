@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-all take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
+.PHONY: help setup book serve new-chapter new-question check test test-rest take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -26,7 +26,7 @@ help:
 	@echo "make new-question NAME=belt-trick/twist TITLE='A twist' KIND='quaternion'   add a question to it"
 	@echo "make check      check style, types, pins and the parts of each chapter (builds nothing)"
 	@echo "make test       test the book and its software (takes minutes)"
-	@echo "make test-all   run every test, as we do every night"
+	@echo "make test-rest  run the tests that make test leaves out: the whole book on paper, other browsers, clusters"
 	@echo "make notebooks  run every notebook and store its outputs"
 	@echo "make release    build the exercises from the notebooks with solutions, and test them (ONLY=belt-trick builds one)"
 	@echo "make anywhere   compare all numbers with those of other processors and of WebAssembly"
@@ -100,15 +100,15 @@ new-question: setup
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_budget.py tests/chapters/test_chapters.py
 
-# Tests that are slow and rarely fail are left to `make test-all`.
+# Tests that are slow and rarely fail are left to `make test-rest`. What a change must pass is both: see .ci/run.
 test: $(VENV)/ready-test book
 	@$(RUN) -m notebook_pages.browser || true
 	@$(RUN) -m pytest -n auto -m "not long"
 
 # A browser prints the PDF. Without a browser, the tests that need one are skipped.
-test-all: $(VENV)/ready-test book
+test-rest: $(VENV)/ready-test book
 	@if $(RUN) -m notebook_pages.browser; then $(RUN) -m notebook_pages.whole_book; fi
-	@$(RUN) -m pytest -n auto
+	@$(RUN) -m pytest -n auto -m long
 
 notebooks: setup
 	@$(RUN) -m notebook_pages.notebooks

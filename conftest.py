@@ -12,7 +12,7 @@ import pytest
 import stored_outputs
 import times
 from places import BROWSER_REQUIRED, HTML, PATIENCE
-from seed import SEED, spread
+from seed import spread
 from xdist.scheduler import LoadFileScheduling
 
 from notebook_pages import warm_kernels
@@ -78,10 +78,6 @@ def pytest_addoption(parser):
         action="store_true",
         help="also run the cases that are much like others (for whoever changes what they test)",
     )
-
-
-def pytest_report_header():
-    return f"what is drawn by lot is drawn from BOOK_TEST_SEED={SEED!r}"
 
 
 @pytest.hookimpl(wrapper=True)

@@ -3,8 +3,6 @@ cell prints what is rounding alone.
 """
 
 import re
-import subprocess
-import sys
 
 import nbformat
 import pytest
@@ -118,24 +116,3 @@ def test_no_cell_prints_rounding(path):
             assert said or not 0 < abs(float(found[0])) < 1e-12, (
                 f"cell {number} prints {found[0]}: {text}"
             )
-
-
-@pytest.mark.parametrize("day", [(2026, 11, 23), (2027, 2, 28), (2028, 2, 29)])
-def test_the_same_is_run_and_drawn_every_day(day):
-    program = f"""
-import datetime, os
-class Today(datetime.date):
-    @classmethod
-    def today(cls):
-        return cls{day}
-datetime.date = Today
-os.environ.pop("BOOK_TEST_SEED", None)
-import seed
-print(seed.SEED, seed.spread(range(100), 7))
-"""
-    told = subprocess.check_output(
-        [sys.executable, "-c", program],
-        cwd=REPOSITORY / "packages" / "coursework" / "tests",
-        text=True,
-    )
-    assert told == "every day [7, 21, 35, 50, 64, 78, 92]\n"

@@ -202,7 +202,7 @@ def main():
         changed = path.read_text("utf8") != text
         path.write_text(text, "utf8")
         print(f"{path.relative_to(REPOSITORY)}: {'renewed' if changed else 'as it was'}")
-    print("Now: make test-all")
+    print("Now: .ci/run")
 
 
 if __name__ == "__main__":

@@ -149,7 +149,7 @@ def try_forms(one, number):
         number = min(number, 20)
     for _ in range(number):
         form = random_form(one.public, one.answer, chance)
-        assert passes(one, form), (f"BOOK_TEST_SEED={SEED}", form)
+        assert passes(one, form), form
 
 
 @pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
@@ -946,9 +946,7 @@ def test_products_of_quaternions_in_the_other_order_are_named():
 
 
 @pytest.mark.parametrize("kind", ["direction cosine matrix", "quaternion"])
-@pytest.mark.parametrize(
-    "count", [2, 3, 4]
-)
+@pytest.mark.parametrize("count", [2, 3, 4])
 def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
     """And not as the transpose with all the other signs, which is
     the same and which nobody has done.

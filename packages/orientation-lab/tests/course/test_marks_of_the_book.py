@@ -11,7 +11,7 @@ SOURCES = find_course().sources
 NAMES = [path.stem for path in sorted(SOURCES.glob("*.ipynb")) if path.stem != "chapters"]
 
 
-# Every day two variants of one notebook; at night all of all.
+# Two variants of one notebook; with --every-case all of all.
 @pytest.mark.parametrize(
     ("name", "last"),
     [

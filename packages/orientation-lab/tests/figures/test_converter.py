@@ -96,13 +96,13 @@ def known(side):
     }
 
 
-@pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.long)])
+@pytest.mark.parametrize("everything", [False, pytest.param(True, marks=pytest.mark.further)])
 def test_converter_and_workbench_mean_the_same_by_a_program(everything):
     """What the converter writes for a second program is what, for the
     workbench, both manuals promise.
 
     Each program beside this book's, and each two neighbours of those whose
-    axes are known; at night all pairs.
+    axes are known; with --every-case all pairs.
     """
     with_axes = [program for program, facts in PROGRAMS.items() if facts.get("body")]
     pairs = [("this book", program) for program in PROGRAMS] + list(itertools.pairwise(with_axes))

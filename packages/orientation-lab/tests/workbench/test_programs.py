@@ -120,7 +120,7 @@ ANSWERS = json.loads(STORED.read_text("utf8"))
 
 @pytest.mark.parametrize("program", ANSWERS)
 def test_programs_that_were_run_answered_as_the_table_says(program):
-    """``python -m tools.programs`` asks them anew every night."""
+    """``python -m tools.programs`` asks them anew."""
     assert PROGRAMS[program]["version"].endswith(ANSWERS[program]["version"])
     truth = np.array(
         [quaternion_from_axis_angle(np.array(axis), angle) for axis, angle in ORIENTATIONS]

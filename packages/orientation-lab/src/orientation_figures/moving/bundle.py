@@ -35,14 +35,18 @@ BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
 #: other (as in essay.css).
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
-const unfold = () => { for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent; };
+const unfold = () => {
+  const folded = document.querySelectorAll('[data-stop] > noscript');
+  for (const still of folded) still.outerHTML = still.textContent;
+};
 addEventListener('beforeprint', unfold);
 const small = matchMedia('(max-width: 599px) and (max-height: 420px)');
 small.addEventListener('change', unfold);
 const begin = () => {
   if (small.matches) {
     unfold();
-    document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });  // the page has grown
+    // The page has grown.
+    document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });
   }
   const seen = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
