@@ -31,7 +31,7 @@ def _length_missing(f: NumberFunctions[Number], x: Number, y: Number, z: Number)
     # 1, which is more than the tolerance, where no direction can be computed: beyond these limits
     # the square of the length is no longer a number with all its digits.
     square = x * x + y * y + z * z
-    return f.where((square <= SHORTEST**2) | (square >= SHORTEST**-2), 1, 0)
+    return f.where((square > SHORTEST**2) & (square < SHORTEST**-2), 0, 1)
 
 
 def _explain_zero(components: Sequence[float], where: str) -> None:
@@ -47,7 +47,7 @@ def _explain_zero(components: Sequence[float], where: str) -> None:
     )
 
 
-AXIS_GUARD = Guard(_length_missing, _explain_zero, 3)
+AXIS_GUARD = Guard(_length_missing, _explain_zero, 3, finite=True)
 
 
 @overload

@@ -175,11 +175,16 @@ class _Numbers(Variable):
     ) -> Array:
         import numpy
 
-        arrays = [
-            number_array(self.given if isinstance(value, _Numbers) else value, item, name)
-            for name, value, item in arguments
-        ]
-        batch, flat = columns_of(arrays, arguments)
+        batch, flat = columns_of(
+            [
+                (
+                    name,
+                    number_array(value.given if isinstance(value, _Numbers) else value, item, name),
+                    item,
+                )
+                for name, value, item in arguments
+            ]
+        )
         columns = [column for rows in flat for column in rows.T]
         if guard:
             demand(guard, columns, batch)

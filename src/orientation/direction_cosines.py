@@ -236,7 +236,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
 
 
 #: Every conversion from a direction cosine matrix checks this first.
-DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
+DCM_GUARD = Guard(dcm_excess, explain_dcm, 9, finite=True)
 
 
 class NearestDCM(NamedTuple):

@@ -46,8 +46,9 @@ TOLERANCE = 1e-9
 #: The same for numbers of a narrower type, in units of their last place.
 ROUNDINGS = 32
 
-#: Items of a batch that are worked on together, so that their components stay in the cache.
-BLOCK = 8192
+#: Items of a batch that are worked on together, so that their components stay in the cache, and
+#: what is set free after them is too little to be handed back to the system and fetched again.
+BLOCK = 2048
 
 
 class SymbolsNotPossible(TypeError):
@@ -69,11 +70,15 @@ class Guard(NamedTuple):
         ``explain(components, where)`` raises the error that says what is wrong.
     size : int, optional
         How many components it looks at, from the first: all, if not given.
+    finite : bool, optional
+        Whether what is infinite or missing is too large an excess as well, so that nobody need look
+        for it beforehand.
     """
 
     excess: Excess
     explain: Explain
     size: int | None = None
+    finite: bool = False
 
 
 def is_symbolic(value: object) -> TypeGuard[Symbols]:
@@ -116,9 +121,9 @@ def evaluate(
         What the caller was given, and the shape of one item of it.
     guard : Guard, optional
     """
-    components = _all_at_a_glance(arguments)
-    if components is not None:
-        return _evaluate_item(formula, shape, components, guard)
+    result = _evaluate_at_a_glance(formula, shape, arguments, guard)
+    if result is not None:
+        return result
     if any(is_symbolic(value) for _, value, _ in arguments):
         return _evaluate_symbols(formula, shape, arguments, guard)
     return _evaluate_what_is_read(formula, shape, arguments, guard)
@@ -141,20 +146,30 @@ def evaluate_numbers(
     """Apply a formula that needs numbers, to choose its branch by their sizes; as
     :func:`evaluate`.
     """
-    components = _all_at_a_glance(arguments)
-    if components is not None:
-        return _evaluate_item(formula, shape, components, guard)
+    result = _evaluate_at_a_glance(formula, shape, arguments, guard)
+    if result is not None:
+        return result
     return _evaluate_what_is_read(formula, shape, arguments, guard)
 
 
-def _all_at_a_glance(arguments: Sequence[Argument]) -> list[float] | None:
+def _evaluate_at_a_glance(
+    formula: NumberFormula,
+    shape: tuple[int, ...],
+    arguments: Sequence[Argument],
+    guard: Guard | None,
+) -> Scalars | None:
+    """The result where a look is enough to be sure what was given; else None."""
     components: list[float] = []
     for _, value, item in arguments:
         entries = _at_a_glance(value, item)
         if entries is None:
-            return None
+            break
         components += entries
-    return components
+    else:
+        return _evaluate_item(formula, shape, components, guard)
+    if all(_is_batch(value, item) for _, value, item in arguments):
+        return _evaluate_batch(formula, shape, arguments, guard)
+    return None
 
 
 def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
@@ -236,8 +251,8 @@ def _evaluate_what_is_read(
         entries = [entry for entries in given for entry in entries]
         result = _evaluate_item(formula, shape, entries, guard, tolerance)
     else:
-        arrays = [number_array(value, item, name) for name, value, item in arguments]
-        result = _evaluate_batch(formula, shape, arrays, arguments, guard, tolerance)
+        read = [(name, number_array(value, item, name), item) for name, value, item in arguments]
+        result = _evaluate_batch(formula, shape, read, guard, tolerance)
     # What passed as valid to a few digits only is valid to no more, and its type says so.
     return result.astype(kind) if kind and hasattr(result, "astype") else result
 
@@ -302,9 +317,7 @@ def _evaluate_item(
     return array(result).reshape(shape) if len(shape) > 1 else array(result)
 
 
-def columns_of(
-    arrays: list[Array], arguments: Sequence[Argument]
-) -> tuple[tuple[int, ...], list[Array]]:
+def columns_of(arguments: Sequence[Argument]) -> tuple[tuple[int, ...], list[Array]]:
     """The shape of the batch that some arrays make together, and of each array its items as rows.
 
     Raises
@@ -312,14 +325,14 @@ def columns_of(
     ValueError
         If the batches have incompatible shapes.
     """
-    import numpy
-
+    arrays: list[Array] = [value for _, value, _ in arguments]  # type: ignore[misc]
     shapes = [
         array.shape[: array.ndim - len(item)] for array, (_, _, item) in zip(arrays, arguments)
     ]
-    if len(set(shapes)) == 1:
-        batch = shapes[0]
-    else:
+    batch = shapes[0]
+    if shapes.count(batch) < len(shapes):
+        import numpy
+
         try:
             batch = numpy.broadcast_shapes(*shapes)
         except ValueError:
@@ -331,40 +344,55 @@ def columns_of(
             numpy.broadcast_to(array, batch + item)
             for array, (_, _, item) in zip(arrays, arguments)
         ]
+    size = math.prod(batch)
     return batch, [
-        array.reshape(math.prod(batch), math.prod(item))
-        for array, (_, _, item) in zip(arrays, arguments)
+        array.reshape(size, math.prod(item)) for array, (_, _, item) in zip(arrays, arguments)
     ]
+
+
+def _is_batch(value: object, item: tuple[int, ...]) -> TypeGuard[Array]:
+    """Tell whether a look is enough to be sure that these are the floats of several items."""
+    return (
+        _is_array(value)
+        and value.dtype.char == "d"
+        and value.ndim > len(item)
+        and value.shape[value.ndim - len(item) :] == item
+    )
 
 
 def _evaluate_batch(
     formula: NumberFormula,
     shape: tuple[int, ...],
-    arrays: list[Array],
     arguments: Sequence[Argument],
     guard: Guard | None,
-    tolerance: float,
+    tolerance: float = TOLERANCE,
 ) -> Array:
     import numpy
 
-    batch, flat = columns_of(arrays, arguments)
-    result = numpy.empty((math.prod(batch), math.prod(shape)))
+    batch, flat = columns_of(arguments)
+    looked_at = 0
+    for name, value, item in arguments:
+        looked_at += math.prod(item)
+        if not guard or not guard.finite or looked_at > (guard.size or looked_at):
+            _demand_finite_array(value, name)
+    count, width = math.prod(batch), math.prod(shape)
+    result = numpy.empty((count, width))
     functions = array_functions()
-    for start in range(0, len(result), BLOCK):
+    for start in range(0, count, BLOCK):
         components = [
             column
             for array in flat
             for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
         ]
         if guard:
-            demand(guard, components, batch, start, tolerance)
+            demand(guard, components, batch, start, tolerance, arguments)
         block = result[start : start + BLOCK]
-        # Written one after another, and turned around at once.
-        rows = numpy.empty(block.shape[::-1])
-        for row, values in zip(rows, formula(functions, *components)):
-            row[:] = values
-        rows += 0.0
-        block[:] = rows.T
+        columns = [
+            values if isinstance(values, numpy.ndarray) else numpy.full(len(block), values)
+            for values in formula(functions, *components)
+        ]
+        # Adding zero turns -0 into 0, which would look like a wrong sign.
+        numpy.add(numpy.concatenate(columns).reshape(width, -1).T, 0.0, out=block)
     return result.reshape(batch + shape)
 
 
@@ -374,13 +402,16 @@ def demand(
     batch: tuple[int, ...],
     start: int = 0,
     tolerance: float = TOLERANCE,
+    arguments: Sequence[Argument] = (),
 ) -> None:
     """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
     import numpy
 
     with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
         size = guard.excess(array_functions(), *components[: guard.size])
-    if not (size <= tolerance).all():
+    if numpy.count_nonzero(size <= tolerance) < len(size):
+        for name, value, _ in arguments:
+            _demand_finite_array(value, name)
         worst = int(numpy.argmax(size))
         index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
         where = f" (item {index})" if batch else ""
@@ -422,11 +453,18 @@ def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
     array = array.astype(float, copy=False)
     if array.ndim < len(item) or array.shape[array.ndim - len(item) :] != item:
         raise WrongShape(_shape_message(name, array.shape, item))
+    _demand_finite_array(array, name)
+    return array
+
+
+def _demand_finite_array(value: object, name: str) -> None:
+    import numpy
+
+    array: Array = numpy.asarray(value)
     finite = numpy.isfinite(array)
-    if not finite.all():
+    if numpy.count_nonzero(finite) < array.size:
         index = tuple(int(k) for k in numpy.argwhere(~finite)[0])
         raise _not_finite(name, index, array[index])
-    return array
 
 
 def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
@@ -617,7 +655,7 @@ def array_functions() -> NumberFunctions[Array]:
                 length: Array = numpy.sqrt(
                     functools.reduce(operator.add, (entry * entry for entry in components))
                 )
-            if numpy.isinf(length).any():
+            if numpy.count_nonzero(numpy.isinf(length)):
                 # The squares are too large: slower, but with the result that one item has.
                 length = functools.reduce(numpy.hypot, components, numpy.zeros(()))
             return length
@@ -628,8 +666,13 @@ def array_functions() -> NumberFunctions[Array]:
 
         @staticmethod
         def pick(scores: Sequence[Array], rows: Sequence[Sequence[Array]], /) -> Sequence[Array]:
-            best = numpy.argmax(scores, axis=0)
-            return [numpy.choose(best, entries) for entries in zip(*rows)]
+            best, picked = scores[0].copy(), [entry.copy() for entry in rows[0]]
+            for score, row in zip(scores[1:], rows[1:]):
+                better = score > best
+                numpy.putmask(best, better, score)
+                for entries, others in zip(picked, row):
+                    numpy.putmask(entries, better, others)
+            return picked
 
     return Columns()
 

@@ -58,7 +58,7 @@ def demand_unit_length(entries: Sequence[complex], name: str, tolerance: float) 
         _explain_length(real, "", name)
 
 
-QUATERNION_GUARD = Guard(_length_excess, _explain_length, 4)
+QUATERNION_GUARD = Guard(_length_excess, _explain_length, 4, finite=True)
 
 
 @overload

@@ -84,3 +84,33 @@ def test_a_star_tracker_and_a_magnetometer_fix_an_orientation():
     with pytest.raises(ValueError, match="they lie along one line"):
         along = np.array([[1, 0, 0], [1, 1e-9, 0]])
         o.dcm_from_directions(along @ dcm.T, along, [2.4e-5, 0.035])
+
+
+def test_a_batch_hands_no_memory_back_in_between():
+    """At 10,000 items every call gave memory back to the system and fetched it again: 768 pages."""
+    resource = pytest.importorskip("resource")
+    quaternions = o.quaternion_from_axis_angle(np.ones((10_000, 3)), np.linspace(0, 3, 10_000))
+
+    def fetched():
+        before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+        result = o.dcm_from_quaternion(quaternions)
+        return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before, result
+
+    pages = sorted(fetched()[0] for _ in range(9))[4]
+    assert pages < 400  # the result alone takes 176
+
+
+@pytest.mark.parametrize("entry", [np.nan, np.inf])
+def test_what_is_missing_in_a_batch_is_called_so(entry):
+    """The check of the values finds it first, and must not call it a wrong length."""
+    axes = np.ones((3, 3))
+    axes[2, 1] = entry
+    with pytest.raises(ValueError, match=r"axis\[2, 1\] is (nan|inf): a number is missing"):
+        o.dcm_from_axis_angle(axes, np.ones(3))
+    angles = np.array([0.1, entry, 0.3])
+    with pytest.raises(ValueError, match=r"angle\[1\] is (nan|inf): a number is missing"):
+        o.dcm_from_axis_angle(np.ones((3, 3)), angles)
+    dcms = np.stack([np.eye(3)] * 4)
+    dcms[3, 0, 1] = entry
+    with pytest.raises(ValueError, match=r"dcm\[3, 0, 1\] is (nan|inf): a number is missing"):
+        o.quaternion_from_dcm(dcms)
