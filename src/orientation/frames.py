@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import functools
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from .axis_angle import dcm_from_axis_angle
@@ -12,9 +13,11 @@ from .euler_angles import dcm_from_body_fixed, dcm_from_space_fixed
 from .numbers_and_symbols import is_symbolic, number_array, symbol_components
 from .quaternions import dcm_from_quaternion
 from .rotation_vector import dcm_from_rotation_vector
+from .scipy_border import dcm_from_scipy_rotation
 
 if TYPE_CHECKING:
     import sympy
+    from scipy.spatial.transform import Rotation
     from sympy.physics.mechanics import ReferenceFrame
 
     from ._types import Array, Matrix, Symbolic, Values
@@ -215,6 +218,15 @@ class Frames:
         words = r"\text{rotation vector}"
         return self._with(frame, reference, _MatrixTurn(dcm_from_rotation_vector(vector), words))
 
+    def orient_scipy_rotation(self, frame: str, reference: str, rotation: Rotation) -> Frames:
+        """Return frames with ``frame`` turned in ``reference`` by a SciPy ``Rotation``.
+
+        It turns components along ``frame`` into components along ``reference``, as for
+        :func:`orientation.dcm_from_scipy_rotation`.
+        """
+        dcm = dcm_from_scipy_rotation(rotation)
+        return self._with(frame, reference, _MatrixTurn(dcm, r"\text{SciPy rotation}"))
+
     def without(self, frame: str, reference: str) -> Frames:
         """Return frames without the orientation that connects these two, to give another one.
 
@@ -229,23 +241,25 @@ class Frames:
                 f"no orientation connects {frame} and {reference} directly; the path is "
                 f"{self.path(frame, reference)}"
             )
-        return self._of(
-            edge for edge in self._edges if {edge.frame, edge.reference} != {frame, reference}
-        )
+        pair = {frame, reference}
+        left = (edge for edge in self._edges if {edge.frame, edge.reference} != pair)
+        return functools.reduce(Frames._and, left, Frames())
 
     def subs(self, values: Mapping[Symbolic, object]) -> Frames:
         """Return frames with values in place of symbols, as SymPy's ``subs`` puts them in."""
-        return self._of(
+        substituted = (
             edge._replace(turns=tuple(turn.subs(values) for turn in edge.turns))
             for edge in self._edges
         )
+        return functools.reduce(Frames._and, substituted, Frames())
 
-    def _of(self, edges: Iterable[_Edge]) -> Frames:
+    def _and(self, edge: _Edge) -> Frames:
+        """Frames with one edge more, which connects two that no path connects."""
         new = Frames()
-        new._edges = tuple(edges)
-        for edge in new._edges:
-            for step in (edge, edge.back()):
-                new._leaving[step.reference] = (*new._leaving.get(step.reference, ()), step)
+        new._edges = (*self._edges, edge)
+        new._leaving = dict(self._leaving)
+        for step in (edge, edge.back()):
+            new._leaving[step.reference] = (*new._leaving.get(step.reference, ()), step)
         return new
 
     def _with(self, frame: str, reference: str, *turns: _Turn) -> Frames:
@@ -257,12 +271,7 @@ class Frames:
         edge = _Edge(frame, reference, turns)
         edges = self._walk(frame, reference)
         if edges is None:
-            new = Frames()
-            new._edges = (*self._edges, edge)
-            new._leaving = dict(self._leaving)
-            for step in (edge, edge.back()):
-                new._leaving[step.reference] = (*new._leaving.get(step.reference, ()), step)
-            return new
+            return self._and(edge)
         if len(edges) == 1 and _same(edge.turns, edges[0].turns):
             return self
         raise ValueError(

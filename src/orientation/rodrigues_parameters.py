@@ -165,6 +165,10 @@ def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     def formula(
         f: Functions[Component], x: Component, y: Component, z: Component
     ) -> Sequence[Component]:
+        # Beyond this length, whose square is no number any more, no digit of the matrix differs
+        # from that of no rotation.
+        ordinary = f.norm(x, y, z) < 1e150
+        x, y, z = f.where(ordinary, x, 0), f.where(ordinary, y, 0), f.where(ordinary, z, 0)
         square = x**2 + y**2 + z**2
         whole = 1 + square
         return dcm_components_from_quaternion(
@@ -258,7 +262,7 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
     def formula(
         f: Functions[Component], x: Component, y: Component, z: Component
     ) -> Sequence[Component]:
-        square = x * x + y * y + z * z
-        return -x / square, -y / square, -z / square
+        length = f.norm(x, y, z)
+        return -x / length / length, -y / length / length, -z / length / length
 
     return evaluate(formula, (3,), ("vector", vector, (3,)), guard=Guard(excess, explain))

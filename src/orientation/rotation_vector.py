@@ -73,14 +73,13 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     ) -> Sequence[Component]:
         angle = f.norm(x, y, z)
         turning = angle > 0
+        # The square of a length has neither the digits of a very small one nor those of a very
+        # large one, so each component is divided by itself.
         length = f.where(turning, angle, 1.0)
         cosine = f.cos(angle)
         # In a batch the length of a vector below 1e-162 is 0, whose components are not.
-        first = f.where(turning, f.sin(angle) / length, 1.0)
-        # The digits that 1 - cos loses at small angles are multiplied by squares of small numbers.
-        # It is divided twice because the square of a very small length is 0.
-        second = (1 - cosine) / length / length
-        return turn_components(cosine, first, second, x, y, z)
+        sine = f.where(turning, f.sin(angle), 1.0)
+        return turn_components(cosine, sine, 1 - cosine, x / length, y / length, z / length)
 
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 

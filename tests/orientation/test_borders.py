@@ -8,6 +8,7 @@ import sympy as sm
 from orientations import random_dcms, random_unit_vectors, rotation_error
 from scipy.spatial.transform import Rotation
 
+import orientation
 from orientation import (
     SEQUENCES,
     SymbolsNotPossible,
@@ -94,3 +95,21 @@ def test_exact_numbers_cross():
     np.testing.assert_allclose(
         scipy_rotation_from_dcm(simple_dcm("z", sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6)
     )
+
+
+def test_what_the_reference_tells_users_of_scipy():
+    r, s = Rotation.random(rng=1), Rotation.random(rng=2)
+    A_C_N, B_C_A = orientation.dcm_from_scipy_rotation(r), orientation.dcm_from_scipy_rotation(s)
+    v = np.array([1.0, 2.0, 3.0])
+    np.testing.assert_allclose(r.apply(v), A_C_N.T @ v, atol=1e-14)
+    np.testing.assert_allclose(orientation.dcm_from_scipy_rotation(r.inv()), A_C_N.T, atol=1e-14)
+    both = orientation.dcm_from_scipy_rotation(r * s)
+    np.testing.assert_allclose(both, B_C_A @ A_C_N, atol=1e-14)
+
+
+def test_frames_are_oriented_by_a_scipy_rotation():
+    rotation = Rotation.from_euler("ZXY", (0.1, 0.2, 0.3))
+    frames = orientation.Frames().orient_scipy_rotation("A", "N", rotation)
+    expected = orientation.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
+    np.testing.assert_allclose(frames.dcm("A", "N"), expected, atol=1e-14)
+    assert "SciPy rotation" in str(frames.equation("A", "N"))

@@ -62,6 +62,9 @@ def test_tables_are_read_as_arrays_are():
         (o.dcm_from_rodrigues, (1e200, 0, 0)),
         (o.dcm_from_rodrigues, (3e160, -4e160, 1.0)),
         (o.dcm_from_rotation_vector, (0, 1e160, 1e160)),
+        (o.dcm_from_modified_rodrigues, (1e200, -3.0, 0)),
+        (o.dcm_from_modified_rodrigues, (1e308, 1e308, 1e308)),
+        (o.shadow_of_modified_rodrigues, (1e200, 0, -1e200)),
     ],
 )
 def test_a_batch_gives_what_one_item_gives(conversion, vector):
@@ -114,3 +117,13 @@ def test_what_is_missing_in_a_batch_is_called_so(entry):
     dcms[3, 0, 1] = entry
     with pytest.raises(ValueError, match=r"dcm\[3, 0, 1\] is (nan|inf): a number is missing"):
         o.quaternion_from_dcm(dcms)
+
+
+@pytest.mark.parametrize("length", [1e-300, 1e-160, 1e140, 1e160, 1e300])
+@pytest.mark.parametrize(
+    "conversion",
+    [o.dcm_from_rotation_vector, o.dcm_from_rodrigues, o.dcm_from_modified_rodrigues],
+)
+def test_a_vector_of_any_length_gives_an_orthogonal_matrix(conversion, length):
+    o.check_dcm(conversion([(0.6 * length, -0.8 * length, 0.1 * length)] * 2))
+    o.check_dcm(conversion((0.6 * length, -0.8 * length, 0.1 * length)))

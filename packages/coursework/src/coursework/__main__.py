@@ -3,8 +3,10 @@ exercises.
 """
 
 import argparse
+import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -12,22 +14,41 @@ from importlib.util import find_spec
 ROOMS = ("authoring", "grading")
 
 
+@contextmanager
+def _readers_may_leave() -> Iterator[None]:
+    """Let the reader of what is printed, such as `head`, stop when it has seen enough."""
+    try:
+        try:
+            yield
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        # What is left over goes nowhere, or Python would try again as it ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+
+
+@_readers_may_leave()
 def main(arguments: Sequence[str] | None = None) -> None:
     rooms = [
         import_module(f"coursework.{room}.commands")
         for room in ROOMS
         if find_spec(f"coursework.{room}") is not None
     ]
-    missing = (
-        ""
+    epilog = (
+        "Run coursework COMMAND --help for the options of a command."
         if rooms
-        else "Authors and instructors: install coursework from its repository for more commands."
+        else "Authors and instructors have more commands, such as coursework new and coursework "
+        "grade: install coursework-tools beside coursework-checks."
     )
     parser = argparse.ArgumentParser(
         prog="coursework",
         description="Make, grade and update exercises that check themselves.",
-        epilog=missing or "Run coursework COMMAND --help for the options of a command.",
+        epilog=epilog,
     )
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    if not rooms and given[:1] not in ([], ["update"], ["-h"], ["--help"]):
+        parser.error(f"{given[0]} is no command of a student's coursework. {epilog}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     update = commands.add_parser(
         "update", help="update your exercises from a newer archive, and keep all your work"
@@ -40,7 +61,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     for room in rooms:
         room.add_commands(commands)
-    options = vars(parser.parse_args(arguments))
+    options = vars(parser.parse_args(given))
     runs = {
         "update": _update,
         **{name: run for room in rooms for name, run in room.COMMANDS.items()},
@@ -48,6 +69,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
     command = options.pop("command")
     try:
         runs[command](**options)
+    except BrokenPipeError:
+        raise
+    except ModuleNotFoundError as error:
+        sys.exit(
+            f"coursework {command} needs {error.name}, which is not installed here. Install "
+            "coursework-tools, or in a working copy: python -m pip install --editable '.[tools]'"
+        )
     except OSError as error:  # The reason is enough; a traceback helps nobody here.
         where = f": {error.filename}" if error.filename else ""
         sys.exit(f"coursework {command}: {error.strerror or error}{where}")

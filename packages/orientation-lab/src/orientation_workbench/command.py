@@ -6,6 +6,7 @@ import argparse
 import json
 import math
 import re
+import signal
 import sys
 from pathlib import Path
 
@@ -32,6 +33,9 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(arguments=None):
+    if arguments is None and hasattr(signal, "SIGPIPE"):
+        # The reader of what is printed, such as `head`, may stop when it has seen enough.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     parser = _Parser(
         prog="orientation",
         description="Find out which conventions two programs, or a recording, use.",
