@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, TypeVar
 
 if TYPE_CHECKING:
     import numpy
@@ -65,6 +65,11 @@ class Expression(Symbolic, Protocol):
     def name(self) -> str: ...  # of a symbol, and of a function of time
 
 
+#: The unit vectors that a simple rotation leaves alone, and the twelve sequences of Euler angles.
+Axis: TypeAlias = Literal["x", "y", "z"]
+AxisSequence: TypeAlias = Literal[
+    "zxz", "xyx", "yzy", "zyz", "xzx", "yxy", "xyz", "yzx", "zxy", "xzy", "zyx", "yxz"
+]  # fmt: skip
 #: A component of one item that is read; and of a batch, too.
 Entry: TypeAlias = "float | Expression"
 Column: TypeAlias = "Entry | Array"

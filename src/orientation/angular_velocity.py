@@ -17,24 +17,22 @@ from .numbers_and_symbols import Guard, evaluate
 if TYPE_CHECKING:
     from ._types import (
         Array,
+        AxisSequence,
         Component,
         Functions,
         Matrix,
         Number,
         NumberFunctions,
         Numbers,
-        Symbols,
         Values,
     )
 
 
 @overload
-def angular_velocity_matrix(angles: Symbols, sequence: str) -> Matrix: ...
+def angular_velocity_matrix(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
-def angular_velocity_matrix(angles: Numbers, sequence: str) -> Array: ...
-@overload
-def angular_velocity_matrix(angles: Values, sequence: str) -> Matrix: ...
-def angular_velocity_matrix(angles: Values, sequence: str) -> Array | Matrix:
+def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Matrix: ...
+def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Matrix that turns the rates of body fixed Euler angles into the angular velocity.
 
     .. math::
@@ -98,8 +96,6 @@ def angular_velocity_matrix(angles: Values, sequence: str) -> Array | Matrix:
 
 
 @overload
-def angular_velocity_from_dcm_rate(dcm: Symbols, rate: Symbols) -> Matrix: ...
-@overload
 def angular_velocity_from_dcm_rate(dcm: Numbers, rate: Numbers) -> Array: ...
 @overload
 def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Matrix: ...
@@ -161,8 +157,6 @@ def angular_velocity_from_dcm_rate(dcm: Values, rate: Values) -> Array | Matrix:
     return evaluate(formula, (3,), ("dcm", dcm, (3, 3)), ("rate", rate, (3, 3)), guard=DCM_GUARD)
 
 
-@overload
-def dcm_rate(dcm: Symbols, angular_velocity: Symbols) -> Matrix: ...
 @overload
 def dcm_rate(dcm: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload
@@ -230,8 +224,6 @@ def dcm_rate(dcm: Values, angular_velocity: Values) -> Array | Matrix:
 
 
 @overload
-def quaternion_rate(quaternion: Symbols, angular_velocity: Symbols) -> Matrix: ...
-@overload
 def quaternion_rate(quaternion: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload
 def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Matrix: ...
@@ -290,8 +282,6 @@ def quaternion_rate(quaternion: Values, angular_velocity: Values) -> Array | Mat
     )
 
 
-@overload
-def rotation_vector_rate(vector: Symbols, angular_velocity: Symbols) -> Matrix: ...
 @overload
 def rotation_vector_rate(vector: Numbers, angular_velocity: Numbers) -> Array: ...
 @overload

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
         NumberFunctions,
         Numbers,
         Scalars,
-        Symbols,
         Values,
     )
 
@@ -47,11 +46,9 @@ def _explain_zero(components: Sequence[float], where: str) -> None:
     )
 
 
-AXIS_GUARD = Guard(_length_missing, _explain_zero, 3, finite=True)
+AXIS_GUARD = Guard(_length_missing, _explain_zero, 3)
 
 
-@overload
-def dcm_from_axis_angle(axis: Symbols, angle: Symbols) -> Matrix: ...
 @overload
 def dcm_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload
@@ -130,8 +127,6 @@ def turn_components(
     )
 
 
-@overload
-def quaternion_from_axis_angle(axis: Symbols, angle: Symbols) -> Matrix: ...
 @overload
 def quaternion_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload

@@ -22,26 +22,24 @@ if TYPE_CHECKING:
 
     from ._types import (
         Array,
+        Axis,
         Component,
         Functions,
         Matrix,
         Number,
         NumberFunctions,
         Numbers,
-        Symbols,
         Values,
     )
 
-AXES = ("x", "y", "z")
+AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 
 @overload
-def simple_dcm(axis: str, angle: Symbols) -> Matrix: ...
+def simple_dcm(axis: Axis, angle: Numbers) -> Array: ...
 @overload
-def simple_dcm(axis: str, angle: Numbers) -> Array: ...
-@overload
-def simple_dcm(axis: str, angle: Values) -> Matrix: ...
-def simple_dcm(axis: str, angle: Values) -> Array | Matrix:
+def simple_dcm(axis: Axis, angle: Values) -> Matrix: ...
+def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     r"""Direction cosine matrix of a simple orientation.
 
     :math:`A` is turned with respect to :math:`N` through ``angle`` about a unit vector that both
@@ -236,7 +234,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
 
 
 #: Every conversion from a direction cosine matrix checks this first.
-DCM_GUARD = Guard(dcm_excess, explain_dcm, 9, finite=True)
+DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
 
 
 class NearestDCM(NamedTuple):

@@ -11,6 +11,7 @@ from .numbers_and_symbols import evaluate, evaluate_numbers
 if TYPE_CHECKING:
     from ._types import (
         Array,
+        AxisSequence,
         Component,
         Formula,
         Functions,
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
         NumberFunctions,
         Numbers,
         Scalars,
-        Symbols,
         Values,
     )
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 Layout: TypeAlias = tuple[int, int, int, int]
 
 #: Sequences whose first and last axes are the same.
-PROPER_EULER = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy")
+PROPER_EULER: tuple[AxisSequence, ...] = ("zxz", "xyx", "yzy", "zyz", "xzx", "yxy")
 
 #: Sequences about three different axes.
-TAIT_BRYAN = ("xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
+TAIT_BRYAN: tuple[AxisSequence, ...] = ("xyz", "yzx", "zxy", "xzy", "zyx", "yxz")
 
 #: The twelve sequences of axes that reach every orientation.
 SEQUENCES = PROPER_EULER + TAIT_BRYAN
@@ -46,10 +46,8 @@ _LAYOUTS: dict[str, Layout] = {
 
 
 def layout_of(sequence: str) -> Layout:
-    try:
+    if isinstance(sequence, str) and sequence in _LAYOUTS:
         return _LAYOUTS[sequence]
-    except (KeyError, TypeError):
-        pass
     if isinstance(sequence, str) and sequence.lower() in _LAYOUTS:
         cause = (
             f"write {sequence.lower()!r}: sequences are lower case and body fixed; for rotations "
@@ -66,12 +64,10 @@ def layout_of(sequence: str) -> Layout:
 
 
 @overload
-def dcm_from_body_fixed(angles: Symbols, sequence: str) -> Matrix: ...
+def dcm_from_body_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
-def dcm_from_body_fixed(angles: Numbers, sequence: str) -> Array: ...
-@overload
-def dcm_from_body_fixed(angles: Values, sequence: str) -> Matrix: ...
-def dcm_from_body_fixed(angles: Values, sequence: str) -> Array | Matrix:
+def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
+def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
 
     For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
@@ -148,7 +144,7 @@ def body_fixed_formula(sequence: str) -> Formula:
     return formula
 
 
-def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
+def body_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
     r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
 
     The first angle comes from the one row (or column) that the third turn leaves alone; turning
@@ -216,12 +212,10 @@ def body_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
 
 
 @overload
-def dcm_from_space_fixed(angles: Symbols, sequence: str) -> Matrix: ...
+def dcm_from_space_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
-def dcm_from_space_fixed(angles: Numbers, sequence: str) -> Array: ...
-@overload
-def dcm_from_space_fixed(angles: Values, sequence: str) -> Matrix: ...
-def dcm_from_space_fixed(angles: Values, sequence: str) -> Array | Matrix:
+def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
+def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
     r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
 
     Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
@@ -252,7 +246,7 @@ def dcm_from_space_fixed(angles: Values, sequence: str) -> Array | Matrix:
     return evaluate(formula, (3, 3), ("angles", angles, (3,)))
 
 
-def space_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
+def space_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
     """Space fixed angles of a direction cosine matrix: see :func:`body_fixed_from_dcm`.
 
     Examples
@@ -262,10 +256,11 @@ def space_fixed_from_dcm(dcm: Values, sequence: str) -> Array:
     [0.1, 0.2, 0.3]
     """
     layout_of(sequence)
-    return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]
+    # The reverse of a sequence is another of the twelve.
+    return body_fixed_from_dcm(dcm, sequence[::-1])[..., ::-1]  # type: ignore[arg-type]
 
 
-def gimbal_lock_margin(angles: Values, sequence: str) -> Scalars:
+def gimbal_lock_margin(angles: Values, sequence: AxisSequence) -> Scalars:
     r"""How far three Euler angles are from gimbal lock, in radians.
 
     Lock is where the first and the last axes are parallel: at :math:`\theta = \pm\pi/2` for three
@@ -300,9 +295,7 @@ def lock_margin_formula(sequence: str) -> NumberFormula:
     def formula(
         f: NumberFunctions[Number], psi: Number, theta: Number, phi: Number
     ) -> Sequence[Number]:
-        along, across = f.cos(theta), f.sin(theta)
-        if not proper:
-            along, across = across, along
-        return [f.atan2(abs(across), abs(along))]
+        sine, cosine = abs(f.sin(theta)), abs(f.cos(theta))
+        return [f.atan2(sine, cosine) if proper else f.atan2(cosine, sine)]
 
     return formula

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
     from sympy.physics.mechanics import ReferenceFrame
 
-    from ._types import Array, Matrix, Symbolic, Values
+    from ._types import Array, Axis, AxisSequence, Matrix, Symbolic, Values
 
 
 #: One angle, or those of a batch.
@@ -34,7 +34,7 @@ class _AxisTurn(NamedTuple):
     angle: Angle
 
     def dcm(self) -> Array | Matrix:
-        return simple_dcm(self.axis, self.angle)
+        return simple_dcm(self.axis, self.angle)  # type: ignore[call-overload, no-any-return]
 
     def is_symbolic(self) -> bool:
         return is_symbolic(self.angle)
@@ -138,7 +138,7 @@ class Frames:
         """The names of all frames, in the order in which they came."""
         return tuple(self._leaving)
 
-    def orient_axis(self, frame: str, reference: str, axis: str | Values, angle: Values) -> Frames:
+    def orient_axis(self, frame: str, reference: str, axis: Axis | Values, angle: Values) -> Frames:
         r"""Return frames with ``frame`` turned in ``reference`` about one axis through ``angle``.
 
         Parameters
@@ -158,14 +158,14 @@ class Frames:
         symbolic = is_symbolic((axis, angle))
         (own_angle,) = _own(angle, (), "angle", symbolic)
         if isinstance(axis, str):
-            simple_dcm(axis, own_angle)  # refuses what is not valid, before it is stored
+            _AxisTurn(axis, own_angle).dcm()  # refuses what is not valid, before it is stored
             return self._with(frame, reference, _AxisTurn(axis, own_angle))
         own_axis = _own(axis, (3,), "axis", symbolic)
         words = rf"\text{{axis }}({', '.join(map(_latex, own_axis))}),\ {_latex(own_angle)}"
         return self._with(frame, reference, _MatrixTurn(dcm_from_axis_angle(axis, angle), words))
 
     def orient_body_fixed(
-        self, frame: str, reference: str, angles: Values, sequence: str
+        self, frame: str, reference: str, angles: Values, sequence: AxisSequence
     ) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` by three body fixed turns.
 
@@ -201,7 +201,7 @@ class Frames:
         )
 
     def orient_space_fixed(
-        self, frame: str, reference: str, angles: Values, sequence: str
+        self, frame: str, reference: str, angles: Values, sequence: AxisSequence
     ) -> Frames:
         """Return frames with ``frame`` turned in ``reference`` about axes that stay.
 
@@ -374,13 +374,11 @@ class Frames:
 
     def _zero(self) -> Angle:
         """The angle of a frame in itself: of the kind that these frames hold."""
-        symbols = [turn for edge in self._edges for turn in edge.turns if turn.is_symbolic()]
-        if not symbols:
+        if not any(turn.is_symbolic() for edge in self._edges for turn in edge.turns):
             return 0.0
         import sympy
 
-        zero: Angle = sympy.Integer(0)
-        return zero
+        return sympy.Integer(0)  # type: ignore[no-any-return]
 
     def equation(self, target: str, source: str) -> Equation:
         r"""Return :math:`{}^D\mathbf{C}^A` as the product over the

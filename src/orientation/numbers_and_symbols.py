@@ -70,15 +70,11 @@ class Guard(NamedTuple):
         ``explain(components, where)`` raises the error that says what is wrong.
     size : int, optional
         How many components it looks at, from the first: all, if not given.
-    finite : bool, optional
-        Whether what is infinite or missing is too large an excess as well, so that nobody need look
-        for it beforehand.
     """
 
     excess: Excess
     explain: Explain
     size: int | None = None
-    finite: bool = False
 
 
 def is_symbolic(value: object) -> TypeGuard[Symbols]:
@@ -167,9 +163,11 @@ def _evaluate_at_a_glance(
         components += entries
     else:
         return _evaluate_item(formula, shape, components, guard)
-    if all(_is_batch(value, item) for _, value, item in arguments):
-        return _evaluate_batch(formula, shape, arguments, guard)
-    return None
+    if not all(_is_batch(value, item) for _, value, item in arguments):
+        return None
+    for name, value, _ in arguments:
+        _demand_finite_array(value, name)
+    return _evaluate_batch(formula, shape, arguments, guard)
 
 
 def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
@@ -370,11 +368,6 @@ def _evaluate_batch(
     import numpy
 
     batch, flat = columns_of(arguments)
-    looked_at = 0
-    for name, value, item in arguments:
-        looked_at += math.prod(item)
-        if not guard or not guard.finite or looked_at > (guard.size or looked_at):
-            _demand_finite_array(value, name)
     count, width = math.prod(batch), math.prod(shape)
     result = numpy.empty((count, width))
     functions = array_functions()
@@ -385,7 +378,7 @@ def _evaluate_batch(
             for column in numpy.ascontiguousarray(array[start : start + BLOCK].T)
         ]
         if guard:
-            demand(guard, components, batch, start, tolerance, arguments)
+            demand(guard, components, batch, start, tolerance)
         block = result[start : start + BLOCK]
         columns = [
             values if isinstance(values, numpy.ndarray) else numpy.full(len(block), values)
@@ -402,7 +395,6 @@ def demand(
     batch: tuple[int, ...],
     start: int = 0,
     tolerance: float = TOLERANCE,
-    arguments: Sequence[Argument] = (),
 ) -> None:
     """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
     import numpy
@@ -410,8 +402,6 @@ def demand(
     with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
         size = guard.excess(array_functions(), *components[: guard.size])
     if numpy.count_nonzero(size <= tolerance) < len(size):
-        for name, value, _ in arguments:
-            _demand_finite_array(value, name)
         worst = int(numpy.argmax(size))
         index = [int(k) for k in numpy.unravel_index(start + worst, batch)]
         where = f" (item {index})" if batch else ""

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
         Number,
         NumberFunctions,
         Numbers,
-        Symbols,
         Values,
     )
 
@@ -58,11 +57,9 @@ def demand_unit_length(entries: Sequence[complex], name: str, tolerance: float) 
         _explain_length(real, "", name)
 
 
-QUATERNION_GUARD = Guard(_length_excess, _explain_length, 4, finite=True)
+QUATERNION_GUARD = Guard(_length_excess, _explain_length, 4)
 
 
-@overload
-def dcm_from_quaternion(quaternion: Symbols) -> Matrix: ...
 @overload
 def dcm_from_quaternion(quaternion: Numbers) -> Array: ...
 @overload
@@ -205,8 +202,6 @@ def quaternion_from_dcm(dcm: Values) -> Array:
     )
 
 
-@overload
-def multiply_quaternions(first: Symbols, second: Symbols) -> Matrix: ...
 @overload
 def multiply_quaternions(first: Numbers, second: Numbers) -> Array: ...
 @overload

@@ -23,13 +23,10 @@ if TYPE_CHECKING:
         Number,
         NumberFunctions,
         Numbers,
-        Symbols,
         Values,
     )
 
 
-@overload
-def dcm_from_rodrigues(vector: Symbols) -> Matrix: ...
 @overload
 def dcm_from_rodrigues(vector: Numbers) -> Array: ...
 @overload
@@ -126,8 +123,6 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
 
 
 @overload
-def dcm_from_modified_rodrigues(vector: Symbols) -> Matrix: ...
-@overload
 def dcm_from_modified_rodrigues(vector: Numbers) -> Array: ...
 @overload
 def dcm_from_modified_rodrigues(vector: Values) -> Matrix: ...
@@ -213,8 +208,6 @@ def modified_rodrigues_from_dcm(dcm: Values) -> Array:
     return evaluate_numbers(formula, (3,), ("dcm", dcm, (3, 3)), guard=DCM_GUARD)
 
 
-@overload
-def shadow_of_modified_rodrigues(vector: Symbols) -> Matrix: ...
 @overload
 def shadow_of_modified_rodrigues(vector: Numbers) -> Array: ...
 @overload

@@ -19,13 +19,10 @@ if TYPE_CHECKING:
         Number,
         NumberFunctions,
         Numbers,
-        Symbols,
         Values,
     )
 
 
-@overload
-def dcm_from_rotation_vector(vector: Symbols) -> Matrix: ...
 @overload
 def dcm_from_rotation_vector(vector: Numbers) -> Array: ...
 @overload
@@ -77,9 +74,15 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
         # large one, so each component is divided by itself.
         length = f.where(turning, angle, 1.0)
         cosine = f.cos(angle)
-        # In a batch the length of a vector below 1e-162 is 0, whose components are not.
-        sine = f.where(turning, f.sin(angle), 1.0)
-        return turn_components(cosine, sine, 1 - cosine, x / length, y / length, z / length)
+        return turn_components(
+            cosine,
+            # In a batch the length of a vector below 1e-162 is 0, whose components are not.
+            f.where(turning, f.sin(angle), 1.0),
+            1 - cosine,
+            x / length,
+            y / length,
+            z / length,
+        )
 
     return evaluate(formula, (3, 3), ("vector", vector, (3,)))
 

@@ -40,6 +40,7 @@ assert_type(dcm_from_axis_angle((1, 2, 2), batch), Array)
 assert_type(dcm_from_axis_angle((1, 2, 2), theta), sympy.MutableDenseMatrix)
 assert_type(quaternion_from_dcm(one), Array)
 assert_type(angle_between(one, one), float | Array)
+dcm_from_body_fixed(batch, "zxx")
 simple_dcm(0.3, "z")
 """
 
@@ -61,6 +62,9 @@ def test_the_kind_of_a_result_follows_from_that_of_the_arguments(tmp_path):
         capture_output=True,
         text=True,
     )
-    last = f'program.py:{PROGRAM.count(chr(10))}: error: No overload variant of "simple_dcm"'
     errors = [line for line in done.stdout.splitlines() if " error: " in line]
-    assert len(errors) == 1 and errors[0].startswith(last), done.stdout
+    expected = ("dcm_from_body_fixed", "simple_dcm")
+    assert len(errors) == len(expected), done.stdout
+    for line, name, error in zip((-1, 0), expected, errors):
+        place = f"program.py:{PROGRAM.count(chr(10)) + line}: error: "
+        assert error.startswith(f'{place}No overload variant of "{name}"'), done.stdout
