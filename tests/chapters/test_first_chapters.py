@@ -192,11 +192,11 @@ def test_orienting_a_frame_again_leaves_old_matrices_and_cuts_the_path():
         [
             cell.outputs
             for cell in cells("orientation-with-sympy")
-            if cell.cell_type == "code" and "C.dcm(B)" in cell.source
+            if cell.cell_type == "code" and "B.dcm(A)" in cell.source
         ]
     )
     fresh = names["fresh"]
-    assert fresh["C"].dcm(fresh["N"])[0, 0] == sm.cos(2 * names["theta"])
+    assert fresh["B"].dcm(fresh["N"])[1, 1] == sm.cos(2 * names["theta"])
 
 
 # --- chapter 6: the second triple -----------------------------------------------------------------
