@@ -22,8 +22,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from coursework.grading.grade import Course, grade
+from coursework.grading.assignments import Course
+from coursework.grading.grade import grade
 from coursework.grading.judging.term import Assignment, Term
+from coursework.grading.running import Running
 from coursework.grading.sample_class import make_class
 
 NOTEBOOKS = ("reference-frames", "unit-quaternions")
@@ -167,9 +169,7 @@ def of_questions(place):
     """Work out the questions, which :func:`of_grading` is given: the seconds that it takes."""
     with measured() as seconds:
         about = Assignment(notebooks=tuple(NOTEBOOKS))
-        Course(term=Term(assignments={ASSIGNMENT: about})).questions(
-            [ASSIGNMENT], place / "questions"
-        )
+        Course(term=Term(assignments={ASSIGNMENT: about})).questions([ASSIGNMENT], place)
     return seconds
 
 
@@ -183,8 +183,7 @@ def of_grading(submissions, place, workers, scheduler=None):
         done = grade(
             submissions,
             out,
-            workers=workers,
-            scheduler=scheduler,
+            running=Running(workers=workers, scheduler=scheduler),
             show=io.StringIO(),
         )
     return done["graded"], *seconds

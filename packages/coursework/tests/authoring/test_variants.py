@@ -35,6 +35,7 @@ from coursework.grading.grade import grade
 from coursework.grading.judging import marking
 from coursework.grading.record import Answer, Remembered
 from coursework.grading.reporting.reports import feedback_of
+from coursework.grading.running import Running
 from coursework.grading.submissions import intake
 
 NAME = "levers/see-saw"
@@ -609,7 +610,12 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
         place = tmp_path / "handed-in" / student
         place.mkdir(parents=True)
         nbformat.write(notebook, place / "levers.ipynb")
-    done = grade(tmp_path / "handed-in", tmp_path / "marks", solutions=course.sources, workers=1)
+    done = grade(
+        tmp_path / "handed-in",
+        tmp_path / "marks",
+        solutions=course.sources,
+        running=Running(workers=1),
+    )
     assert done["graded"] == 3
     text = (tmp_path / "marks" / "grades.csv").read_text("utf8")
     rows = {row["student"]: row for row in csv.DictReader(text.splitlines())}

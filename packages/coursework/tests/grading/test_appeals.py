@@ -30,6 +30,7 @@ from coursework.grading.judging.journal import (
     Part,
 )
 from coursework.grading.review import Class
+from coursework.grading.running import Running
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -84,7 +85,13 @@ def begun(tmp_path_factory):
     solutions = write_essays(place / "solutions")
     for student, total in (("ada", 5), ("ben", 6), ("cem", 6)):
         put(place / "in", student, answered(f"Since {student} says so.", total), "essays.ipynb")
-    grade(place / "in", place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    grade(
+        place / "in",
+        place / "out",
+        solutions=solutions,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     return place
 
 

@@ -3,6 +3,7 @@ captured worker reaches nobody but itself.
 """
 
 import contextlib
+import functools
 import io
 import json
 import os
@@ -21,6 +22,7 @@ from coursework.grading.execution import cluster_keys
 from coursework.grading.execution.sandbox import Limits, given_up
 from coursework.grading.grade import grade
 from coursework.grading.judging.journal import Journal
+from coursework.grading.running import Running
 
 distributed = pytest.importorskip("distributed")
 pytestmark = [
@@ -93,8 +95,7 @@ def graded(submissions, solutions, out, scheduler=None):
         submissions,
         out,
         solutions=solutions,
-        limits=LIMITS,
-        scheduler=scheduler,
+        running=Running(limits=LIMITS, scheduler=scheduler),
         show=io.StringIO(),
     )
 
@@ -147,6 +148,7 @@ HOSTILE = """
 import os
 from pathlib import Path
 from coursework.grading.execution import cluster
+from coursework.grading.running import Running
 
 class Evil:
     def __reduce__(self):
@@ -283,17 +285,18 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
     ):
         assert command[command.index("--protocol") + 1] == "tls" and "--tls-ca-file" in command
     solutions = write_sources(tmp_path / "solutions")
-    options = {"solutions": solutions, "limits": LIMITS, "show": io.StringIO()}
+    options = {"solutions": solutions, "show": io.StringIO()}
     with cluster(tmp_path, keys=[*cluster_keys.options(keys), "--protocol", "tls"]) as (address, _):
         assert address.startswith("tls://")
         with pytest.raises(OSError):
             distributed.Client(address.replace("tls:", "tcp:"), timeout="5s")
+        running = functools.partial(Running, limits=LIMITS, scheduler=address)
         other = tmp_path / "other"
         cluster_keys.make_keys(other)
         with pytest.raises(ValueError, match="no Dask scheduler to be reached"):
-            grade(submissions, tmp_path / "none", scheduler=address, keys=other, **options)
-        grade(submissions, tmp_path / "there", scheduler=address, keys=keys, **options)
-    grade(submissions, tmp_path / "here", **options)
+            grade(submissions, tmp_path / "none", running=running(keys=other), **options)
+        grade(submissions, tmp_path / "there", running=running(keys=keys), **options)
+    grade(submissions, tmp_path / "here", running=Running(limits=LIMITS), **options)
     one, two = ((tmp_path / place / "grades.csv").read_bytes() for place in ("there", "here"))
     assert one == two
 

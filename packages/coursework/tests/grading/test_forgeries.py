@@ -114,7 +114,6 @@ def records(tmp_path_factory):
         place / "out",
         solutions=solutions,
         show=io.StringIO(),
-        allow_weak_isolation=False,
     )
     store = Store(place / "out")
     assert not list(place.rglob("forged"))

@@ -35,6 +35,7 @@ from grading_class import (
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
 from coursework.grading import sample_class
+from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import (
     Limits,
     Sandbox,
@@ -43,11 +44,12 @@ from coursework.grading.execution.sandbox import (
     given_up,
 )
 from coursework.grading.export import gradebooks
-from coursework.grading.grade import NothingToGrade, bring_in_decisions, grade, regrade
+from coursework.grading.grade import bring_in_decisions, grade, regrade
 from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Answer, Identity
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
+from coursework.grading.running import Running
 from coursework.grading.store import InUse, Store, file_name
 from coursework.grading.submissions import languages
 from coursework.grading.submissions.roster import Roster
@@ -131,7 +133,13 @@ def course(tmp_path_factory):
     put(submissions, "refused", "{")
     put(submissions, SCRIPT.replace("/", ""), "no notebook", "answers.pdf")
     (submissions / "refused" / "link.ipynb").symlink_to(submissions / "right" / "turns.ipynb")
-    said = grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    said = grade(
+        submissions,
+        place / "out",
+        solutions=solutions,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     assert said == {"graded": 15, "kept": 0, "refused": 3, "held": 0}
     return place
 
@@ -486,9 +494,10 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     out = prepared
     code = (
         "from coursework.grading.grade import grade; from coursework.grading.execution.sandbox "
-        f"import Limits; grade({str(course / 'submissions')!r}, {str(out)!r}, "
-        f"solutions={str(course / 'solutions')!r}, workers=1, "
-        f"limits=Limits(**{dataclasses.asdict(LIMITS)!r}))"
+        "import Limits; from coursework.grading.running import Running; "
+        f"grade({str(course / 'submissions')!r}, {str(out)!r}, "
+        f"solutions={str(course / 'solutions')!r}, running=Running(workers=1, "
+        f"limits=Limits(**{dataclasses.asdict(LIMITS)!r})))"
     )
     running = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.DEVNULL)
     while len(list((out / "waiting").glob("*/*.json"))) < 3:
@@ -503,7 +512,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
         course / "submissions",
         out,
         solutions=course / "solutions",
-        limits=LIMITS,
+        running=Running(limits=LIMITS),
         show=io.StringIO(),
     )
     assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3, "held": 0}
@@ -522,7 +531,7 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
         course / "submissions",
         copied,
         solutions=course / "solutions",
-        limits=LIMITS,
+        running=Running(limits=LIMITS),
         show=io.StringIO(),
     )
     assert said == {"graded": 0, "kept": 15, "refused": 3, "held": 0}
@@ -533,7 +542,11 @@ def test_what_changed_is_graded_again(course, copied, tmp_path):
     submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
     put(submissions, "right", handed_in(sum="sine = 0"))
     said = grade(
-        submissions, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO()
+        submissions,
+        copied,
+        solutions=course / "solutions",
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
     )
     assert said == {"graded": 1, "kept": 14, "refused": 3, "held": 0}
     assert Store(copied).read("right", "turns").points == 5
@@ -568,7 +581,13 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     monkeypatch.setattr(versions, "folders", lambda: copies)
     versions.software.cache_clear()
     try:
-        said = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+        said = grade(
+            few,
+            copied,
+            solutions=course / "solutions",
+            running=Running(limits=LIMITS),
+            show=io.StringIO(),
+        )
     finally:
         versions.software.cache_clear()
     assert said == {"graded": 1, "kept": 0, "refused": 0, "held": 0}
@@ -581,7 +600,7 @@ def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, t
         few,
         copied,
         solutions=course / "solutions",
-        limits=LIMITS,
+        running=Running(limits=LIMITS),
         show=io.StringIO(),
     )
     assert said["graded"] == 1
@@ -599,7 +618,7 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
         "renamed",
         handed_in(sum="import warnings\nwarnings.warn('x')\nsine = sm.sin(alpha + beta)"),
     )
-    grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=shown)
+    grade(few, copied, solutions=course / "solutions", running=Running(limits=LIMITS), show=shown)
     assert "'warns' is now 'renamed'" in shown.getvalue()
     students = {row["student"] for row in rows_of(copied / "grades.csv")}
     assert "renamed" in students and "warns" not in students and "right" in students
@@ -669,23 +688,40 @@ def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path
 
     with monkeypatch.context() as patched:
         patched.setattr(Sandbox, "run", die)
-        grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+        grade(
+            few,
+            copied,
+            solutions=course / "solutions",
+            running=Running(limits=LIMITS),
+            show=io.StringIO(),
+        )
     assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {
         "undecided"
     }
-    again = grade(few, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    again = grade(
+        few,
+        copied,
+        solutions=course / "solutions",
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     assert again["graded"] == 1 and Store(copied).read("right", "turns").points == 5
 
 
 @pytest.mark.parametrize("workers", [0, -1])
 def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, workers):
     with pytest.raises(ValueError, match=f"the number of workers is {workers}"):
-        grade(course / "submissions", tmp_path, solutions=course / "solutions", workers=workers)
+        grade(
+            course / "submissions",
+            tmp_path,
+            solutions=course / "solutions",
+            running=Running(workers=workers),
+        )
 
 
 def test_whose_is_what_is_said_before_anything_is_run(course, tmp_path, monkeypatch):
     monkeypatch.setattr(
-        "coursework.grading.grade.side_by_side", lambda *arguments: pytest.fail("it was run")
+        "coursework.grading.running.side_by_side", lambda *arguments: pytest.fail("it was run")
     )
     (tmp_path / "roster.csv").write_text("student,name\nright,A\nmistaken,B\nabsent,C\n")
     write_term(tmp_path / "out", tmp_path / "roster.csv")
@@ -760,7 +796,7 @@ def test_two_runs_on_one_folder_are_refused(course, copied):
             course / "submissions",
             copied,
             solutions=course / "solutions",
-            limits=LIMITS,
+            running=Running(limits=LIMITS),
             show=io.StringIO(),
         )
 
@@ -886,8 +922,7 @@ def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
         course / "submissions",
         prepared,
         solutions=course / "solutions",
-        limits=LIMITS,
-        workers=workers,
+        running=Running(limits=LIMITS, workers=workers),
         show=io.StringIO(),
     )
     assert contents(prepared) == contents(course / "out")
@@ -904,8 +939,7 @@ def test_it_fails_closed(course, prepared, monkeypatch):
             course / "submissions",
             prepared,
             solutions=course / "solutions",
-            limits=LIMITS,
-            workers=1,
+            running=Running(limits=LIMITS, workers=1),
             show=io.StringIO(),
         )
     with pytest.raises(SystemExit, match="switched off for this test"):
@@ -1000,7 +1034,13 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     # Graded again with another answer, the decision on the old one does not count.
     again = tmp_path / "again"
     put(again, "mistaken", handed_in(sum="sine = 0"))
-    grade(again, copied, solutions=course / "solutions", limits=LIMITS, show=io.StringIO())
+    grade(
+        again,
+        copied,
+        solutions=course / "solutions",
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     assert store.read("mistaken", "turns").marks["turns/sum"].outcome == "wrong"
     with pytest.raises(ValueError, match="from 0 to 1"):
         journal.add(found, "turns/sum", 2)

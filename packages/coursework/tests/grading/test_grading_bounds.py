@@ -163,13 +163,13 @@ import io, json, os, select, signal, sys, time, traceback, warnings
 sys.path.insert(0, {tests!r})
 from without_a_sandbox import run_without_a_sandbox
 from coursework.__main__ import main
-from coursework.grading import grade as grading
+from coursework.grading import grade as grading, running
 from coursework.grading.judging.journal import Journal
 from coursework.grading.store import Store
 from pathlib import Path
 
 warnings.simplefilter("ignore")
-grading._here = run_without_a_sandbox
+running.here = run_without_a_sandbox
 
 def do(place, what):
     store, silent = Store(place / "out"), io.StringIO()

@@ -26,9 +26,10 @@ from coursework.checking.variants import (
     variant_of,
 )
 from coursework.grading import review
+from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution import isolation
 from coursework.grading.execution.sandbox import Limits
-from coursework.grading.grade import NothingToGrade, grade, regrade
+from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
@@ -38,6 +39,7 @@ from coursework.grading.judging.laboratory import BadPolicy
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
 from coursework.grading.review import Class
+from coursework.grading.running import Running
 from coursework.grading.store import Store
 from coursework.grading.submissions import pictures
 
@@ -110,7 +112,13 @@ def begun(tmp_path_factory):
     for student in STUDENTS:
         put(place / "in", student, answered(2 * own[student], says=student), "beams.ipynb")
     put(place / "in", "wrong", answered(1), "beams.ipynb")
-    grade(place / "in", place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    grade(
+        place / "in",
+        place / "out",
+        solutions=solutions,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     return SimpleNamespace(place=place, own=own)
 
 
@@ -157,7 +165,13 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     assert {(mark.outcome, mark.note) for mark in marks_of(out, "beams/twice").values()} == {
         ("undecided", "not called")
     }
-    grade(begun.place / "in", out.folder, solutions=others, limits=LIMITS, show=io.StringIO())
+    grade(
+        begun.place / "in",
+        out.folder,
+        solutions=others,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     assert {mark.points for mark in marks_of(out, "beams/twice").values()} == {3}
     assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {
         2

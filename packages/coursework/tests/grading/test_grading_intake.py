@@ -14,8 +14,10 @@ import nbformat
 import pytest
 from grading_class import handed_in, notebook, put
 
-from coursework.grading.grade import Course, NothingToGrade, grade, sort_work
+from coursework.grading.assignments import Course, NothingToGrade
+from coursework.grading.grade import grade
 from coursework.grading.judging.term import Assignment, Term
+from coursework.grading.pairing import pair
 from coursework.grading.submissions import intake
 from coursework.grading.submissions.roster import BadRoster, Roster
 
@@ -839,8 +841,8 @@ def course(tmp_path):
 
 
 def sorted_work(folder, course):
-    refused = []
-    work = sort_work(intake.take_in(folder, course.assignments)[0], course, refused)
+    notebooks, _ = intake.take_in(folder, course.assignments)
+    work, refused, _ = pair(notebooks, [], course, Term())
     return {
         (one.student, one.assignment): (
             [notebook.file for notebook in one.notebooks],

@@ -27,6 +27,7 @@ from coursework.grading.grade import grade, regrade
 from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Record, Remembered
 from coursework.grading.review import POLICY, Class, application, hints_of
+from coursework.grading.running import Running
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
@@ -63,7 +64,13 @@ def graded(tmp_path_factory):
     put(submissions, "hostile", handed_in(sum=f"# {SCRIPT}\nsine = sm.Symbol({SCRIPT!r})"))
     put(submissions, "right", handed_in())
     put(submissions, "blank", notebook([SETUP["turns"], RIGHT["turns/sum"]]))
-    grade(submissions, place / "out", solutions=solutions, limits=LIMITS, show=io.StringIO())
+    grade(
+        submissions,
+        place / "out",
+        solutions=solutions,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
     return place
 
 
@@ -429,7 +436,7 @@ def plotted(tmp_path_factory):
         place / "submissions",
         place / "out",
         solutions=place / "solutions",
-        limits=LIMITS,
+        running=Running(limits=LIMITS),
         show=io.StringIO(),
     )
     return place / "out"

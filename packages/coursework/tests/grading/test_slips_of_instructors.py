@@ -11,8 +11,9 @@ from grading_class import handed_in, put, write_sources
 from test_review import Served, first_of
 
 from coursework.__main__ import main
+from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import Limits
-from coursework.grading.grade import NothingToGrade, grade
+from coursework.grading.grade import grade
 from coursework.grading.judging import journal as judging
 from coursework.grading.judging.journal import Journal
 from coursework.grading.store import Store

@@ -19,7 +19,7 @@ from without_a_sandbox import run_without_a_sandbox
 
 from coursework.__main__ import main
 from coursework.authoring.variation import Rule
-from coursework.grading import grade as grading
+from coursework.grading import running
 from coursework.grading.judging import secret
 from coursework.grading.judging.journal import FILE, Given, Journal
 from coursework.grading.store import Store
@@ -536,7 +536,7 @@ def questions(tmp_path_factory):
 def test_every_mark_is_that_of_the_story_and_no_move_is_unsaid(
     number, tmp_path, monkeypatch, questions
 ):
-    monkeypatch.setattr(grading, "_here", run_without_a_sandbox)
+    monkeypatch.setattr(running, "here", run_without_a_sandbox)
     story = Story(tmp_path, number, monkeypatch, questions)
     for _ in range(30):
         act = story.dice.choice(ACTS)

@@ -303,7 +303,9 @@ def grade(
         with _on_linux():
             from .execution.sandbox import WeakIsolation, WorkerDied
             from .grade import grade as grade_class
+            from .running import Running
             from .store import InUse
+            from .workers import processors
     except NeedsLinux as error:
         sys.exit(f"coursework grade: {error}")
 
@@ -314,12 +316,11 @@ def grade(
             solutions=solutions,
             only=assignment,
             student=student,
-            dry_run=dry_run,
-            workers=workers,
-            scheduler=scheduler,
-            keys=keys,
-            allow_weak_isolation=allow_weak_isolation,
             as_listed=as_listed,
+            dry_run=dry_run,
+            running=Running(
+                processors() if workers is None else workers, scheduler, keys, allow_weak_isolation
+            ),
             agree=_agree(out, yes),
         )
     except (InUse, WeakIsolation, WorkerDied, ValueError) as error:

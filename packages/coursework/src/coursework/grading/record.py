@@ -98,6 +98,8 @@ class Case(AsJson):
         only one.
     edition : str
         Of the course: another one draws afresh.
+    others : tuple of Place
+        The variants that the student would have had by the source as it stood at other times.
     """
 
     question: str
@@ -105,6 +107,7 @@ class Case(AsJson):
     siblings: Mapping[str, Place] = field(default_factory=dict)
     rule: str = ""
     edition: str = ""
+    others: tuple[Place, ...] = ()
 
 
 @dataclass(frozen=True)

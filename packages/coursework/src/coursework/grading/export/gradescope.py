@@ -72,7 +72,7 @@ def write_autograder(
     assignment : str
     solutions : path, optional
     """
-    from ..grade import Course
+    from ..assignments import Course
 
     folder, term = Path(solutions or find_course().sources), term_of(marks)
     course = Course(folder, term, [assignment])
@@ -162,7 +162,8 @@ def run(home: Path = HOME) -> None:
     Where students' code cannot be kept apart well enough, there are no results: Gradescope says
     that the autograder failed, and nobody has lost a point.
     """
-    from ..grade import NothingToGrade, grade
+    from ..assignments import NothingToGrade
+    from ..grade import grade
     from ..store import Store
     from ..submissions.intake import refused_of
     from .gradebooks import Marks, write_gradescope
@@ -221,7 +222,7 @@ def _say(results: Path, said: str) -> None:
 
 def prepare(home: Path = HOME) -> None:
     """Work the questions out, once for all submissions."""
-    from ..grade import Course
+    from ..assignments import Course
 
     term = term_of(home / "source")
     course = Course(home / "source" / "solutions", term)

@@ -7,16 +7,53 @@ Contracts lie in the folder of results, one file each.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from ...checking.fields import by_name
-from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of
+from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of, text_of
 from ..record import Case, Place, Record
 from ..store import write
 from .contract import Asked, Contract, variants_from_json
 from .journal import Decision, digest_of_answer
+
+
+class Contracts:
+    """The questions as they stood when answers were judged by them.
+
+    Parameters
+    ----------
+    folder : path
+        The folder of results.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder, "contracts")
+        self._known: dict[str, Contract] = {}
+        self._kept: set[str] = set()
+
+    def keep(self, contract: Contract) -> None:
+        """Keep a question; it holds right answers, so that nobody
+        else on this machine may read it.
+        """
+        path = self._path(contract.version)
+        if contract.version not in self._kept and not path.exists():
+            write(path, json.dumps(contract.as_json(), ensure_ascii=False), private=True)
+        self._kept.add(contract.version)
+
+    def of(self, version: str) -> Contract | None:
+        """The question of a version, or ``None`` if nobody kept it."""
+        if version not in self._known:
+            path = self._path(version)
+            if path.exists():
+                self._known[version] = Contract.from_json(
+                    json.loads(path.read_text("utf8")), str(path)
+                )
+        return self._known.get(version)
+
+    def _path(self, version: str) -> Path:
+        return self.folder / f"{version}.json"
 
 
 def answered(case: Case, asked: Asked) -> Case:
@@ -57,43 +94,6 @@ def case_by_rule(name: str, variants: Sequence[Contract], identity: str) -> Case
     )
 
 
-class Contracts:
-    """The questions as they stood when answers were judged by them.
-
-    Parameters
-    ----------
-    folder : path
-        The folder of results.
-    """
-
-    def __init__(self, folder: str | Path) -> None:
-        self.folder = Path(folder, "contracts")
-        self._known: dict[str, Contract] = {}
-        self._kept: set[str] = set()
-
-    def keep(self, contract: Contract) -> None:
-        """Keep a question; it holds right answers, so that nobody
-        else on this machine may read it.
-        """
-        path = self._path(contract.version)
-        if contract.version not in self._kept and not path.exists():
-            write(path, json.dumps(contract.as_json(), ensure_ascii=False), private=True)
-        self._kept.add(contract.version)
-
-    def of(self, version: str) -> Contract | None:
-        """The question of a version, or ``None`` if nobody kept it."""
-        if version not in self._known:
-            path = self._path(version)
-            if path.exists():
-                self._known[version] = Contract.from_json(
-                    json.loads(path.read_text("utf8")), str(path)
-                )
-        return self._known.get(version)
-
-    def _path(self, version: str) -> Path:
-        return self.folder / f"{version}.json"
-
-
 def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
     """The questions of a notebook as they were worked out, each in all its variants, by name.
 
@@ -128,6 +128,47 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
     return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
 
 
+def case_of(
+    name: str,
+    editions: Sequence[Sequence[Contract]],
+    identity: str,
+    contracts: Contracts,
+    shows: Callable[[str], bool],
+) -> Case:
+    """The case of a student whose work was never graded, where the source had other variants at
+    other times: the variant that the notebook shows, or else that of today.
+
+    Parameters
+    ----------
+    name : str
+    editions : sequence
+        The variants of today, and those of other times.
+    identity : str
+    contracts : Contracts
+        Keeps what is the student's and not in the source any more.
+    shows : function
+        Whether the notebook shows a text.
+    """
+    cases: dict[str, Case] = {}
+    texts: dict[str, str] = {}
+    for number, variants in enumerate(editions):
+        case = case_by_rule(name, variants, identity)
+        own = variants_of(variants)
+        if case.own.variant in cases or (
+            cases and case.edition != next(iter(cases.values())).edition
+        ):
+            continue
+        rule = f"{case.rule}, as the source stood before" if number else case.rule
+        cases[case.own.variant] = replace(case, rule=rule)
+        texts[case.own.variant] = text_of(own[case.own.variant].variant)
+        for place in (case.own, *case.siblings.values()):
+            contracts.keep(own[place.variant])
+    shown = [variant for variant, text in texts.items() if text and shows(text)]
+    variant = shown[0] if len(shown) == 1 else next(iter(cases))
+    others = tuple(case.own for other, case in cases.items() if other != variant)
+    return replace(cases[variant], others=others)
+
+
 def asked_of(
     name: str, variants: Sequence[Contract], case: Case, contracts: Contracts | None
 ) -> Asked:
@@ -151,12 +192,14 @@ def asked_of(
     before = (
         contracts.of(case.own.contract) if contracts and own.version != case.own.contract else None
     )
+    others = [Asked(at(place)) for place in case.others if place.variant != case.own.variant]
     if not case.siblings and len(variants) == 1:
-        return Asked(own, before)
+        return Asked(own, before, others=tuple(others))
     siblings = [one for variant, one in by_their_names.items() if variant != case.own.variant]
     return Asked(
         own,
         before,
         tuple(siblings),
         {sibling: at(place) for sibling, place in case.siblings.items()},
+        tuple(others),
     )

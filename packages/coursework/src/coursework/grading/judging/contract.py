@@ -230,12 +230,13 @@ class Asked:
         All other variants.
     second_chances : mapping of Contract
         The variants that may make good for help, by the names of the siblings.
-    newer : Asked or None
-        The variant that the student has by the rule of today, where that is another.
+    others : tuple of Asked
+        The variants that the student would have by the source as it stands, or stood, at other
+        times.
     """
 
     contract: Contract
     before: Contract | None = None
     siblings: tuple[Contract, ...] = ()
     second_chances: Mapping[str, Contract] = field(default_factory=dict)
-    newer: Asked | None = None
+    others: tuple[Asked, ...] = ()

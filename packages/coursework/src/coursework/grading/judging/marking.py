@@ -13,14 +13,14 @@ import io
 import itertools
 import json
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...authoring.author import AuthoredQuestion, AuthorError
 from ...authoring.source import names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
-from ...checking.fields import Json
+from ...checking.fields import Json, many
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, Plain, parts_of, read_plain
 from ...checking.plugins import packages
@@ -28,12 +28,13 @@ from ...checking.question import Locker
 from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
+from ..reading import AsJson
 from ..record import MISSING, Answer, Case, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import Contracts, asked_of, case_by_rule, questions_in
+from .cases import Contracts, asked_of, case_by_rule, case_of, questions_in, variants_of
 from .contract import Asked, Contract, variants_as_json
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
@@ -93,6 +94,8 @@ def of_student(
     identity: str,
     record: Record | None = None,
     contracts: Contracts | None = None,
+    earlier: Mapping[str, Sequence[Sequence[Contract]]] | None = None,
+    shows: Callable[[str], bool] = lambda text: False,
 ) -> tuple[dict[str, Asked], dict[str, Case]]:
     """The questions of a student, each in the student's own variant, and the case of each.
 
@@ -107,6 +110,10 @@ def of_student(
         others.
     contracts : Contracts, optional
         The questions as they stood then.
+    earlier : mapping, optional
+        As :func:`earlier_variants` gives them.
+    shows : function, optional
+        Whether the student's notebook shows a text.
 
     Returns
     -------
@@ -119,10 +126,12 @@ def of_student(
         today = case_by_rule(name, variants, identity)
         case = record.cases.get(name) if record and contracts else None
         if case is None or case.edition != today.edition:
-            case = today
-        own[name], cases[name] = asked_of(name, variants, case, contracts), case
-        if case.own.variant != today.own.variant:
-            own[name] = replace(own[name], newer=asked_of(name, variants, today, contracts))
+            case, before = today, (earlier or {}).get(name)
+            if before and contracts:
+                case = case_of(name, [variants, *before], identity, contracts, shows)
+        others = [one for one in case.others if one.variant != today.own.variant]
+        by_others = replace(case, others=(*others, today.own))
+        own[name], cases[name] = asked_of(name, variants, by_others, contracts), case
     return own, cases
 
 
@@ -177,18 +186,18 @@ def _canonical_of(question: AuthoredQuestion) -> tuple[str, ...] | None:
 
 
 def load_questions(
-    paths: Iterable[str | Path], kept: str | Path, secret: bytes, edition: str = ""
+    paths: Iterable[str | Path], results: str | Path, secret: bytes, edition: str = ""
 ) -> dict[str, tuple[Contract, ...]]:
     """The questions of several notebooks with solutions, by name.
 
-    What came of working them out is kept in the folder ``kept``, under a name that follows from the
-    bytes of the notebook and from the versions of the software.
+    What came of working them out is kept in the folder of results, under a name that follows from
+    the bytes of the notebook and from the versions of the software.
     """
     places: dict[Path, Path] = {}
     for path in map(Path, paths):
         ours = hashlib.sha256(json.dumps(software()).encode() + secret).digest()
         depends = hashlib.sha256(ours + edition.encode() + path.read_bytes()).hexdigest()[:16]
-        places[path] = Path(kept) / f"{path.stem}-{depends}.json"
+        places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
         found = questions_of(path, secret, edition)
@@ -210,10 +219,56 @@ def load_questions(
                 [AuthorError],
             )
         )
-    found: dict[str, tuple[Contract, ...]] = {}
+    questions: dict[str, tuple[Contract, ...]] = {}
     for place in places.values():
-        found.update(questions_in(place))
-    return found
+        questions.update(questions_in(place))
+    return questions
+
+
+#: Which variants the questions of this class had, each time that it was graded by others.
+VARIANTS = "variants.json"
+
+
+@dataclass(frozen=True)
+class Edition(AsJson):
+    """The variants that questions had: what came of working them out, and their names."""
+
+    file: str
+    variants: Mapping[str, tuple[str, ...]]
+
+
+def earlier_variants(
+    questions: Mapping[str, Sequence[Contract]], results: Path
+) -> dict[str, list[Sequence[Contract]]]:
+    """The variants of questions as they were when this class was graded at other times, where these
+    were others; those of today are remembered.
+    """
+    path, editions = results / VARIANTS, list[Edition]()
+    if path.exists():
+        said = json.loads(path.read_text("utf8"))
+        editions += many(Edition.from_json)(said, str(path))
+    today = {name: tuple(variants_of(those)) for name, those in questions.items()}
+    known = {(name, names) for one in editions for name, names in one.variants.items()}
+    new = {
+        name: names
+        for name, names in today.items()
+        if len(names) > 1 and (name, names) not in known
+    }
+    if new:
+        # A list of contracts is as long as the questions that it holds: most never change.
+        file = hashlib.sha256(json.dumps(new).encode()).hexdigest()[:16]
+        as_json = {name: variants_as_json(tuple(questions[name])) for name in new}
+        place = results / "questions" / f"variants-{file}.json"
+        write(place, json.dumps(as_json, ensure_ascii=False), private=True)
+        editions.append(Edition(place.name, new))
+        write(path, json.dumps([one.as_json() for one in editions]))
+    earlier: dict[str, list[Sequence[Contract]]] = {}
+    for one in reversed(editions):
+        others = [name for name, then in one.variants.items() if today.get(name, then) != then]
+        kept = questions_in(results / "questions" / one.file) if others else {}
+        for name in others:
+            earlier.setdefault(name, []).append(kept[name])
+    return earlier
 
 
 def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, Json]]:
@@ -281,7 +336,7 @@ def mark(
         question.contract.version,
         before,
         len(question.siblings),
-        question.newer is not None,
+        len(question.others),
     )
     known = *of_question, json.dumps(answer.as_json()), finished, limited
     if known not in _marked:
@@ -302,7 +357,7 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
         and answer.plain is not None
         and len(answer.plain["nodes"]) <= LONGEST_FOR_SIBLINGS
     )
-    if short and question.newer and _is_right(name, question.newer, answer):
+    if short and any(_is_right(name, other, answer) for other in question.others):
         said = (
             "This is right for the numbers of another edition of this question. Which edition did "
             "this student have?"

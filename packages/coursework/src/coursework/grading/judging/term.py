@@ -26,7 +26,7 @@ FILE = "term.toml"
 Some = TypeVar("Some")
 EXCUSED = "excused"
 #: Which of several attempts counts; never one that answers nothing where another answers something.
-IN_TIME, LAST = "newest in time", "last"
+IN_TIME, BEST, LAST = "newest in time", "best", "last"
 #: What tables of systems call the time at which something was handed in.
 TIMES = (
     "last modified (submission)",
@@ -279,8 +279,9 @@ time-zone = {zone}  # in which the times below are meant
 # exports. Without one, students are called as their folders are.
 {roster}
 
-# Which of several attempts counts: "newest in time" (a late one only if none came in time), or
-# "last". One that answers nothing never counts where another answers something.
+# Which of several attempts counts: "newest in time" (a late one only if none came in time), "last",
+# or "best" (all are graded; the one with the most points, lateness included). One that answers
+# nothing never counts where another answers something.
 attempts = "newest in time"
 
 [late]
@@ -397,8 +398,9 @@ def read_term(path: str | Path) -> Term:
     if not assignments:
         raise file.bad("assignments", "it names no assignment, such as [assignments.hw1].")
     attempts = said.get("attempts", IN_TIME)
-    if attempts not in (IN_TIME, LAST):
-        raise file.bad("attempts", f"attempts are {IN_TIME!r} or {LAST!r}, not {attempts!r}.")
+    if attempts not in (IN_TIME, BEST, LAST):
+        known = f"{IN_TIME!r}, {BEST!r} or {LAST!r}"
+        raise file.bad("attempts", f"attempts are {known}, not {attempts!r}.")
     late = file.table("late", said.get("late", {}), KEYS["late"])
 
     def share(name: str, default: float, most: float = 1) -> float:

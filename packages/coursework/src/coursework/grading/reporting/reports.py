@@ -465,5 +465,5 @@ def _oddities(record: Record) -> dict[str, None]:
             dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)
         )
     if record.superseded:
-        found["handed in more than once; the newest counts"] = None
+        found["handed in more than once; their feedback says which counts, and why"] = None
     return found

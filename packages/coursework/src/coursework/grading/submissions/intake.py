@@ -76,6 +76,7 @@ ABOUT_REPLY = re.compile(r'\bdata-(question|tries|tried|help)="([^"]{1,200})"')
 MOST_TRIED = 100  # of one question
 #: Pictures that are shown of one notebook, all together.
 MOST_BYTES_OF_PICTURES = 4 << 20
+MARKDOWN = "text/markdown"
 TRIED = re.compile(r"[0-9a-f]{6}")
 CHECK = re.compile(r"""\bcheck\(\s*['"]([^'"\n]{1,200})['"]""")
 
@@ -191,6 +192,14 @@ class Notebook(NamedTuple):
     def pictures(self) -> dict[str, list[str]]:
         """What its cells drew, as it keeps that: see :func:`pictures_in`."""
         return pictures_in(_unchanged(self))
+
+    def shows(self, text: str) -> bool:
+        """Whether one of its outputs shows a text as Markdown."""
+        for _, shown in outputs_in(_unchanged(self)):
+            with contextlib.suppress(Unfit):
+                if text in _source(shown.get(MARKDOWN, "")):
+                    return True
+        return False
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -950,28 +959,27 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
     """
     found: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES
-    code = [cell for cell in _list(_json(data).get("cells", [])) if isinstance(cell, dict)]
-    code = [cell for cell in code if cell.get("cell_type") == "code"]
+    for number, shown in outputs_in(data):
+        for kind in (PNG, JPEG):
+            with contextlib.suppress(ValueError):
+                picture = "".join(_source(shown.get(kind, "")).split())
+                if picture and len(picture) <= left:
+                    if is_picture(kind, base64.b64decode(picture, validate=True)):
+                        found.setdefault(str(number), []).append(f"{kind};base64,{picture}")
+                        left -= len(picture)
+    return found
+
+
+def outputs_in(data: bytes) -> Iterator[tuple[int, dict[str, object]]]:
+    """What the code cells of a notebook show, by kind, each with the number of its cell."""
+    cells = [cell for cell in _list(_json(data).get("cells", [])) if isinstance(cell, dict)]
+    code = [cell for cell in cells if cell.get("cell_type") == "code"]
     for number, cell in enumerate(code):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
             shown = output.get("data") if isinstance(output, dict) else None
-            for kind in (PNG, JPEG):
-                text = shown.get(kind) if isinstance(shown, dict) else None
-                text = (
-                    "".join(text)
-                    if isinstance(text, list) and all(isinstance(one, str) for one in text)
-                    else text
-                )
-                if not isinstance(text, str) or len(text) > left:
-                    continue
-                with contextlib.suppress(ValueError):
-                    if is_picture(
-                        kind, base64.b64decode(text := "".join(text.split()), validate=True)
-                    ):
-                        found.setdefault(str(number), []).append(f"{kind};base64,{text}")
-                        left -= len(text)
-    return found
+            if isinstance(shown, dict):
+                yield number, shown
 
 
 def _list(value: object) -> list[object]:

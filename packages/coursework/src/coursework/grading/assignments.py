@@ -1,0 +1,140 @@
+"""The assignments of a course, their questions, and which of them a notebook answers."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import Path
+
+from ..authoring.course import edition_of, find_course
+from ..authoring.source import names_asked, posed
+from .judging import marking
+from .judging.contract import Contract
+from .judging.secret import secret_beside
+from .judging.term import Term
+from .submissions import intake
+from .submissions.intake import Notebook
+
+#: The questions of an assignment, each in all its variants, by name.
+Questions = Mapping[str, Sequence[Contract]]
+
+
+class NothingToGrade(ValueError):
+    """There is nothing that could be graded; the message says what was looked for."""
+
+
+class Course:
+    """The assignments, and the names of the questions of each.
+
+    Parameters
+    ----------
+    solutions : path
+        The folder of the notebooks with solutions.
+    term : Term, optional
+        Says of which notebooks each assignment consists; else each notebook is one.
+    only : collection of str
+        The assignments that are graded now, if not all.
+
+    Attributes
+    ----------
+    assignments : dict of str to tuple of str
+        The notebooks of each that is graded now.
+    names : dict of str to list of str
+        The questions of every assignment, first of those that are graded now.
+    """
+
+    def __init__(
+        self,
+        solutions: str | Path | None = None,
+        term: Term | None = None,
+        only: Collection[str] = (),
+    ) -> None:
+        folder = self.folder = Path(solutions or find_course().sources)
+        self.edition = edition_of(folder)
+        self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
+        if not self.sources:
+            raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
+        known = {name: about.notebooks for name, about in (term or Term()).assignments.items()}
+        known = known or {stem: (stem,) for stem in self.sources}
+        used = {stem for stems in known.values() for stem in stems}
+        if unknown := sorted(used - set(self.sources)):
+            raise NothingToGrade(
+                f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
+                f"there are {', '.join(self.sources)}."
+            )
+        if strangers := sorted(set(only) - set(known)):
+            raise NothingToGrade(
+                f"There is no assignment {strangers[0]!r}; there are {', '.join(known)}."
+            )
+        self.assignments = {name: known[name] for name in known if not only or name in only}
+        known = (
+            self.assignments | known | {stem: (stem,) for stem in self.sources if stem not in used}
+        )
+        asked = {stem: list(names_asked(path)) for stem, path in self.sources.items()}
+        self.names = {
+            name: [question for stem in stems for question in asked[stem]]
+            for name, stems in known.items()
+        }
+
+    def assignments_of(self, notebook: Notebook) -> list[str]:
+        """The assignments that a notebook answers, graded now or not, by the names in its cells, or
+        else by its own name and folder.
+        """
+        by_cell = {name.replace("/", "-"): name for name in self.all_questions}
+        named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
+        counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
+        # The one it names most of; and any other of which it names half:
+        # some work in a single notebook.
+        first = max(counts, key=lambda name: counts[name])
+        if counts[first]:
+            return [
+                name
+                for name, count in counts.items()
+                if name == first or 2 * count >= len(self.names[name]) > 0
+            ]
+        for place in (notebook.folder, notebook.file.rpartition("/")[2]):
+            if fitting := [name for name in self.names if name in place]:
+                return [max(fitting, key=len)]
+        if notebook.of_assignment:
+            return [notebook.of_assignment]
+        return list(self.assignments) if len(self.assignments) == 1 else []
+
+    def questions(self, assignments: Iterable[str], results: Path) -> dict[str, Questions]:
+        """The questions of some assignments, by assignment and name; what came of working them out
+        is kept in the folder of results.
+        """
+        stems = sorted(
+            {stem for assignment in assignments for stem in self.assignments[assignment]}
+        )
+        secret = secret_beside(self.folder)
+        questions = marking.load_questions(
+            [self.sources[stem] for stem in stems], results, secret, self.edition
+        )
+        return {
+            assignment: {name: questions[name] for name in self.names[assignment]}
+            for assignment in assignments
+        }
+
+    @property
+    def all_questions(self) -> list[str]:
+        """The names of all questions, also of what is not graded now."""
+        return [name for names in self.names.values() for name in names]
+
+    @functools.cached_property
+    def blanks(self) -> frozenset[str]:
+        """The code cells of all notebooks as students get them."""
+        cells = set()
+        for path in self.sources.values():
+            owners = {variable: name for name, variable in names_asked(path).items()}
+            for cell in json.loads(path.read_text("utf8"))["cells"]:
+                if cell["cell_type"] == "code":
+                    cells.add(posed("".join(cell["source"]), owners).strip())
+        return frozenset(cells)
+
+    def answers_something(self, notebook: Notebook) -> bool:
+        """Whether a notebook says anything that the exercise did not say."""
+        return any(
+            source and source not in self.blanks and not intake.SAYS.match(source)
+            for source in (cell["source"].strip() for cell in notebook.cells)
+        )

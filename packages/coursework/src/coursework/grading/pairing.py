@@ -1,0 +1,419 @@
+"""Whose each notebook is, for which assignment, and which of several counts: all that is settled,
+and said, before anything is run.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from ..checking.identity import plain_identity
+from .assignments import Course, NothingToGrade, Questions
+from .judging.journal import FILE as JOURNAL
+from .judging.journal import Journal
+from .judging.term import BEST, IN_TIME, Term
+from .store import Store, write
+from .submissions import intake
+from .submissions.intake import Notebook, Refused
+from .submissions.roster import Roster
+from .tables import in_a_line, lines
+
+WHOSE = "whose.csv"
+MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
+
+
+class Work(NamedTuple):
+    """What one student, or one group, handed in for one assignment.
+
+    Attributes
+    ----------
+    student, assignment : str
+    notebooks : list of Notebook
+        Those that count.
+    superseded : list of Notebook
+        Those that do not.
+    why : list of str
+        Why each of these does not.
+    numbers : str
+        Whose numbers it answers: of a group, those of the member whom it names.
+    attempts : int
+        Of how many attempts this is one, where the best counts.
+    """
+
+    student: str
+    assignment: str
+    notebooks: list[Notebook]
+    superseded: list[Notebook]
+    why: list[str]
+    numbers: str
+    attempts: int = 1
+
+    @property
+    def key(self) -> tuple[str, str]:
+        return self.student, self.assignment
+
+    @property
+    def reply(self) -> str:
+        """How the name of a page begins that goes back to the student: what the
+        system wrote of the newest notebook.
+        """
+        return max((*self.notebooks, *self.superseded), key=by_age).claim.reply
+
+
+#: A notebook that says that it is of somebody else than whose work it is in.
+Foreign = tuple[Work, Notebook]
+
+
+class HandedIn(NamedTuple):
+    """What was handed in, by student and assignment.
+
+    Attributes
+    ----------
+    work : list of Work
+    refused : list of Refused
+    left_alone : Counter
+        How many notebooks are of each assignment that is not graded now.
+    """
+
+    work: list[Work]
+    refused: list[Refused]
+    left_alone: Counter[str]
+
+
+def by_age(notebook: Notebook) -> tuple[tuple[int, ...], tuple[int, ...], str]:
+    declared, when = notebook.order
+    return declared, when if isinstance(when, tuple) else (when,), notebook.file
+
+
+def read(
+    submissions: Path, course: Course, term: Term, student: str | None, out: Path
+) -> tuple[list[Notebook], list[Refused]]:
+    """Read what was handed in.
+
+    Raises
+    ------
+    NothingToGrade
+        It is the folder of the course or of results, or there is nothing in it.
+    """
+    if course.folder.resolve().is_relative_to(submissions.resolve()):
+        raise NothingToGrade(
+            f"{submissions} holds the notebooks with solutions: name the folder that was handed in."
+        )
+    if (submissions / "records").is_dir() and (submissions / JOURNAL).is_file():
+        raise NothingToGrade(
+            f"{submissions} holds results of grading: name the folder that was handed in."
+        )
+    try:
+        notebooks, refused = intake.take_in(
+            submissions, course.assignments, term.roster, student, out
+        )
+    except intake.Unfit as error:
+        raise NothingToGrade(str(error)) from None
+    if not notebooks and not refused:
+        raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
+    return notebooks, refused
+
+
+def pair(
+    notebooks: Iterable[Notebook], refused: Iterable[Refused], course: Course, term: Term
+) -> HandedIn:
+    """Sort notebooks by student, or group, and assignment; say of each which counts.
+
+    Of several notebooks for one assignment that counts which the term says, and another one only
+    for questions that it has not: an assignment may be handed in as several notebooks. What answers
+    nothing never counts where another notebook answers something. Where the best attempt counts,
+    each is work of its own until all are judged.
+    """
+    refused, left_alone = list(refused), Counter[str]()
+    handed_in: dict[tuple[str, str], list[Notebook]] = {}
+    for notebook in notebooks:
+        answered = course.assignments_of(notebook)
+        graded = [name for name in answered if name in course.assignments]
+        if not answered:
+            why = "No question of any assignment is named in it."
+            refused.append(Refused(notebook.file, notebook.student, why))
+        elif not graded:
+            left_alone[answered[0]] += 1
+        for assignment in graded:
+            group = term.group_of(notebook.student)
+            handed_in.setdefault((group, assignment), []).append(notebook)
+    work = [
+        attempt
+        for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
+        for attempt in _attempts(student, assignment, mine, course, term)
+    ]
+    return HandedIn(work, refused, left_alone)
+
+
+def _attempts(
+    student: str, assignment: str, mine: Sequence[Notebook], course: Course, term: Term
+) -> Iterator[Work]:
+    """The attempt that counts, or where the best of them does, all."""
+    wants_in_time, several = term.attempts in (IN_TIME, BEST), len(mine) > 1
+    ranks = {
+        notebook.file: (
+            not several or course.answers_something(notebook),
+            not (wants_in_time and term.is_late(student, assignment, notebook)),
+        )
+        for notebook in mine
+    }
+    answers_most, in_time_most = max(ranks.values())
+    attempts: list[list[Notebook]] = []
+    superseded: list[Notebook] = []
+    why: list[str] = []
+    taken: set[str] = set()
+    for notebook in sorted(mine, key=lambda one: (ranks[one.file], by_age(one)), reverse=True):
+        names = set(notebook.named) & set(course.names[assignment])
+        answers, in_time = ranks[notebook.file]
+        if attempts and names and not names & taken:
+            attempts[-1].append(notebook)
+            taken |= names
+        elif not attempts or (term.attempts == BEST and answers):
+            attempts.append([notebook])
+            taken = set(names)
+        else:
+            reasons = (
+                "it answers nothing" if answers_most and not answers else "",
+                "it came late, and another in time" if in_time_most and not in_time else "",
+                "another is newer",
+            )
+            superseded.append(notebook)
+            why.append(next(filter(None, reasons)))
+    members = {plain_identity(name): name for name in (student, *term.members(student))}
+    for counting in attempts:
+        says = [members.get(plain_identity(notebook.says), student) for notebook in counting]
+        counting.sort(key=lambda notebook: notebook.file)
+        yield Work(student, assignment, counting, superseded, why, says[0], len(attempts))
+
+
+# --- what a person is told before anything is run -------------------------------------------------
+
+
+def say(handed_in: HandedIn, term: Term, folder: Path, show: TextIO) -> list[Foreign]:
+    """Say whose each file is, how that is known, and which do not count; give the notebooks that
+    say that they are of somebody else.
+    """
+    for name, number in sorted(handed_in.left_alone.items()):
+        are = ("notebook is", "is") if number == 1 else ("notebooks are", "are")
+        print(f"{number} {are[0]} of {name}, and {are[1]} left alone.", file=show)
+    _say_whose(handed_in, folder, show)
+    if term.roster:
+        _say_absent(handed_in, term, term.roster, show)
+    return _say_foreign(handed_in.work, show)
+
+
+def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
+    rows: dict[tuple[str, ...], None] = {}
+    for one in handed_in.work:
+        unless = f"unless it is the best of {one.attempts} attempts" if one.attempts > 1 else ""
+        for notebook, why in zip(
+            (*one.notebooks, *one.superseded), (*((unless,) * len(one.notebooks)), *one.why)
+        ):
+            known = notebook.matched, notebook.says, why
+            rows[one.student, one.assignment, notebook.file, *known] = None
+    header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
+    write(folder / WHOSE, lines(header, rows))
+    around = {
+        one.file.partition(one.claim.place)[0].strip("/")
+        for each in handed_in.work
+        for one in each.notebooks
+    } - {""}
+    if len(around) == 1:
+        (enclosing,) = around
+        print(
+            f"The folder {in_a_line(enclosing, 120)!r} encloses everything, and is taken for "
+            "nobody's name.",
+            file=show,
+        )
+    for student, assignment, file, matched, _, why in itertools.islice(rows, MOST_SHOWN):
+        whose = f"  {in_a_line(student, 60)} <- {in_a_line(file, 120)}  ({assignment}; {matched})"
+        print(whose + (f" DOES NOT COUNT: {why}" if why else ""), file=show)
+    if len(rows) > MOST_SHOWN:
+        print(f"  ... and {len(rows) - MOST_SHOWN} more: {folder / WHOSE}", file=show)
+    ends = ("whose are they?", intake.NOT_MATCHED)
+    asked = [refused for refused in handed_in.refused if refused.why.endswith(ends)]
+    for refused in asked[:MOST_SHOWN]:
+        print(f"  ? <- {in_a_line(refused.file, 120)}: {in_a_line(refused.why, 300)}", file=show)
+
+
+def _say_absent(handed_in: HandedIn, term: Term, roster: Roster, show: TextIO) -> None:
+    present = {member for one in handed_in.work for member in term.members(one.student)}
+    damaged = {one.student for one in handed_in.refused} & set(roster.people) - present
+    missing = sorted(set(roster.people) - present - damaged)
+    for names, what in (
+        (missing, "handed in nothing"),
+        (sorted(damaged), "handed in what cannot be graded"),
+    ):
+        if names:
+            shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
+            print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
+
+
+def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
+    foreign = [
+        (one, notebook)
+        for one in work
+        for notebook in one.notebooks
+        if notebook.says and plain_identity(notebook.says) != plain_identity(one.numbers)
+    ]
+    for one, notebook in foreign[:MOST_SHOWN]:
+        print(
+            f"  ! {in_a_line(notebook.file, 120)} says that it is of "
+            f"{in_a_line(notebook.says, 60)!r}, and is graded as that of "
+            f"{in_a_line(one.student, 60)!r}",
+            file=show,
+        )
+    if len(foreign) > MOST_SHOWN:
+        print(f"  ... and {len(foreign) - MOST_SHOWN} more.", file=show)
+    return foreign
+
+
+# --- what is refused before anything is run -------------------------------------------------------
+
+
+#: Of the notebooks that say whose they are, so many may be wrong before it is the roster that is.
+FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
+
+
+def demand_own_numbers(
+    work: Sequence[Work],
+    questions: Mapping[str, Questions],
+    foreign: Sequence[Foreign],
+    roster: Roster | None,
+) -> None:
+    """Numbers follow from who one is: where many say to be somebody else, all
+    would be judged by wrong numbers.
+    """
+    varied = {
+        name
+        for name, asked in questions.items()
+        if any(len(variants) > 1 for variants in asked.values())
+    }
+    saying = sum(
+        bool(notebook.says)
+        for one in work
+        if one.assignment in varied
+        for notebook in one.notebooks
+    )
+    wrong = [(one, notebook) for one, notebook in foreign if one.assignment in varied]
+    if len(wrong) <= max(FEW_FOREIGN, SHARE_FOREIGN * saying):
+        return
+    (one, notebook), *_ = wrong
+    why = (
+        "The roster knows them by another word than they wrote: of `student`, `email` and `name` "
+        "the first column that it has is the one that their numbers follow from."
+        if roster
+        else "Name a roster in term.toml in which they are called as they wrote, or name their "
+        "folders so."
+    )
+    raise NothingToGrade(
+        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else "
+        f"than they are graded as: {notebook.says!r} as {one.student!r}, say. "
+        "Each student's numbers follow from that word, so their answers would be judged by other "
+        "numbers than they were given. "
+        f"{why} If all of it is right as it is listed: --as-listed."
+    )
+
+
+#: From this share of the answers to questions with variants on, right answers
+#: to other numbers are no accident.
+MANY_OTHER_NUMBERS = 0.1
+
+
+def say_other_numbers(
+    store: Store, work: Sequence[Work], questions: Mapping[str, Questions], show: TextIO
+) -> None:
+    """Say it where many answers are right for other numbers than those that their
+    authors are believed to have had.
+    """
+    for assignment, asked in questions.items():
+        varied = {name for name, variants in asked.items() if len(variants) > 1}
+        given = other = 0
+        for one in work:
+            record = (
+                store.read(one.student, assignment)
+                if varied and one.assignment == assignment
+                else None
+            )
+            for name, mark in record.marks.items() if record else ():
+                given += name in varied and mark.outcome != "not attempted"
+                other += mark.note == "other numbers"
+        if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
+            print(
+                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
+                "other numbers than those of the student whose they are, and earn nothing. "
+                "Are the students called here as they have written into their notebooks? "
+                "If not, grade again with the right roster in term.toml: nothing is lost.",
+                file=show,
+            )
+
+
+def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
+    """Everything from one student is a question, not a result: a folder
+    around it may have been taken for one.
+    """
+    students = {one.student for one in work}
+    doubtful = [
+        notebook
+        for one in work
+        for notebook in (*one.superseded, *(one.notebooks if one.attempts > 1 else ()))
+        if not notebook.claim.given_by_system
+    ]
+    if len(students) == 1 and doubtful and roster is None and student is None:
+        (only,) = students
+        raise NothingToGrade(
+            f"The notebooks would all be of one student, {only!r}, and all but the newest would "
+            "not count. "
+            f"If that is so, say --student {only!r}; if not, name the folder in which each student "
+            "has one of their own, or name a roster in term.toml."
+        )
+
+
+def put_renamed_aside(
+    store: Store, work: Sequence[Work], journal: Journal, dry_run: bool = False
+) -> Iterator[str]:
+    """Move the record of a student away whose very notebooks are now
+    another's: the folder was renamed.
+
+    What people decided on the answers is entered for the new name too.
+    """
+    present = {(one.student, one.assignment) for one in work}
+    known = set()
+    absent: list[tuple[str, str, set[tuple[str, str]]]] = []
+    for record in store.all():
+        known.add((record.student, record.assignment))
+        if (record.student, record.assignment) not in present:
+            files = {(notebook.file, notebook.sha256) for notebook in record.notebooks}
+            absent.append((record.student, record.assignment, files))
+    owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
+    for one in work if absent else ():
+        if (one.student, one.assignment) not in known:
+            digests = frozenset(notebook.digest for notebook in one.notebooks)
+            owners.setdefault((one.assignment, digests), []).append(one)
+    for student, assignment, files in absent:
+        fitting = owners.get((assignment, frozenset(digest for _, digest in files)), [])
+        # Of equal notebooks, those that lie where they lay: then a roster has
+        # given the student another name.
+        there = [
+            one
+            for one in fitting
+            if files == {(notebook.file, notebook.digest) for notebook in one.notebooks}
+        ]
+        names = [one.student for one in there or fitting]
+        if names:
+            said = f"{student!r} is now {' or '.join(map(repr, names))}: "
+            if dry_run:
+                yield f"{said}the record of {assignment} would be moved."
+                continue
+            place = store.put_aside(student, assignment)
+            said += f"the record of {assignment} was moved to {place}."
+            decisions = journal.of(student, assignment)
+            if decisions and len(names) == 1:
+                journal.hand_on(student, assignment, names[0])
+                said += f" So were {len(decisions)} of the decisions, to the new name."
+            elif decisions:
+                said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
+            yield said
