@@ -277,7 +277,11 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
     journal.append([one], collisions=True)
     journal.append([journal.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
-    options = {"solutions": begun / "solutions", "limits": LIMITS, "show": io.StringIO()}
+    options = {
+        "solutions": begun / "solutions",
+        "running": Running(limits=LIMITS),
+        "show": io.StringIO(),
+    }
     write_term(out, tmp_path / "roster.csv", {"essays": ["essays"]})
     grade(begun / "in", out.folder, **options)
     found = out.read("benjamin", "essays").marks[SUM]
@@ -293,7 +297,7 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
 def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_path, capsys):
     Journal(out.folder).add(out.read("ben", "essays"), SUM, 1, who="Ann")
     Journal(out.folder).add(out.read("cem", "essays"), SUM, 0.5, who="Ann")
-    options = {"solutions": begun / "solutions", "limits": LIMITS}
+    options = {"solutions": begun / "solutions", "running": Running(limits=LIMITS)}
     regrade(out.folder, solutions=begun / "solutions", show=io.StringIO())
     # A word of the text is no other question.
     reworded = write_essays(tmp_path / "reworded", text="Why is that so?")

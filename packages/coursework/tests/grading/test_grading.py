@@ -635,7 +635,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     few, same, shown = tmp_path / "few", handed_in(sum="sine = sm.cos(alpha)"), io.StringIO()
     for name in ("b", "c"):
         put(few, name, same)
-    options = {"solutions": course / "solutions", "limits": LIMITS}
+    options = {"solutions": course / "solutions", "running": Running(limits=LIMITS)}
     grade(few, copied, show=io.StringIO(), **options)
     for name, credit in (("b", 0.5), ("c", 1)):
         Journal(copied).add(
@@ -869,7 +869,7 @@ def test_what_dies_under_a_notebook_costs_only_that_one(
     monkeypatch.setattr("coursework.grading.execution.sandbox.Sandbox", Stub)
     options = {
         "solutions": course / "solutions",
-        "limits": LIMITS,
+        "running": Running(limits=LIMITS),
         "workers": 2,
         "show": io.StringIO(),
     }

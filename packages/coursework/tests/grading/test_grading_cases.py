@@ -300,7 +300,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
             answered(2 * begun.own[student], says=student),
             "beams.ipynb",
         )
-    options = {"solutions": begun.place / "solutions", "limits": LIMITS}
+    options = {"solutions": begun.place / "solutions", "running": Running(limits=LIMITS)}
     said = io.StringIO()
     with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 say .*roster in term.toml"):
         grade(tmp_path / "in", tmp_path / "out", show=said, **options)
@@ -708,7 +708,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     run, for those who are asked it.
     """
     said = io.StringIO()
-    options = {"limits": LIMITS, "show": said}
+    options = {"running": Running(limits=LIMITS), "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
     assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
     assert {mark.points for mark in marks_of(out, NAME).values()} == {0}

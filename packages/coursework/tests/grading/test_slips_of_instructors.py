@@ -42,7 +42,7 @@ def course(tmp_path):
 def graded(course, submissions, out, **more):
     options = {
         "solutions": course / "course" / "solutions",
-        "limits": LIMITS,
+        "running": Running(limits=LIMITS),
         "show": io.StringIO(),
         **more,
     }

@@ -9,8 +9,8 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
-from types import NoneType
-from typing import Any, Self, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Any, Self, Union, get_args, get_origin, get_type_hints
 
 from ..checking.fields import (
     Fields,
@@ -81,16 +81,27 @@ def _reader(kind: Any) -> Reader[Any]:
         return many(_reader(arguments[0]))
     if origin is Mapping:
         return by_name(_reader(arguments[1]))
-    if NoneType in arguments and len(arguments) == 2:
-        inner = _reader(next(one for one in arguments if one is not NoneType))
-        return lambda value, where: None if value is None else inner(value, where)
+    if origin in (Union, UnionType) and kind != Json:
+        of_some = {_shape(one): _reader(one) for one in arguments if one is not NoneType}
+        some, *_ = of_some.values()
+        return lambda value, where: (
+            None
+            if value is None and NoneType in arguments
+            else of_some.get(type(value), some)(value, where)
+        )
     return anything
+
+
+def _shape(kind: Any) -> type:
+    """What JSON has in place of a value of a type."""
+    origin = get_origin(kind) or kind
+    return {tuple: list, Mapping: dict}.get(origin, dict if is_dataclass(kind) else origin)
 
 
 def written(value: Any) -> Json:
     """A value of a dataclass as JSON."""
-    if isinstance(value, AsJson):
-        return value.as_json()
+    if hasattr(value, "as_json"):
+        return value.as_json()  # type: ignore[no-any-return]
     if isinstance(value, (tuple, list)):
         return [written(part) for part in value]
     if isinstance(value, Mapping):

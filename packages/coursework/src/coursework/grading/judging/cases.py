@@ -7,15 +7,15 @@ Contracts lie in the folder of results, one file each.
 """
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ...checking.fields import by_name
+from ...checking.fields import by_name, many
 from ...checking.variants import names_of_variants, numbers_of_variants, siblings_of, text_of
 from ..record import Case, Place, Record
 from ..store import write
-from .contract import Asked, Contract, variants_from_json
+from .contract import Asked, Contract
 from .journal import Decision, digest_of_answer
 
 
@@ -101,7 +101,13 @@ def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
     ------
     Misread
     """
-    return by_name(variants_from_json)(json.loads(path.read_text("utf8")), str(path))
+    return by_name(many(Contract.from_json))(json.loads(path.read_text("utf8")), str(path))
+
+
+def keep_questions(path: Path, questions: Mapping[str, Sequence[Contract]]) -> None:
+    """Write what :func:`questions_in` reads; it holds right answers."""
+    as_json = {name: [one.as_json() for one in those] for name, those in questions.items()}
+    write(path, json.dumps(as_json, ensure_ascii=False), private=True)
 
 
 def judged_alike(one: Contract | None, other: Contract | None) -> bool:

@@ -8,25 +8,15 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import cast
 
-from ...checking.fields import (
-    Fields,
-    Json,
-    a_list,
-    anything,
-    by_name,
-    many,
-    number,
-    text,
-    written,
-)
+from ...checking.fields import Json
 from ...checking.plain import Plain
 from ...checking.question import Locker, Question, Variant
+from ..reading import AsJson
 
 
 @dataclass(frozen=True)
-class Elsewhere:
+class Elsewhere(AsJson):
     """Where an answer is compared once more, which no student can know.
 
     Attributes
@@ -46,22 +36,6 @@ class Elsewhere:
     right: tuple[str, ...] = ()
     partly: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
-    @classmethod
-    def from_json(cls, found: object, where: str) -> Elsewhere:
-        about = Fields(found, where)
-        return cls(
-            about.maybe("salt", text),
-            about.maybe("calls", many(a_list)) or (),
-            about.get("right", many(text)),
-            about.maybe("partly", by_name(many(text))) or {},
-        )
-
-    def as_json(self) -> dict[str, Json]:
-        place: dict[str, Json] = (
-            {"calls": written(self.calls)} if self.salt is None else {"salt": self.salt}
-        )
-        return place | {"right": written(self.right), "partly": written(self.partly)}
-
     def of(self, question: Question) -> Question:
         """A question as it is asked there."""
         return (
@@ -78,12 +52,8 @@ class Elsewhere:
         return hashlib.sha256(json.dumps(self.calls).encode()).hexdigest()[:16]
 
 
-def _rubric(found: object, where: str) -> tuple[str, ...] | dict[str, float]:
-    return by_name(number)(found, where) if isinstance(found, dict) else many(text)(found, where)
-
-
 @dataclass(frozen=True)
-class Contract:
+class Contract(AsJson):
     """A question as it stands, in one of its variants.
 
     Attributes
@@ -115,7 +85,7 @@ class Contract:
     title: str
     variable: str | None
     worth: float
-    question: Question
+    question: Question = field(metadata={"key": "public"})
     credit: Mapping[str, float] = field(default_factory=dict)
     known: Mapping[str, Json] = field(default_factory=dict)
     right: tuple[str, ...] | None = None
@@ -126,55 +96,10 @@ class Contract:
     text: str = ""
     version: str = ""
 
-    @classmethod
-    def from_json(cls, found: object, where: str) -> Contract:
-        """Read a contract.
-
-        Raises
-        ------
-        Misread
-        """
-        about = Fields(found, where)
-        return cls(
-            about.get("title", text),
-            about.maybe("variable", text),
-            about.get("worth", number),
-            about.get("public", Question.from_json),
-            about.maybe("credit", by_name(number)) or {},
-            about.maybe("known", by_name(anything)) or {},
-            about.maybe("right", many(text)),
-            cast("Plain | None", about.maybe("plain", by_name(a_list))),
-            about.maybe("secret", Elsewhere.from_json),
-            about.maybe("partial", text),
-            about.maybe("rubric", _rubric) or (),
-            about.maybe("text", text) or "",
-            about.maybe("version", text) or "",
-        )
-
-    def as_json(self) -> dict[str, Json]:
-        """What :meth:`from_json` reads."""
-        return {
-            "title": self.title,
-            "variable": self.variable,
-            "worth": self.worth,
-            "credit": written(self.credit),
-            "public": self.question.as_json(),
-            "known": written(self.known),
-            "right": written(self.right),
-            "plain": written(self.plain),
-            "secret": self.secret.as_json() if self.secret else None,
-            "partial": self.partial,
-            "rubric": written(self.rubric),
-            "text": self.text,
-            "version": self.version,
-        }
-
     def with_version(self) -> Contract:
         """The same with the version that follows from everything else."""
-        said = {name: value for name, value in self.as_json().items() if name != "version"}
-        return replace(
-            self, version=hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
-        )
+        said = json.dumps(replace(self, version="").as_json(), sort_keys=True)
+        return replace(self, version=hashlib.sha256(said.encode()).hexdigest()[:16])
 
     def locker(self, fingerprint: str) -> Locker | None:
         """What is known of a fingerprint."""
@@ -202,18 +127,6 @@ class Contract:
             rubric=tuple(self.rubric),
             question=replace(self.question, variant=variant),
         )
-
-
-def variants_from_json(found: object, where: str) -> tuple[Contract, ...]:
-    """Read a question in all its variants, in the order of their numbers."""
-    others = Fields(found, where).maybe("others", many(Contract.from_json)) or ()
-    return (Contract.from_json(found, where), *others)
-
-
-def variants_as_json(variants: tuple[Contract, ...]) -> dict[str, Json]:
-    """What :func:`variants_from_json` reads."""
-    first, *others = (one.as_json() for one in variants)
-    return {**first, "others": list(others)} if others else first
 
 
 @dataclass(frozen=True)

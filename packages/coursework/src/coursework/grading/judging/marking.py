@@ -34,8 +34,16 @@ from ..store import write
 from ..versions import software
 from ..workers import processors, side_by_side
 from . import secret as in_secret
-from .cases import Contracts, asked_of, case_by_rule, case_of, questions_in, variants_of
-from .contract import Asked, Contract, variants_as_json
+from .cases import (
+    Contracts,
+    asked_of,
+    case_by_rule,
+    case_of,
+    keep_questions,
+    questions_in,
+    variants_of,
+)
+from .contract import Asked, Contract
 
 #: An exact question is not decided by an answer that is off by less than this: it may be rounded.
 NEARLY = MP.mpf("1.5e-3")
@@ -157,25 +165,27 @@ def contract_of(question: AuthoredQuestion, secret: bytes, text: str = "") -> Co
     figures stay.
     """
     near = {text: Locker().as_json() for text in question.near}
-    found = Contract(
-        question.title,
-        question.variable,
-        question.worth,
-        question.public,
-        question.credit,
-        near
-        | {
-            text: Locker(tuple(entry.answers)).as_json() for text, entry in question.entries.items()
-        },
-        _canonical_of(question),
-        question.plain if question.public.kind != "function" else None,
-        in_secret.secret_of(question, secret),
-        read(question.public, question.plain).text if question.partial else None,
-        question.rubric,
-        "\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
+    known = near | {
+        text: Locker(tuple(entry.answers)).as_json() for text, entry in question.entries.items()
+    }
+    contract = Contract(
+        title=question.title,
+        variable=question.variable,
+        worth=question.worth,
+        question=question.public,
+        credit=question.credit,
+        known=known,
+        right=_canonical_of(question),
+        plain=question.plain if question.public.kind != "function" else None,
+        secret=in_secret.secret_of(question, secret),
+        partial=read(question.public, question.plain).text if question.partial else None,
+        rubric=question.rubric,
+        text="\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
     )
     # As JSON holds it: of what its author wrote as a tuple it makes a list.
-    return Contract.from_json(json.loads(json.dumps(found.as_json())), question.name).with_version()
+    return Contract.from_json(
+        json.loads(json.dumps(contract.as_json())), question.name
+    ).with_version()
 
 
 def _canonical_of(question: AuthoredQuestion) -> tuple[str, ...] | None:
@@ -201,8 +211,7 @@ def load_questions(
 
     def work_out(path: Path) -> None:
         found = questions_of(path, secret, edition)
-        as_json = {name: variants_as_json(variants) for name, variants in found.items()}
-        write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
+        keep_questions(places[path], found)
 
     missing = [path for path, place in places.items() if not place.exists()]
     if len(missing) == 1:
@@ -257,9 +266,8 @@ def earlier_variants(
     if new:
         # A list of contracts is as long as the questions that it holds: most never change.
         file = hashlib.sha256(json.dumps(new).encode()).hexdigest()[:16]
-        as_json = {name: variants_as_json(tuple(questions[name])) for name in new}
         place = results / "questions" / f"variants-{file}.json"
-        write(place, json.dumps(as_json, ensure_ascii=False), private=True)
+        keep_questions(place, {name: questions[name] for name in new})
         editions.append(Edition(place.name, new))
         write(path, json.dumps([one.as_json() for one in editions]))
     earlier: dict[str, list[Sequence[Contract]]] = {}
