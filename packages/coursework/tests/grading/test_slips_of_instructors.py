@@ -16,6 +16,7 @@ from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade
 from coursework.grading.judging import journal as judging
 from coursework.grading.judging.journal import Journal
+from coursework.grading.running import Running
 from coursework.grading.store import Store
 from coursework.grading.submissions.roster import Roster
 

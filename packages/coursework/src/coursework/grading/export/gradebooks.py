@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...checking.reply import plain_text
-from ..judging.journal import Exported, Given, Journal, new_id, now, with_decisions
+from ..judging.journal import Exported, Given, Journal, with_decisions
 from ..judging.term import EXCUSED, FILE, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
 from ..store import Store, file_name, write
@@ -436,7 +436,11 @@ def fill(
         marks.journal.append(
             [
                 Exported(
-                    new_id(), now(), getpass.getuser(), assignment, header, str(target), now_written
+                    who=getpass.getuser(),
+                    assignment=assignment,
+                    column=header,
+                    file=str(target),
+                    marks=now_written,
                 )
             ]
         )

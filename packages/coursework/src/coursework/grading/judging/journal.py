@@ -49,17 +49,62 @@ RAISED, UNDER_REVIEW, ACCEPTED, REJECTED = "raised", "under review", "accepted",
 OPEN = (RAISED, UNDER_REVIEW)
 
 
-@dataclass(frozen=True)
-class Decision(AsJson):
-    """One person's decision on one answer.
+def now() -> str:
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="microseconds")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Event(AsJson):
+    """What somebody did.
 
     Attributes
     ----------
-    id : str
-    when, who : str
+    id, when, who : str
+    """
+
+    id: str = field(default_factory=lambda: secrets.token_hex(8))
+    when: str = field(default_factory=now)
+    who: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnAnswer(Event):
+    """What somebody said on one answer.
+
+    Attributes
+    ----------
     student, assignment, question : str
     answer : str
         The :func:`digest_of_answer` of what was looked at.
+    contract : str
+        The version of the question by which the answer was judged when it was looked at; empty
+        where nobody knows.
+    after : str
+        The event that counted when this one was entered; empty where there was none.
+    appeal : str
+        The first step of the appeal to which this belongs; empty if it is this one, or if there is
+        none.
+    """
+
+    student: str
+    assignment: str
+    question: str
+    answer: str
+    contract: str = ""
+    after: str = ""
+    appeal: str = ""
+
+    @property
+    def key(self) -> Key:
+        return self.student, self.assignment, self.question
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision(OnAnswer):
+    """One person's decision on one answer, which may accept an appeal.
+
+    Attributes
+    ----------
     credit : float or None
         From 0 to 1; ``None`` takes the decision ``undoes`` back, or all earlier ones where that is
         empty.
@@ -71,86 +116,40 @@ class Decision(AsJson):
         For those who grade.
     undoes : str
         The decision of the same person that is taken back.
-    after : str
-        The decision that counted when this one was made; empty where there was none.
-    contract : str
-        The version of the question by which the answer was judged when it was looked at; empty
-        where nobody knows.
     points : tuple of float or None
         What each line of the rubric was worth, where the points are those of the rubric.
-    appeal : str
-        The appeal that is accepted by this decision.
     """
 
-    id: str
-    when: str
-    who: str
-    student: str
-    assignment: str
-    question: str
-    answer: str
     credit: float | None
     comment: str = ""
     rubric: tuple[str, ...] = ()
     why: str = ""
     undoes: str = ""
-    after: str = ""
-    contract: str = ""
     points: tuple[float | None, ...] | None = None
-    appeal: str = ""
-
-    @property
-    def key(self) -> Key:
-        return self.student, self.assignment, self.question
 
 
-@dataclass(frozen=True)
-class Appeal(AsJson):
+@dataclass(frozen=True, kw_only=True)
+class Appeal(OnAnswer):
     """A step of an appeal against a mark: it is raised, taken up, or
     rejected. A :class:`Decision` accepts it.
 
     Attributes
     ----------
-    id : str
-    when, who : str
-        Who entered it.
-    student, assignment, question, answer, contract : str
-        As of a decision.
     state : str
     words : str
         The student's where it is raised, and later for the student.
-    appeal : str
-        The first step; empty if it is this one.
-    after : str
-        The last step when this one was taken.
     """
 
-    id: str
-    when: str
-    who: str
-    student: str
-    assignment: str
-    question: str
-    answer: str
-    contract: str
     state: str
     words: str
-    appeal: str = ""
-    after: str = ""
-
-    @property
-    def key(self) -> Key:
-        return self.student, self.assignment, self.question
 
 
-@dataclass(frozen=True)
-class Worth(AsJson):
+@dataclass(frozen=True, kw_only=True)
+class Worth(Event):
     """What a line of a rubric is worth from now on.
 
     Attributes
     ----------
-    id : str
-    when, who : str
     question, line : str
     points : float
     source : float or None
@@ -159,9 +158,6 @@ class Worth(AsJson):
         The event that was in force before.
     """
 
-    id: str
-    when: str
-    who: str
     question: str
     line: str
     points: float
@@ -178,13 +174,12 @@ class Part(AsJson):
     outcome: str
 
 
-@dataclass(frozen=True)
-class Given(AsJson):
+@dataclass(frozen=True, kw_only=True)
+class Given(Event):
     """The marks that were given for a student's work on an assignment.
 
     Attributes
     ----------
-    id, when, who : str
     student, assignment : str
     why : str
         What moved them, or that they were given first.
@@ -195,9 +190,6 @@ class Given(AsJson):
         The notebooks that counted, with the SHA-256 of each.
     """
 
-    id: str
-    when: str
-    who: str
     student: str
     assignment: str
     why: str
@@ -212,21 +204,17 @@ class Given(AsJson):
         return sum(part.outcome == "undecided" for part in self.marks.values())
 
 
-@dataclass(frozen=True)
-class Exported(AsJson):
+@dataclass(frozen=True, kw_only=True)
+class Exported(Event):
     """Marks that were written into the table of a system.
 
     Attributes
     ----------
-    id, when, who : str
     assignment, column, file : str
     marks : mapping of str to str
         What was written for each student.
     """
 
-    id: str
-    when: str
-    who: str
     assignment: str
     column: str
     file: str
@@ -235,10 +223,7 @@ class Exported(AsJson):
 
 #: What people said, which another grader's journal may bring.
 ByPeople = Decision | Appeal | Worth
-Event = ByPeople | Given | Exported
-KINDS: dict[str, type[Event]] = {
-    kind.__name__.lower(): kind for kind in (Decision, Appeal, Worth, Given, Exported)
-}
+KINDS = {kind.__name__.lower(): kind for kind in (Decision, Appeal, Worth, Given, Exported)}
 
 
 class Collision(ValueError):
@@ -261,9 +246,16 @@ def digest_of_answer(record: Record, question: str) -> str:
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def contract_of(record: Record, question: str) -> str:
-    """The version of the question by which an answer is judged."""
-    return record.marks[question].version if question in record.marks else ""
+def _on(record: Record, question: str) -> dict[str, str]:
+    """What every event on an answer says of it, by whoever sits at this machine."""
+    return {
+        "who": getpass.getuser(),
+        "student": record.student,
+        "assignment": record.assignment,
+        "question": question,
+        "answer": digest_of_answer(record, question),
+        "contract": record.marks[question].version if question in record.marks else "",
+    }
 
 
 def case_id(record: Record, question: str) -> str:
@@ -498,19 +490,17 @@ class Journal:
             if isinstance(one, Decision | Appeal)
             and (one.student, one.assignment) == (student, assignment)
         ]
-        ids = {one.id: new_id() for one in old}
+        ids = {one.id: secrets.token_hex(8) for one in old}
         copies: list[Event] = []
         for one in old:
             same: dict[str, Any] = {
-                "id": ids[one.id],
-                "student": name,
-                "after": ids.get(one.after, one.after),
+                field: ids.get(getattr(one, field), getattr(one, field))
+                for field in ("id", "after", "appeal", "undoes")
+                if hasattr(one, field)
             }
-            same["appeal"] = ids.get(one.appeal, one.appeal)
             if isinstance(one, Decision):
-                same["undoes"] = ids.get(one.undoes, one.undoes)
                 same["why"] = f"{one.why}; was {student!r}".removeprefix("; ")
-            copies.append(replace(one, **same))
+            copies.append(replace(one, student=name, **same))
         self.append(copies)
 
     def add(self, record: Record, question: str, credit: float | None, **more: Any) -> Decision:
@@ -520,42 +510,17 @@ class Journal:
         return one
 
     def decision(
-        self,
-        record: Record,
-        question: str,
-        credit: float | None,
-        *,
-        who: str | None = None,
-        comment: str = "",
-        rubric: Iterable[str] = (),
-        why: str = "",
-        undoes: str = "",
-        after: str = "",
-        points: Iterable[float | None] | None = None,
-        appeal: str = "",
-        contract: str = "",
+        self, record: Record, question: str, credit: float | None, **more: Any
     ) -> Decision:
-        """A decision on an answer of a record, which is not entered yet."""
+        """A decision on an answer of a record, which is not entered yet; ``more`` are its other
+        fields.
+        """
         if credit is not None and not 0 <= credit <= 1:
             raise ValueError(f"A credit is a number from 0 to 1, and this is {credit}.")
-        return Decision(
-            new_id(),
-            now(),
-            who or getpass.getuser(),
-            record.student,
-            record.assignment,
-            question,
-            digest_of_answer(record, question),
-            credit,
-            comment,
-            tuple(rubric),
-            why,
-            undoes,
-            after,
-            contract or contract_of(record, question),
-            None if points is None else tuple(points),
-            appeal,
-        )
+        for name in ("rubric", "points"):
+            if more.get(name) is not None:
+                more[name] = tuple(more[name])
+        return Decision(**_on(record, question) | more, credit=credit)
 
     def appeal(
         self,
@@ -565,10 +530,9 @@ class Journal:
         *,
         state: str = RAISED,
         of: Appealed | None = None,
-        after: str = "",
-        who: str | None = None,
+        **more: Any,
     ) -> Appeal:
-        """Raise an appeal, or take the next step ``of`` one, upon the step that was seen.
+        """Raise an appeal, or take the next step ``of`` one, ``after`` the step that was seen.
 
         Raises
         ------
@@ -593,20 +557,8 @@ class Journal:
                 if state == RAISED
                 else "Say why it is rejected."
             )
-        one = Appeal(
-            new_id(),
-            now(),
-            who or getpass.getuser(),
-            record.student,
-            record.assignment,
-            question,
-            digest_of_answer(record, question),
-            contract_of(record, question),
-            state,
-            words,
-            of.id if of else "",
-            after,
-        )
+        first = of.id if of else ""
+        one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
         self.append([one], collisions=True)
         return one
 
@@ -629,7 +581,14 @@ class Journal:
         """
         who = who or getpass.getuser()
         return [
-            Worth(new_id(), now(), who, question, line, points, source.get(line), after)
+            Worth(
+                who=who,
+                question=question,
+                line=line,
+                points=points,
+                source=source.get(line),
+                after=after,
+            )
             for line, (points, after) in changes.items()
         ]
 
@@ -792,9 +751,9 @@ class Journal:
         ValueError
             The table cannot be read; nothing is entered then.
         """
-        header, rows = _table(path)
+        (header, rows), who = _table(path), who or getpass.getuser()
         if {"id", "version", "credit"} <= header:
-            return self._take_in_decisions(path, rows, records, who or getpass.getuser())
+            return self._take_in_decisions(path, rows, records, who)
         if {"student", "question", "words"} <= header:
             return self._take_in_appeals(rows, records, who)
         raise ValueError(
@@ -842,7 +801,7 @@ class Journal:
         return len(wanted), unused
 
     def _take_in_appeals(
-        self, rows: Sequence[Row], records: Iterable[Record], who: str | None
+        self, rows: Sequence[Row], records: Iterable[Record], who: str
     ) -> tuple[int, list[str]]:
         by_names: dict[tuple[str, str], list[Record]] = {}
         for record in records:
@@ -863,14 +822,6 @@ class Journal:
                 except ValueError as error:
                     unused.append(f"line {number}: {error}")
         return entered, unused
-
-
-def new_id() -> str:
-    return secrets.token_hex(8)
-
-
-def now() -> str:
-    return datetime.datetime.now(datetime.UTC).isoformat(timespec="microseconds")
 
 
 def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ..record import Case, Mark, Record
 from ..store import Store
 from ..tables import in_a_line, number
-from .journal import Given, Journal, Part, new_id, now
+from .journal import Given, Journal, Part
 
 TABLE, PAGE = "regrade.csv", "regrade.html"
 #: Instead of the name of a variant: all that the source has no more.
@@ -341,8 +341,16 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
             for mark in moved
         )
         why = ", ".join(dict.fromkeys(reasons)) or why
-    key = record.student, record.assignment
-    return Given(new_id(), now(), who, *key, why, record.points, record.worth, marks, files)
+    return Given(
+        who=who,
+        student=record.student,
+        assignment=record.assignment,
+        why=why,
+        points=record.points,
+        worth=record.worth,
+        marks=marks,
+        files=files,
+    )
 
 
 def _students(moves: Sequence[Move]) -> str:
