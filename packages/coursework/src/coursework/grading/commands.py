@@ -8,7 +8,7 @@ import datetime
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .judging.journal import Decision, Journal
@@ -16,251 +16,284 @@ if TYPE_CHECKING:
     from .store import Store
 
 
-MARKS = "the folder that `coursework grade --out` made"
-SOLUTIONS = "folder of the notebooks with solutions (default: the one in course.toml)"
-
-
-def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add these commands to those of ``coursework``."""
-    grade = commands.add_parser("grade", help="grade a folder or an archive of notebooks")
-    grade.add_argument(
-        "submissions", help="a folder, a zip from Canvas, Moodle or Brightspace, or a notebook"
-    )
-    grade.add_argument(
-        "--out", required=True, metavar="MARKS", help="folder for marks, feedback and reports"
-    )
-    grade.add_argument("--solutions", help=SOLUTIONS)
-    grade.add_argument(
-        "--assignment",
-        action="append",
-        default=[],
-        metavar="NAME",
-        help="grade only this assignment (default: all in term.toml)",
-    )
-    grade.add_argument("--student", help="the student, if one student handed in everything")
-    grade.add_argument(
-        "--dry-run",
-        action="store_true",
-        help="show whose each file is, how the grader knows, and how many it would run; run none",
-    )
-    grade.add_argument(
-        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
-    )
-    grade.add_argument(
-        "--workers",
-        type=int,
-        help="number of notebooks to run at a time (default: one per processor)",
-    )
-    grade.add_argument(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="run on this Dask cluster instead, such as tls://host:8786",
-    )
-    grade.add_argument(
-        "--keys",
-        metavar="FOLDER",
-        help="folder of the cluster's keys, from `coursework cluster`",
-    )
-    grade.add_argument(
-        "--allow-weak-isolation",
-        action="store_true",
-        help="run students' code even if this machine cannot isolate it; use it only on a machine "
-        "that you can afford to lose",
-    )
-    grade.add_argument(
-        "--as-listed",
-        action="store_true",
-        help="grade by the list even if many notebooks claim to be somebody else's",
-    )
-    regrade = commands.add_parser(
-        "regrade", help="judge the stored answers again after a question or a decision has changed"
-    )
-    regrade.add_argument("out", metavar="MARKS", help=MARKS)
-    regrade.add_argument("--solutions", help=SOLUTIONS)
-    regrade.add_argument(
-        "--dry-run", action="store_true", help="show which marks would change, and change none"
-    )
-    regrade.add_argument(
-        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
-    )
-    review = commands.add_parser(
-        "review", help="judge answers on a page that only this machine can open"
-    )
-    review.add_argument("out", metavar="MARKS", help=MARKS)
-    review.add_argument("--grader", help="your name, for the journal (default: your user name)")
-    review.add_argument("--hide-names", action="store_true", help="show numbers in place of names")
-    review.add_argument(
-        "--port", type=int, default=0, help="port for the page (default: any free one)"
-    )
-    review.add_argument(
-        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
-    )
-    merge = commands.add_parser(
-        "merge", help="add another grader's decisions, or a table of decisions or appeals"
-    )
-    merge.add_argument("out", metavar="MARKS", help=MARKS)
-    merge.add_argument(
-        "files",
-        nargs="+",
-        metavar="FILE",
-        help="the journal.jsonl in their folder of marks; a copy of undecided.csv with credit "
-        "filled in; or a table of appeals with the columns student, question and words",
-    )
-    merge.add_argument(
-        "--grader", help="the grader whose decisions a table holds (default: your user name)"
-    )
-    merge.add_argument(
-        "--dry-run", action="store_true", help="show what would be added, and add nothing"
-    )
-    merge.add_argument(
-        "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
-    )
-    term = commands.add_parser(
-        "term", help="write the totals, pages and statistics of a course from MARKS/term.toml"
-    )
-    term.add_argument(
-        "new",
-        nargs="?",
-        choices=["new"],
-        help="write term.toml instead, with every choice explained",
-    )
-    term.add_argument("out", metavar="MARKS", help=MARKS)
-    term.add_argument("--solutions", help=SOLUTIONS)
-    term.add_argument("--roster", metavar="FILE.csv", help="with new: the students of the course")
-    term.add_argument(
-        "--earlier",
-        nargs="+",
-        default=[],
-        metavar="counts.json",
-        help="counts of earlier years, to compare",
-    )
-    term.add_argument(
-        "--dry-run", action="store_true", help="print the table of the course, and write nothing"
-    )
-    export = commands.add_parser("export", help="export the marks and the pages of feedback")
-    export.add_argument("out", metavar="MARKS", help=MARKS)
-    export.add_argument(
-        "--lms",
-        metavar="FILE.csv",
-        help="the gradebook that you exported from Canvas, Moodle or Brightspace",
-    )
-    export.add_argument(
-        "--filled",
-        metavar="FILE.csv",
-        help="file for the filled gradebook (default: FILE-filled.csv)",
-    )
-    export.add_argument(
-        "--column",
-        help="the column to fill: its name, or how it begins (default: the one in term.toml)",
-    )
-    export.add_argument(
-        "--name",
-        action="append",
-        default=[],
-        metavar="OURS=THEIRS",
-        help="name of a column in a gradebook in another language, such as --name identifier=ID",
-    )
-    export.add_argument(
-        "--as-of",
-        metavar="TIME",
-        type=_moment,
-        help="export the marks that were decided and due by then, such as 2026-12-01T12:00 "
-        "(default: now)",
-    )
-    export.add_argument(
-        "--dry-run", action="store_true", help="show what would be filled in, and write nothing"
-    )
-    export.add_argument(
-        "--overwrite",
-        action="append",
-        default=[],
-        metavar="STUDENT",
-        help="replace a mark that somebody entered by hand for this student; an excuse stays",
-    )
-    export.add_argument(
-        "--assignment",
-        help="the assignment to export (default: all whose columns in term.toml are in the "
-        "gradebook)",
-    )
-    export.add_argument(
-        "--feedback",
-        metavar="FILE.zip",
-        help="write the pages of feedback, under names that your system recognises",
-    )
-    export.add_argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table")
-    export.add_argument(
-        "--gradescope",
-        metavar="results.json",
-        help="write one student's results for Gradescope",
-    )
-    export.add_argument("--student", help="the student for --gradescope, if there are several")
-    gradescope = commands.add_parser(
-        "gradescope", help="build a Gradescope autograder for one assignment"
-    )
-    gradescope.add_argument("marks", metavar="MARKS", help="a folder with term.toml")
-    gradescope.add_argument(
-        "--out", required=True, metavar="FILE.zip", help="file for the autograder"
-    )
-    gradescope.add_argument("--solutions", help=SOLUTIONS)
-    gradescope.add_argument("--assignment", required=True, metavar="NAME", help="the assignment")
-    why = commands.add_parser("why", help="explain a mark, with its history")
-    why.add_argument("student", metavar="STUDENT", help="the student's ID")
-    why.add_argument("assignment", metavar="ASSIGNMENT", help="the assignment's name")
-    why.add_argument("--marks", default="marks", metavar="MARKS", help=MARKS)
-    cluster = commands.add_parser(
-        "cluster", help="start the scheduler of a cluster, or one of its workers"
-    )
-    cluster.add_argument(
-        "--keys",
-        required=True,
-        metavar="FOLDER",
-        help="folder of the keys; new ones are made if it has none",
-    )
-    cluster.add_argument(
-        "--host", help="start the scheduler, at this address, where the others can reach it"
-    )
-    cluster.add_argument(
-        "--port", type=int, default=8786, help="the scheduler's port (default: %(default)s)"
-    )
-    cluster.add_argument(
-        "--worker",
-        metavar="ADDRESS",
-        help="start a worker for the scheduler at this address, such as tls://host:8786",
-    )
-    cluster.add_argument(
-        "--workers",
-        type=int,
-        help="number of notebooks to run at a time (default: one per processor)",
-    )
-    sample = commands.add_parser("sample-class", help="make an invented class to try grading on")
-    sample.add_argument("--out", required=True, help="folder for the class")
-    sample.add_argument(
-        "--students", type=int, default=200, help="number of students (default: %(default)s)"
-    )
-    sample.add_argument(
-        "--seed",
-        type=int,
-        default=1,
-        help="random seed of the class (default: %(default)s)",
-    )
-    sample.add_argument(
-        "--notebooks",
-        default="",
-        help="names of the exercises, separated by commas; each student hands in one notebook with "
-        "all of them (default: the first)",
-    )
-    sample.add_argument("--solutions", help=SOLUTIONS)
-    sample.add_argument(
-        "--layout",
-        default="folders",
-        choices=("folders", "canvas", "moodle", "brightspace", "nbgrader"),
-        help="form of the hand-ins (default: %(default)s)",
-    )
+def _argument(*names: str, **options: Any) -> tuple[tuple[str, ...], dict[str, Any]]:
+    return names, options
 
 
 def _moment(text: str) -> datetime.datetime:
     """A time that a person typed, on the clocks of this machine if it names no zone."""
     return datetime.datetime.fromisoformat(text).astimezone()
+
+
+OUT = _argument("out", metavar="MARKS", help="the folder that `coursework grade --out` made")
+SOLUTIONS = _argument(
+    "--solutions",
+    help="folder of the notebooks with solutions (default: the one in course.toml)",
+)
+YES = _argument(
+    "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
+)
+WORKERS = _argument(
+    "--workers",
+    type=int,
+    help="number of notebooks to run at a time (default: one per processor)",
+)
+#: What each command does, and what it is told.
+ARGUMENTS = {
+    "grade": (
+        "grade a folder or an archive of notebooks",
+        [
+            _argument(
+                "submissions",
+                help="a folder, a zip from Canvas, Moodle or Brightspace, or a notebook",
+            ),
+            _argument(
+                "--out", required=True, metavar="MARKS", help="folder for marks, feedback, reports"
+            ),
+            SOLUTIONS,
+            _argument(
+                "--assignment",
+                action="append",
+                default=[],
+                metavar="NAME",
+                help="grade only this assignment (default: all in term.toml)",
+            ),
+            _argument("--student", help="the student, if one student handed in everything"),
+            _argument(
+                "--dry-run",
+                action="store_true",
+                help="show whose each file is, how the grader knows, and how many it would run; "
+                "run none",
+            ),
+            YES,
+            WORKERS,
+            _argument(
+                "--scheduler",
+                metavar="ADDRESS",
+                help="run on this Dask cluster instead, such as tls://host:8786",
+            ),
+            _argument(
+                "--keys",
+                metavar="FOLDER",
+                help="folder of the cluster's keys, from `coursework cluster`",
+            ),
+            _argument(
+                "--allow-weak-isolation",
+                action="store_true",
+                help="run students' code even if this machine cannot isolate it; use it only on a "
+                "machine that you can afford to lose",
+            ),
+            _argument(
+                "--as-listed",
+                action="store_true",
+                help="grade by the list even if many notebooks claim to be somebody else's",
+            ),
+        ],
+    ),
+    "regrade": (
+        "judge the stored answers again after a question or a decision has changed",
+        [
+            OUT,
+            SOLUTIONS,
+            _argument(
+                "--dry-run",
+                action="store_true",
+                help="show which marks would change, and change none",
+            ),
+            YES,
+        ],
+    ),
+    "review": (
+        "judge answers on a page that only this machine can open",
+        [
+            OUT,
+            _argument("--grader", help="your name, for the journal (default: your user name)"),
+            _argument("--hide-names", action="store_true", help="show numbers in place of names"),
+            _argument(
+                "--port", type=int, default=0, help="port for the page (default: any free one)"
+            ),
+            YES,
+        ],
+    ),
+    "merge": (
+        "add another grader's decisions, or a table of decisions or appeals",
+        [
+            OUT,
+            _argument(
+                "files",
+                nargs="+",
+                metavar="FILE",
+                help="the journal.jsonl in their folder of marks; a copy of undecided.csv with "
+                "credit filled in; or a table of appeals with the columns student, question and "
+                "words",
+            ),
+            _argument(
+                "--grader",
+                help="the grader whose decisions a table holds (default: your user name)",
+            ),
+            _argument(
+                "--dry-run", action="store_true", help="show what would be added, and add nothing"
+            ),
+            YES,
+        ],
+    ),
+    "term": (
+        "write the totals, pages and statistics of a course from MARKS/term.toml",
+        [
+            _argument(
+                "new",
+                nargs="?",
+                choices=["new"],
+                help="write term.toml instead, with every choice explained",
+            ),
+            OUT,
+            SOLUTIONS,
+            _argument("--roster", metavar="FILE.csv", help="with new: the students of the course"),
+            _argument(
+                "--earlier",
+                nargs="+",
+                default=[],
+                metavar="counts.json",
+                help="counts of earlier years, to compare",
+            ),
+            _argument(
+                "--dry-run",
+                action="store_true",
+                help="print the table of the course, and write nothing",
+            ),
+        ],
+    ),
+    "export": (
+        "export the marks and the pages of feedback",
+        [
+            OUT,
+            _argument(
+                "--lms",
+                metavar="FILE.csv",
+                help="the gradebook that you exported from Canvas, Moodle, Brightspace or "
+                "Blackboard; term.toml says which column belongs to which assignment",
+            ),
+            _argument(
+                "--filled",
+                metavar="FILE.csv",
+                help="file for the filled gradebook (default: FILE-filled.csv)",
+            ),
+            _argument(
+                "--as-of",
+                metavar="TIME",
+                type=_moment,
+                help="export the marks that were decided and due by then, such as "
+                "2026-12-01T12:00 (default: now)",
+            ),
+            _argument(
+                "--dry-run",
+                action="store_true",
+                help="show what would be filled in, and write nothing",
+            ),
+            _argument(
+                "--overwrite",
+                action="append",
+                default=[],
+                metavar="STUDENT",
+                help="replace a mark that somebody entered by hand for this student; an excuse "
+                "stays",
+            ),
+            _argument(
+                "--assignment",
+                help="the assignment to export (default: all whose columns in term.toml are in "
+                "the gradebook)",
+            ),
+            _argument(
+                "--feedback",
+                metavar="FILE.zip",
+                help="write the pages of feedback, under names that your system recognises",
+            ),
+            _argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table"),
+        ],
+    ),
+    "gradescope": (
+        "build a Gradescope autograder for one assignment",
+        [
+            _argument("marks", metavar="MARKS", help="a folder with term.toml"),
+            _argument("--out", required=True, metavar="FILE.zip", help="file for the autograder"),
+            SOLUTIONS,
+            _argument("--assignment", required=True, metavar="NAME", help="the assignment"),
+        ],
+    ),
+    "why": (
+        "explain a mark, with its history",
+        [
+            _argument("student", metavar="STUDENT", help="the student's ID"),
+            _argument("assignment", metavar="ASSIGNMENT", help="the assignment's name"),
+            _argument(
+                "--marks",
+                default="marks",
+                metavar="MARKS",
+                help="the folder of marks (default: %(default)s)",
+            ),
+        ],
+    ),
+    "cluster": (
+        "start the scheduler of a cluster, or one of its workers",
+        [
+            _argument(
+                "--keys",
+                required=True,
+                metavar="FOLDER",
+                help="folder of the keys; new ones are made if it has none",
+            ),
+            _argument(
+                "--host",
+                help="start the scheduler, at this address, where the others can reach it",
+            ),
+            _argument(
+                "--port",
+                type=int,
+                default=8786,
+                help="the scheduler's port (default: %(default)s)",
+            ),
+            _argument(
+                "--worker",
+                metavar="ADDRESS",
+                help="start a worker for the scheduler at this address, such as tls://host:8786",
+            ),
+            WORKERS,
+        ],
+    ),
+    "sample-class": (
+        "make an invented class to try grading on",
+        [
+            _argument("--out", required=True, help="folder for the class"),
+            _argument(
+                "--students",
+                type=int,
+                default=200,
+                help="number of students (default: %(default)s)",
+            ),
+            _argument(
+                "--seed",
+                type=int,
+                default=1,
+                help="random seed of the class (default: %(default)s)",
+            ),
+            _argument(
+                "--notebooks",
+                default="",
+                help="names of the exercises, separated by commas; each student hands in one "
+                "notebook with all of them (default: the first)",
+            ),
+            SOLUTIONS,
+        ],
+    ),
+}
+
+
+def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add these commands to those of ``coursework``."""
+    for command, (does, arguments) in ARGUMENTS.items():
+        parser = commands.add_parser(command, help=does)
+        for names, options in arguments:
+            parser.add_argument(*names, **options)
 
 
 class NeedsLinux(RuntimeError):
@@ -521,47 +554,34 @@ def export(
     out: str,
     lms: str | None,
     filled: str | None,
-    column: str | None,
-    name: Sequence[str],
     as_of: datetime.datetime | None,
     dry_run: bool,
     overwrite: Sequence[str],
     assignment: str | None,
     feedback: str | None,
     nbgrader: str | None,
-    gradescope: str | None,
-    student: str | None,
 ) -> None:
     from .export import gradebooks
     from .store import Store
 
-    if not (lms or feedback or nbgrader or gradescope):
-        sys.exit(
-            "coursework export: name what to write: --lms, --feedback, --nbgrader or --gradescope."
-        )
+    if not (lms or feedback or nbgrader):
+        sys.exit("coursework export: name what to write: --lms, --feedback or --nbgrader.")
     try:
-        store = Store(out)
-        if lms:
-            pairs = [renamed.partition("=") for renamed in name]
-            names = {ours: theirs for ours, _, theirs in pairs}
-            for one, its_column in gradebooks.columns(lms, store, assignment, column, names):
-                marks = gradebooks.Marks(store, one, as_of=as_of)
-                target = gradebooks.place_of_filled(lms, filled)
-                said = gradebooks.fill(lms, marks, its_column, target, names, overwrite, dry_run)
-                print(*said, sep="\n")
-                lms = lms if dry_run else str(target)
-                filled = str(target)
+        store, book = Store(out), lms or ""
+        target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
+        for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
+            marks = gradebooks.Marks(store, one, as_of=as_of)
+            print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
+            # The next column is filled where this one was.
+            book = book if dry_run else target
         if dry_run:
             return
-        if feedback or nbgrader or gradescope:
-            marks = gradebooks.Marks(store, assignment, as_of=as_of)
+        marks = gradebooks.Marks(store, assignment, as_of=as_of)
         if feedback:
             written = gradebooks.write_feedback(feedback, marks, store)
             print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
         if nbgrader:
             gradebooks.write_nbgrader(nbgrader, marks)
-        if gradescope:
-            gradebooks.write_gradescope(gradescope, marks, student)
     except ValueError as error:  # CannotExport, BadTerm and BadRoster are such
         sys.exit(f"coursework export: {error}")
 
@@ -629,13 +649,11 @@ def cluster(
     os.execv(command[0], command)
 
 
-def sample_class(
-    out: str, students: int, seed: int, notebooks: str, solutions: str | None, layout: str
-) -> None:
+def sample_class(out: str, students: int, seed: int, notebooks: str, solutions: str | None) -> None:
     from .sample_class import make_class
 
     made = make_class(
-        out, students, seed, [name for name in notebooks.split(",") if name], solutions, layout
+        out, students, seed, [name for name in notebooks.split(",") if name], solutions
     )
     print(f"{students} students in {made}")
 

@@ -89,7 +89,7 @@ class Desk:
         """Read the questions of some assignments."""
         self.course, results = course, self.store.folder
         self.questions = course.questions(sorted(set(assignments)), results)
-        self.term.policies.demand(course.all_questions)
+        self.term.regrading.demand(course.all_questions)
         every = {name: those for asked in self.questions.values() for name, those in asked.items()}
         self.earlier = marking.earlier_variants(every, results)
         self.judge = closing.enter_context(Judge(self.questions, self.contracts, self.store.log))
@@ -126,7 +126,7 @@ class Desk:
         for name, asked in own.items():
             before, case = record.marks.get(name), cases[name]
             taken_out = case.own.variant not in variants_of(questions[name])
-            mark = self.term.policies.applied(
+            mark = self.term.regrading.applied(
                 name, verdicts[name], before and before.judged, case, taken_out
             )
             # What the lines of a rubric are worth, where its author said so.
@@ -379,7 +379,8 @@ def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None
     """Write down what was refused: of another folder nothing is forgotten."""
     everywhere = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
     everywhere[str(place.resolve())] = tuple(sorted(refused))
-    write(store.folder / REFUSED, as_text(everywhere))
+    as_json = {name: [one.as_json() for one in those] for name, those in everywhere.items()}
+    write(store.folder / REFUSED, as_text(as_json))
 
 
 def with_marks_of(old: Record | None, record: Record) -> Record:

@@ -1,4 +1,5 @@
-"""Dataclasses as JSON, and back: one reader and one writer, made from the fields themselves.
+"""Dataclasses as JSON, and back, or from a table that people write: readers and a writer that are
+made from the fields themselves.
 
 JSON calls a field as Python does, with spaces for underscores; a field that has its default is left
 out. Two fields can therefore never be exchanged by a reader that was written by hand.
@@ -7,10 +8,11 @@ out. Two fields can therefore never be exchanged by a reader that was written by
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from types import NoneType, UnionType
-from typing import Any, Self, Union, get_args, get_origin, get_type_hints
+from typing import Any, Protocol, Self, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from ..checking.fields import (
     Fields,
@@ -25,6 +27,7 @@ from ..checking.fields import (
     whole,
 )
 
+Some = TypeVar("Some")
 PLAIN: dict[object, Reader[Any]] = {str: text, float: number, int: whole, bool: truth}
 
 
@@ -107,3 +110,46 @@ def written(value: Any) -> Json:
     if isinstance(value, Mapping):
         return {name: written(part) for name, part in value.items()}
     return value  # type: ignore[no-any-return, union-attr]
+
+
+class Leaves(Protocol):
+    """A file that people write: it reads single values, and says what is wrong and where."""
+
+    def leaf(self, kind: object, where: str, value: object, most: float) -> object:
+        """A value of a type that is no table and no list."""
+
+    def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
+        """A value that is of a type of JSON, called so."""
+
+    def unknown(self, where: str, name: str, known: Iterable[str]) -> Exception:
+        """What is wrong with a key that there is not."""
+
+
+def from_table(file: Leaves, kind: Any, where: str, value: object, most: float = math.inf) -> Any:
+    """A value that stands at a place, by its type: a table for a dataclass, whose keys are the
+    names of its fields with hyphens.
+    """
+    origin, arguments = get_origin(kind), get_args(kind)
+    if is_dataclass(kind):
+        types, said = get_type_hints(kind), {}
+        known = {field.name.replace("_", "-"): field for field in fields(kind)}
+        for name, part in file.of(dict, "a table", where, value).items():
+            if name not in known:
+                raise file.unknown(where, name, known)
+            field, place = known[name], f"{where}.{name}".strip(".")
+            most = field.metadata.get("most", math.inf)
+            said[field.name] = from_table(file, types[field.name], place, part, most)
+        return kind(**said)  # type: ignore[operator]
+    if origin is Mapping:
+        table = file.of(dict, "a table", where, value)
+        return {
+            name: from_table(file, arguments[1], f"{where}.{name}", part)
+            for name, part in table.items()
+        }
+    if origin is tuple:
+        what = "a list of tables" if is_dataclass(arguments[0]) else "a list"
+        listed = file.of(list, what, where, value)
+        return tuple(from_table(file, arguments[0], where, part) for part in listed)
+    if NoneType in arguments and len(arguments) == 2:
+        return from_table(file, arguments[0], where, value, most)
+    return file.leaf(kind, where, value, most)

@@ -9,13 +9,11 @@ from __future__ import annotations
 import ast
 import contextlib
 import copy
-import datetime
 import io
 import json
 import os
 import random
 import re
-import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -466,7 +464,6 @@ def make_class(
     seed: int = 1,
     notebooks: Sequence[str] = (),
     solutions: str | Path | None = None,
-    layout: str = "folders",
 ) -> Path:
     """Write a class to a folder, and give where its submissions are.
 
@@ -479,8 +476,6 @@ def make_class(
         The exercises that are joined into the notebook that is handed in; the first of all if none
         is named.
     solutions : path, optional
-    layout : {'folders', 'canvas', 'moodle', 'brightspace', 'nbgrader'}
-        How the submissions are handed out.
     """
     folder = Path(solutions or find_course().sources)
     stems = list(notebooks) or [
@@ -506,10 +501,7 @@ def make_class(
     )
     for number in range(students):
         student = f"student-{number + 1:03}"
-        # Moodle's worksheet knows a student by the address.
-        work = _Student(
-            exercise, answers, dice, f"{student}@example.org" if layout == "moodle" else student
-        )
+        work = _Student(exercise, answers, dice, student)
         for name, share, habit in HABITS:
             if dice.random() < share and number not in hostile:
                 habit(work)
@@ -530,12 +522,9 @@ def make_class(
         files[student] = data
         expected[student] = {"did": work.did, "questions": work.expected}
     (out / "expected.json").write_text(json.dumps(expected, indent=1) + "\n", "utf8")
-    (out / "gradebook.csv").write_bytes(
-        _gradebook(
-            layout, list(files), sum(variants[0].worth for variants in exercise.questions.values())
-        )
-    )
-    return LAYOUTS[layout](out, files, "-and-".join(stems))
+    worth = sum(variants[0].worth for variants in exercise.questions.values())
+    (out / "gradebook.csv").write_text(_gradebook(list(files), worth), "utf8", newline="")
+    return _folders(out, files, "-and-".join(stems))
 
 
 # --- how it is handed out -----------------------------------------------------------------------
@@ -553,108 +542,13 @@ def _folders(out: Path, files: Mapping[str, bytes], name: str) -> Path:
     return place
 
 
-def _nbgrader(out: Path, files: Mapping[str, bytes], name: str) -> Path:
-    place = out / "submitted"
-    for student, data in files.items():
-        folder = place / student / name
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / f"{name}.ipynb").write_bytes(data)
-    return place
-
-
-def _zip(out: Path, entries: Mapping[str, bytes]) -> Path:
-    place = out / "submissions.zip"
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
-        for entry, content in entries.items():
-            info = zipfile.ZipInfo(entry, (2026, 11, 21, 20, 1, 0))
-            info.compress_type = zipfile.ZIP_DEFLATED
-            archive.writestr(info, content)
-    place.write_bytes(data.getvalue())
-    return place
-
-
-def _numbers(files: Mapping[str, bytes]) -> list[tuple[str, bytes, int]]:
-    """Each student with an invented number."""
-    return [
-        (student, data, 100_000 + number) for number, (student, data) in enumerate(files.items(), 1)
-    ]
-
-
-def _canvas(out: Path, files: Mapping[str, bytes], name: str) -> Path:
-    return _zip(
-        out,
-        {
-            f"{student.replace('-', '')}_{'LATE_' if number % 20 == 0 else ''}{number}_"
-            f"{800_000 + number}_{name}.ipynb": data
-            for student, data, number in _numbers(files)
-        },
-    )
-
-
-def _moodle(out: Path, files: Mapping[str, bytes], name: str) -> Path:
-    return _zip(
-        out,
-        {
-            f"{student.title().replace('-', ' ')}_{number}_assignsubmission_file_/"
-            f"{name}.ipynb": data
-            for student, data, number in _numbers(files)
-        },
-    )
-
-
-def _brightspace(out: Path, files: Mapping[str, bytes], name: str) -> Path:
-    entries = {"index.html": b"<html></html>"}
-    for student, data, number in _numbers(files):
-        handed_in = datetime.datetime(2026, 11, 21, 20, number % 60)
-        when = f"{handed_in:%b %d, %Y} {handed_in.hour - 12}{handed_in.minute:02} PM"
-        entries[f"{number}-4711 - {student.title().replace('-', ' ')} - {when}/{name}.ipynb"] = data
-    return _zip(out, entries)
-
-
-LAYOUTS = {
-    "folders": _folders,
-    "canvas": _canvas,
-    "moodle": _moodle,
-    "brightspace": _brightspace,
-    "nbgrader": _nbgrader,
-}
-
-
-def _gradebook(layout: str, students: Sequence[str], worth: float) -> bytes:
-    """The gradebook that the teacher would export, with a student more who handed in nothing."""
-    students = [*students, f"student-{len(students) + 1:03}"]
-    numbered = [
-        (student, student.title().replace("-", " "), 100_000 + number)
-        for number, student in enumerate(students, 1)
-    ]
-    if layout == "moodle":
-        lines = [
-            'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be '
-            'changed","Feedback comments"'
-        ]
-        lines += [
-            f'"Participant {number}","{name}",{student}@example.org,"Submitted for '
-            f'grading",,{worth}.00,Yes,'
-            for student, name, number in numbered
-        ]
-        return "\ufeff".encode() + "\n".join([*lines, ""]).encode()
-    if layout == "brightspace":
-        lines = [
-            "OrgDefinedId,Username,Last Name,First Name,Exercises Points Grade <Numeric "
-            f"MaxPoints:{worth}>,End-of-Line Indicator"
-        ]
-        lines += [
-            f"#{number},#{student},{name.split()[1]},{name.split()[0]},,#"
-            for student, name, number in numbered
-        ]
-        return "\r\n".join([*lines, ""]).encode()
+def _gradebook(students: Sequence[str], worth: float) -> str:
+    """The gradebook of Canvas, with a student more who handed in nothing."""
     lines = [
         "Student,ID,SIS User ID,SIS Login ID,Section,Exercises (4711),Final Score",
         f"    Points Possible,,,,,{worth},(read only)",
     ]
-    lines += [
-        f'"{name.split()[1]}, {name.split()[0]}",{number},S{number},{student},Section 1,,'
-        for student, name, number in numbered
-    ]
-    return "\r\n".join([*lines, ""]).encode()
+    for number, student in enumerate([*students, f"student-{len(students) + 1:03}"], 100_001):
+        first, last = student.title().split("-")
+        lines.append(f'"{last}, {first}",{number},S{number},{student},Section 1,,')
+    return "\r\n".join([*lines, ""])

@@ -7,6 +7,7 @@ back. Nothing that a student wrote gets into it.
 """
 
 import datetime
+import functools
 import getpass
 import json
 import math
@@ -136,7 +137,7 @@ class Marks:
             )
         return self.assignments[0]
 
-    @property
+    @functools.cached_property
     def missing(self) -> list[str]:
         about = self.term.assignments.get(self.assignment)
         return [
@@ -145,7 +146,7 @@ class Marks:
             if result.state == "missing" and about and about.due and student not in self.damaged
         ]
 
-    @property
+    @functools.cached_property
     def damaged(self) -> set[str]:
         """Who is known to have handed in nothing but what cannot be graded."""
         people = set(self.term.roster.people) if self.term.roster else set()
@@ -285,12 +286,74 @@ def place_of_filled(path: str | Path, filled: str | Path | None = None) -> Path:
     return Path(filled) if filled else path.with_name(f"{path.stem}-filled{path.suffix}")
 
 
+class System(NamedTuple):
+    """How the gradebook of a system is laid out; names of columns are those of English.
+
+    Attributes
+    ----------
+    name : str
+    has : tuple of tuples of str
+        Of each of these one column is there, or begins so.
+    number, own, names : tuple of str
+        The columns of the system's number of a student, of what the course calls them, and of the
+        parts of their full name.
+    column : str
+        What the name of a column of marks looks like, in small letters.
+    out_of : str
+        Where it says what it is out of.
+    """
+
+    name: str
+    has: tuple[tuple[str, ...], ...]
+    number: tuple[str, ...]
+    own: tuple[str, ...]
+    names: tuple[str, ...]
+    column: str
+    out_of: str = "$^"
+
+
+SYSTEMS = (
+    System(
+        "Moodle",
+        (("identifier",), ("grade",)),
+        ("identifier",),
+        ("id number", "username", "email address"),
+        ("full name",),
+        "grade$",
+    ),
+    System(
+        "Brightspace",
+        (("orgdefinedid", "end-of-line indicator"),),
+        (),
+        ("orgdefinedid", "username"),
+        ("first name", "last name"),
+        ".*(points grade|maxpoints:)",
+        r"maxpoints:\s*([\d.,]+)",
+    ),
+    System(
+        "Blackboard",
+        (("username",), ("last name",), ("availability", "last access")),
+        (),
+        ("username", "student id"),
+        ("first name", "last name"),
+        r"(?!weighted total|total).*\[total pts:.*\|\d+$",
+        r"total pts:\s*(?:up to )?([\d.,]+)",
+    ),
+    # Canvas gives the name in one column, or on request in two; and puts the number of an
+    # assignment behind its name.
+    System(
+        "Canvas",
+        (("student", "lastname"), ("id",)),
+        ("id",),
+        ("sis login id", "sis user id", "integration id"),
+        (),
+        r".*\(\d+\)$",
+    ),
+)
+
+
 def columns(
-    path: str | Path,
-    store: Store,
-    assignment: str | None,
-    column: str | None,
-    names: Mapping[str, str] | None = None,
+    path: str | Path, store: Store, assignment: str | None
 ) -> list[tuple[str | None, str | None]]:
     """The assignments that a gradebook has columns for, as the term says, each with its column.
 
@@ -299,11 +362,11 @@ def columns(
     CannotExport
         Of several assignments nobody has said which this is.
     """
-    about = term_of(store.folder).assignments
-    if assignment or column:
-        known = about[assignment].column if assignment and assignment in about else ""
-        return [(assignment, column or known or None)]
-    header = [name.casefold() for name in _read(path, names).header]
+    term = term_of(store.folder)
+    about = term.assignments
+    if assignment:
+        return [(assignment, about[assignment].column if assignment in about else None)]
+    header = [name.casefold() for name in _read(path, term.gradebook).header]
     graded = {name for _, name in Journal(store.folder).standing().given}
     there = [
         (name, one.column)
@@ -319,11 +382,30 @@ def columns(
     return [*there] or [(None, None)]
 
 
-def _read(path: str | Path, names: Mapping[str, str] | None) -> Gradebook:
+def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
     try:
         return Gradebook(Path(path).read_bytes(), names)
     except (OSError, UnicodeDecodeError) as error:
         raise CannotExport(f"{path} cannot be read: {error}.") from None
+
+
+#: What a person is told about students, in this order.
+NOTHING = "In the gradebook, and nothing was handed in"
+DAMAGED = "In the gradebook, and what they handed in cannot be graded"
+STRANGERS = "Handed in, and not in the gradebook"
+MISSING = "Nothing was handed in, and it was due: 0"
+SEVERAL = "Of a name that is there more than once, or that two go by, so not filled in"
+WAITING = "Not filled in, because a person has still to decide"
+APPEALS = "An appeal is open: what is filled in may change"
+CLOSED = "Not filled in, because the system allows no change"
+EXCUSES = "Excused by the term, so not filled in"
+REPLACED = "A mark by hand, written over as you said"
+BY_HAND = "Not filled in, because something else stands there than was written from here"
+CHANGED = "Changed since it was written from here last"
+HEADINGS = (
+    CHANGED, NOTHING, DAMAGED, STRANGERS, MISSING, SEVERAL, WAITING, APPEALS, CLOSED, EXCUSES,
+    REPLACED, BY_HAND,
+)  # fmt: skip
 
 
 def fill(
@@ -331,11 +413,10 @@ def fill(
     marks: Marks,
     column: str | None = None,
     filled: str | Path | None = None,
-    names: Mapping[str, str] | None = None,
     overwrite: Collection[str] = (),
     dry_run: bool = False,
 ) -> list[str]:
-    """Fill the gradebook of Canvas, Moodle or Brightspace.
+    """Fill the gradebook of Canvas, Moodle, Brightspace or Blackboard.
 
     Parameters
     ----------
@@ -346,8 +427,6 @@ def fill(
         The name of the column to fill, or its beginning; needed where several could be meant.
     filled : path, optional
         Where the filled gradebook goes.
-    names : dict, optional
-        What columns are called in this gradebook, by their names in English.
     overwrite : collection of str
         Students whose mark by hand is written over. An excuse, such as Canvas's ``EX``, never is.
     dry_run : bool
@@ -362,13 +441,14 @@ def fill(
     ------
     CannotExport
     """
-    book = _read(path, names)
+    target = place_of_filled(path, filled)
+    book = _read(path, marks.term.gradebook)
     system = _system(book)
     place = _column(book, system, column)
     out_of, first, comma = _scale(book, system, place)
-    found, several = _match(book, system, marks, first)
+    students, several = _match(book, system, marks, first)
     header, assignment = book.header[place], marks.assignment
-    said = [f"{system}: column {header!r}, of {assignment}."]
+    said = [f"{system.name}: column {header!r}, of {assignment}."]
     worths = sorted({marks.mark(student).worth for student in marks.students})
     if out_of and worths != [out_of]:
         said.append(
@@ -381,104 +461,89 @@ def fill(
             f"Of {marks.behind} students something was decided that is not in the marks yet: "
             f"coursework regrade {marks.store.folder}."
         )
-    # What stands there of what was written here is ours to change.
+    if strangers := sorted(set(overwrite) - set(students.values())):
+        raise CannotExport(
+            f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
+        )
+    ours = _written_before(marks, assignment, header)
+    listed = {heading: list[str]() for heading in HEADINGS}
+    now_written: dict[str, str] = {}
+    for line, student in sorted(students.items()):
+        if heading := _why_not(book, system, marks, line, student):
+            listed[heading].append(student)
+            continue
+        points = "0" if student in marks.missing else number(_scaled(marks, student, out_of))
+        there = book.says(line, place)
+        known = there in ("", "-") or any(_is_same(there, one) for one in ours.get(student, ()))
+        if not known and not _is_same(there, points):
+            if student not in overwrite or not _is_number(there):
+                listed[BY_HAND].append(f"{student}: {there}, and graded {points}")
+                continue
+            listed[REPLACED].append(f"{student}: {there} -> {points}")
+        elif there not in ("", "-") and not _is_same(there, points):
+            listed[CHANGED].append(f"{student}: {there} -> {points}")
+        now_written[student] = points
+        book.put(line, place, points.replace(".", ",") if comma else points)
+    if dry_run:
+        said.append(f"{len(now_written)} would be filled in: nothing was written.")
+    else:
+        # First what is ours: of a crash in between, the next run knows more than it
+        # wrote, and nothing is overlooked.
+        event = Exported(
+            who=getpass.getuser(),
+            assignment=assignment,
+            column=header,
+            file=str(target),
+            marks=now_written,
+        )
+        marks.journal.append([event])
+        write(target, bytes(book))
+        said.append(f"{len(now_written)} filled in: {target}")
+    shown = book.column(
+        "student", "lastname", "full name", "username", "orgdefinedid", "identifier"
+    )
+    without = [
+        book.says(line, shown)
+        for line in range(first, len(book.lines))
+        if line not in students and any(field.says for field in book.lines[line][0])
+    ]
+    more, listed[NOTHING] = _with_damaged(marks.store, without)
+    listed[DAMAGED] += more
+    listed[STRANGERS] = sorted(set(marks.students) - set(students.values()) - set(several))
+    listed[MISSING] = sorted(set(marks.missing) & set(students.values()))
+    listed[SEVERAL] = several
+    listed[APPEALS] = [
+        f"{student}: {', '.join(open_ones)}"
+        for student in marks.students
+        if (open_ones := marks.appeals(student))
+    ]
+    for heading, those in listed.items():
+        if those:
+            said.append(f"{heading} ({len(those)}):")
+            said += [f"  {in_a_line(name, 200)}" for name in those]
+    return said
+
+
+def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, list[str]]:
+    """What was written into a column for each student: what stands there of it is ours to change."""
     ours: dict[str, list[str]] = {}
     for event in marks.journal.events:
         if isinstance(event, Exported) and (event.assignment, event.column) == (assignment, header):
             for student, points in event.marks.items():
                 ours.setdefault(student, []).append(points)
-    now_written: dict[str, str] = {}
-    unfit, waiting, closed, kept, excused, replaced, changes = (list[str]() for _ in range(7))
-    missing, damaged = set(marks.missing), marks.damaged
-    filled_in = 0
-    strangers = sorted(set(overwrite) - set(found.values()))
-    if strangers:
-        raise CannotExport(
-            f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
-        )
-    for line, student in sorted(found.items()):
-        if student in damaged:
-            unfit.append(student)
-        elif marks.excused(student):
-            excused.append(student)
-        elif student not in missing and marks.mark(student).undecided:
-            waiting.append(student)
-        elif (
-            system == "Moodle"
-            and book.says(line, book.column("grade can be changed")).casefold() == book.no
-        ):
-            closed.append(student)
-        else:
-            points = "0" if student in missing else number(_scaled(marks, student, out_of))
-            there = book.says(line, place)
-            before = ours.get(student, ())
-            if there not in ("", "-") and not any(
-                _is_same(there, one) for one in (points, *before)
-            ):
-                if student not in overwrite or not _is_number(there):
-                    kept.append(f"{student}: {there}, and graded {points}")
-                    continue
-                replaced.append(f"{student}: {there} -> {points}")
-            elif there not in ("", "-") and not _is_same(there, points):
-                changes.append(f"{student}: {there} -> {points}")
-            now_written[student] = points
-            book.put(line, place, points.replace(".", ",") if comma else points)
-            filled_in += 1
-    if changes:
-        said.append(f"Changed since it was written from here last ({len(changes)}):")
-        said += [f"  {in_a_line(change, 200)}" for change in changes]
-    target = place_of_filled(path, filled)
-    if dry_run:
-        said.append(f"{filled_in} would be filled in: nothing was written.")
-    else:
-        # First what is ours: of a crash in between, the next run knows more than it
-        # wrote, and nothing is overlooked.
-        marks.journal.append(
-            [
-                Exported(
-                    who=getpass.getuser(),
-                    assignment=assignment,
-                    column=header,
-                    file=str(target),
-                    marks=now_written,
-                )
-            ]
-        )
-        write(target, bytes(book))
-        said.append(f"{filled_in} filled in: {target}")
-    without = [
-        book.says(line, _shown(book, system))
-        for line in range(first, len(book.lines))
-        if line not in found and any(field.says for field in book.lines[line][0])
-    ]
-    unmatched = [
-        student
-        for student in marks.students
-        if student not in found.values() and student not in several
-    ]
-    more, without = _with_damaged(marks.store, without)
-    appealing = [
-        f"{student}: {', '.join(open_ones)}"
-        for student in marks.students
-        if (open_ones := marks.appeals(student))
-    ]
-    for heading, those in (
-        ("In the gradebook, and nothing was handed in", without),
-        ("In the gradebook, and what they handed in cannot be graded", [*unfit, *more]),
-        ("Handed in, and not in the gradebook", unmatched),
-        ("Nothing was handed in, and it was due: 0", sorted(missing & set(found.values()))),
-        ("Of a name that is there more than once, or that two go by, so not filled in", several),
-        ("Not filled in, because a person has still to decide", waiting),
-        ("An appeal is open: what is filled in may change", appealing),
-        ("Not filled in, because the system allows no change", closed),
-        ("Excused by the term, so not filled in", excused),
-        ("A mark by hand, written over as you said", replaced),
-        ("Not filled in, because something else stands there than was written from here", kept),
-    ):
-        if those:
-            said.append(f"{heading} ({len(those)}):")
-            said += [f"  {in_a_line(name, 200)}" for name in those]
-    return said
+    return ours
+
+
+def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: str) -> str:
+    """Why nothing is filled in for a student: a heading, or nothing."""
+    if student in marks.damaged:
+        return DAMAGED
+    if marks.excused(student):
+        return EXCUSES
+    if student not in marks.missing and marks.mark(student).undecided:
+        return WAITING
+    may = book.says(line, book.column("grade can be changed")).casefold()
+    return CLOSED if system.name == "Moodle" and may == book.no else ""
 
 
 def _scaled(marks: Marks, student: str, out_of: float | None) -> float:
@@ -514,65 +579,55 @@ def _turned(name: str) -> str:
     return f"{first} {last}"
 
 
-def _system(book: Gradebook) -> str:
-    if book.column("identifier") is not None and book.column("grade") is not None:
-        return "Moodle"
-    if book.column("orgdefinedid") is not None or book.column("end-of-line indicator") is not None:
-        return "Brightspace"
-    # Canvas gives the name in one column, or on request in two.
-    if book.column("student", "lastname") is not None and book.column("id") is not None:
-        return "Canvas"
+def _system(book: Gradebook) -> System:
+    for system in SYSTEMS:
+        if all(book.column(*names) is not None for names in system.has):
+            return system
+    needed = (
+        f"{one.name} ({', '.join(' or '.join(names) for names in one.has)})" for one in SYSTEMS
+    )
     raise CannotExport(
-        "This is no gradebook of Canvas (columns Student, ID), Moodle (Identifier, Grade) or "
-        "Brightspace (OrgDefinedId, End-of-Line Indicator), nor one of Moodle in a language that "
-        f"is known here ({', '.join(LANGUAGES)}). "
-        "Say which column is which: --name 'identifier=...' "
-        "--name 'grade=...'. "
+        f"This is no gradebook of {', '.join(needed)}, nor one of Moodle in a language that is "
+        f"known here ({', '.join(LANGUAGES)}). Write into term.toml which column is which: "
+        "[gradebook], and below it identifier = '...' and grade = '...'. "
         f"Its columns: {', '.join(book.header)[:300]}"
     )
 
 
-def _column(book: Gradebook, system: str, column: str | None) -> int:
+def _column(book: Gradebook, system: System, column: str | None) -> int:
+    """The number of the column to fill: the one that is called so, or else begins so."""
     if column:
-        places = [place for place, name in enumerate(book.header) if name == column] or [
-            place
-            for place, name in enumerate(book.header)
-            if name.lower().startswith(column.lower())
+        wanted = column.casefold()
+        same = [place for place, name in enumerate(book.header) if name.casefold() == wanted]
+        places = same or [
+            place for place, name in enumerate(book.header) if name.casefold().startswith(wanted)
         ]
-    elif system == "Moodle":
-        places = [place for place in (book.column("grade"),) if place is not None]
-    elif system == "Brightspace":
+    else:
         places = [
             place
             for place, name in enumerate(book.header)
-            if "points grade" in name.lower() or "maxpoints:" in name.lower()
+            if re.match(system.column, book.ours.get(name.casefold(), name.lower()))
         ]
-    else:
-        # Canvas puts the number of an assignment behind its name.
-        places = [place for place, name in enumerate(book.header) if re.search(r"\(\d+\)$", name)]
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
         raise CannotExport(
-            f"Name the column to fill with --column; there are {', '.join(map(repr, names))}."
+            "Write into term.toml which column this is, as column = '...' in the table of the "
+            f"assignment; there are {', '.join(map(repr, names))}."
         )
     return places[0]
 
 
-def _scale(book: Gradebook, system: str, place: int) -> tuple[float | None, int, bool]:
+def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, int, bool]:
     """What the column is out of, the first line of a student, and whether numbers have a comma."""
-    first, said = 1, ""
-    if system == "Canvas":
-        while first < len(book.lines) and (
-            book.says(first, 0).lower() == POSSIBLE or not book.says(first, book.column("id"))
-        ):
-            if book.says(first, 0).lower() == POSSIBLE:
-                said = book.says(first, place)
-            first += 1
-    elif system == "Brightspace":
-        found = re.search(r"MaxPoints:\s*([\d.,]+)", book.header[place])
-        said = found[1] if found else ""
-    else:
-        said = book.says(1, book.column("maximum grade"))
+    first = 1
+    about = re.search(system.out_of, book.header[place].lower())
+    said = about[1] if about else book.says(1, book.column("maximum grade"))
+    while system.name == "Canvas" and first < len(book.lines):
+        if book.says(first, 0).lower() == POSSIBLE:
+            said = book.says(first, place)
+        elif book.says(first, book.column("id")):
+            break
+        first += 1
     comma = bool(re.fullmatch(r"\d+,\d+", said))  # as the language writes numbers
     try:
         return float(said.replace(",", ".")), first, comma
@@ -580,16 +635,8 @@ def _scale(book: Gradebook, system: str, place: int) -> tuple[float | None, int,
         return None, first, comma
 
 
-def _shown(book: Gradebook, system: str) -> int | None:
-    return {
-        "Canvas": 0,
-        "Moodle": book.column("full name", "identifier"),
-        "Brightspace": book.column("username", "orgdefinedid"),
-    }[system]
-
-
 def _match(
-    book: Gradebook, system: str, marks: Marks, first: int
+    book: Gradebook, system: System, marks: Marks, first: int
 ) -> tuple[dict[int, str], list[str]]:
     """The student of each line; and students whom several lines could mean."""
     lines: dict[tuple[str, str], set[int]] = {}
@@ -618,39 +665,21 @@ def _match(
     return {line: students[0] for line, students in wanting.items() if len(students) == 1}, several
 
 
-def _keys_of_line(book: Gradebook, system: str, line: int) -> set[tuple[str, str]]:
-    def of(*names: str) -> str:
-        return book.says(line, book.column(*names)).lower()
+def _keys_of_line(book: Gradebook, system: System, line: int) -> set[tuple[str, str]]:
+    def of(name: str) -> str:
+        return book.says(line, book.column(name)).lower().removeprefix("#")
 
-    if system == "Canvas":
-        given = [
-            ("id", of("id")),
-            ("own", of("sis login id")),
-            ("own", of("sis user id")),
-            ("own", of("integration id")),
-        ]
-    elif system == "Moodle":
-        given = [
-            # Behind the word for a participant, in whatever language: "Teilnehmer/in9".
-            ("id", re.sub(r"\D", "", of("identifier"))),
-            ("own", of("id number")),
-            ("own", of("username")),
-            ("own", of("email address")),
-            ("name", of("full name")),
-        ]
-    else:
-        given = [
-            ("own", of("orgdefinedid").removeprefix("#")),
-            ("own", of("username").removeprefix("#")),
-            ("name", " ".join((of("first name") + " " + of("last name")).split())),
-        ]
-    return {key for key in given if key[1]}
+    keys = {("own", of(name)) for name in system.own}
+    keys.add(("name", " ".join(" ".join(map(of, system.names)).split())))
+    # Behind the word for a participant, in whatever language: "Teilnehmer/in9".
+    keys |= {("id", re.sub(r"\D", "", of(name))) for name in system.number}
+    return {key for key in keys if key[1]}
 
 
-def _keys_of_student(system: str, student: str, identity: Identity) -> Iterator[tuple[str, str]]:
+def _keys_of_student(system: System, student: str, identity: Identity) -> Iterator[tuple[str, str]]:
     called = identity.called
-    if system.lower() in called and system != "Brightspace":
-        yield "id", called[system.lower()]
+    if system.number and system.name.lower() in called:
+        yield "id", called[system.name.lower()]
         return
     for own in identity.own or ():
         yield "own", own.lower()
@@ -730,16 +759,8 @@ def write_nbgrader(path: str | Path, marks: Marks) -> None:
 STATUS = {"correct": "passed", "decided": "passed"}
 
 
-def write_gradescope(path: str | Path, marks: Marks, student: str | None = None) -> None:
+def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
     """Write what Gradescope reads of an autograder: the results of one student."""
-    if student is None and len(marks.students) != 1:
-        raise CannotExport(
-            "Gradescope takes one student at a time; name one with --student. There are "
-            f"{len(marks.students)}."
-        )
-    student = student or next(iter(marks.students))
-    if student not in marks.students:
-        raise CannotExport(f"There are no records of {student!r}.")
     tests: list[dict[str, str | float]] = []
     for record in marks.students[student]:
         for mark in record.marks.values():
@@ -760,12 +781,5 @@ def write_gradescope(path: str | Path, marks: Marks, student: str | None = None)
                     "output": readable("\n".join([mark.outcome, *map(plain_text, mark.messages)])),
                 }
             )
-    write(
-        path,
-        json.dumps(
-            {"score": marks.points(student), "output_format": "text", "tests": tests},
-            indent=1,
-            ensure_ascii=False,
-        )
-        + "\n",
-    )
+    results = {"score": marks.points(student), "output_format": "text", "tests": tests}
+    write(path, json.dumps(results, indent=1, ensure_ascii=False) + "\n")

@@ -18,14 +18,15 @@ import tempfile
 import zipfile
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 
 from ...authoring.course import find_course
-from ...checking.fields import Fields, many, text
 from ..judging.secret import FILE as SECRET
 from ..judging.secret import secret_beside
 from ..judging.term import FILE, term_of
+from ..reading import AsJson
 from ..store import write
 from ..versions import folders
 
@@ -156,6 +157,21 @@ def requirements() -> list[str]:
 # --- what runs there ----------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class User(AsJson):
+    """What Gradescope says of a student."""
+
+    email: str
+    name: str
+
+
+@dataclass(frozen=True)
+class Submission(AsJson):
+    """What Gradescope says of a submission."""
+
+    users: tuple[User, ...]
+
+
 def run(home: Path = HOME) -> None:
     """Grade the submission of one student, or of a group, and write its results.
 
@@ -172,12 +188,12 @@ def run(home: Path = HOME) -> None:
     term = term_of(source)
     (assignment,) = term.assignments
     about = home / "submission_metadata.json"
-    user, *_ = Fields(json.loads(about.read_text("utf8")), str(about)).get("users", many(_user))
-    student = user["email"]
+    user, *_ = Submission.from_json(json.loads(about.read_text("utf8")), str(about)).users
+    student = user.email
     results = home / "results" / "results.json"
     if term.roster:
         found, why = term.roster.find(
-            (("email", user["email"]), ("own", user["email"]), ("name", user["name"]))
+            (("email", user.email), ("own", user.email), ("name", user.name))
         )
         if found is None:
             return _say(
@@ -206,11 +222,6 @@ def run(home: Path = HOME) -> None:
         write_gradescope(results, Marks(store), student)
 
 
-def _user(found: object, where: str) -> dict[str, str]:
-    about = Fields(found, where)
-    return {name: about.get(name, text) for name in ("email", "name")}
-
-
 def _say(results: Path, said: str) -> None:
     """Results without questions: for nothing there are no points, and the student is told why."""
     from ..tables import readable
@@ -226,7 +237,7 @@ def prepare(home: Path = HOME) -> None:
 
     term = term_of(home / "source")
     course = Course(home / "source" / "solutions", term)
-    course.questions(term.assignments, home / "questions")
+    course.questions(term.assignments, home)
 
 
 if __name__ == "__main__":

@@ -11,12 +11,13 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from ..reading import from_table
 from ..record import Record
 from ..submissions.intake import Notebook, as_time
 from ..submissions.roster import Roster
@@ -37,6 +38,8 @@ TIMES = (
     "submission time",
 )
 DAY = datetime.timedelta(days=1)
+#: Until when, or `EXCUSED`; or by how much all time is longer.
+Extension = datetime.datetime | str | float
 
 
 class BadTerm(ValueError):
@@ -73,68 +76,99 @@ class Assignment:
     times: Times | None = None
 
 
+#: What is no more than all of it.
+SHARE = {"most": 1}
+
+
 @dataclass(frozen=True)
-class Term:
-    """What the file says; without one nothing is due, and nobody is known.
+class Late:
+    """What lateness costs.
 
     Attributes
     ----------
-    name : str
-    zone : tzinfo
-    roster : Roster or None
-    attempts : str
-    grace : timedelta
+    grace_minutes : float
     a_day, most : float
         Shares of the points earned.
-    nothing_after : timedelta or None
+    nothing_after_days : float or None
     marked : float or None
         The share that is lost by what a system marked as late without saying when it came.
-    assignments : dict of str to Assignment
-    drop : list of (int, list of str)
-    groups : dict of str to tuple of str
-        The members of each.
-    longer : dict of str to float
-        By how much the time of a student is longer.
-    extensions : dict of (student, assignment) to datetime or ``"excused"``
-    policies : Policies
     """
 
-    name: str = "The course"
-    zone: datetime.tzinfo = datetime.UTC
-    roster: Roster | None = None
-    attempts: str = IN_TIME
-    grace: datetime.timedelta = datetime.timedelta()
-    a_day: float = 0
-    most: float = 1
-    nothing_after: datetime.timedelta | None = None
-    marked: float | None = None
-    assignments: Mapping[str, Assignment] = field(default_factory=dict)
-    drop: Sequence[tuple[int, Sequence[str]]] = ()
-    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    longer: Mapping[str, float] = field(default_factory=dict)
-    extensions: Mapping[tuple[str, str], datetime.datetime | str] = field(default_factory=dict)
-    policies: Policies = Policies()
+    grace_minutes: float = 0
+    a_day: float = field(default=0, metadata=SHARE)
+    most: float = field(default=1, metadata=SHARE)
+    nothing_after_days: float | None = None
+    marked: float | None = field(default=None, metadata=SHARE)
 
     @property
-    def late_costs(self) -> bool:
+    def grace(self) -> datetime.timedelta:
+        return datetime.timedelta(minutes=self.grace_minutes)
+
+    @property
+    def costs(self) -> bool:
         """Whether lateness costs anything."""
-        return bool(self.a_day) or self.nothing_after is not None
+        return bool(self.a_day) or self.nothing_after_days is not None
 
     def penalty(self, late: datetime.timedelta) -> float:
         """The share of the earned points that a delay costs.
 
         >>> from datetime import timedelta
-        >>> term = Term(grace=timedelta(minutes=15), a_day=0.1, most=0.5,
-        ...             nothing_after=timedelta(days=7))
+        >>> rules = Late(grace_minutes=15, a_day=0.1, most=0.5, nothing_after_days=7)
         >>> late = [timedelta(hours=hours) for hours in (-1, 0.2, 1, 25, 167, 169)]
-        >>> [round(term.penalty(delay), 2) for delay in late]
+        >>> [round(rules.penalty(delay), 2) for delay in late]
         [0.0, 0.0, 0.1, 0.2, 0.5, 1.0]
         """
         if late <= self.grace:
             return 0.0
-        if self.nothing_after is not None and late > self.nothing_after:
+        if self.nothing_after_days is not None and late > self.nothing_after_days * DAY:
             return 1.0
         return min(self.most, self.a_day * math.ceil(late / DAY))
+
+
+@dataclass(frozen=True)
+class Drop:
+    """Of some assignments, or of all, so many do not count."""
+
+    lowest: int = 1
+    of: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Term:
+    """What the file says, key by key; without one nothing is due, and nobody is known.
+
+    Attributes
+    ----------
+    name : str
+    time_zone : tzinfo
+    roster : Roster or None
+    attempts : str
+    late : Late
+    assignments : mapping of str to Assignment
+    drop : tuple of Drop
+    groups : mapping of str to tuple of str
+        The members of each.
+    extensions : mapping of str to mapping
+        For each student, by assignment, until when, or ``"excused"``; and by how much all ``time``
+        is longer.
+    regrading : Policies
+    gradebook : mapping of str to str
+        What columns of the system's gradebook are called, by their names in English.
+    """
+
+    name: str = "The course"
+    time_zone: datetime.tzinfo = datetime.UTC
+    roster: Roster | None = None
+    attempts: str = IN_TIME
+    late: Late = Late()
+    assignments: Mapping[str, Assignment] = field(default_factory=dict)
+    drop: tuple[Drop, ...] = ()
+    groups: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    extensions: Mapping[str, Mapping[str, datetime.datetime | str | float]] = field(
+        default_factory=dict
+    )
+    regrading: Policies = Policies()
+    gradebook: Mapping[str, str] = field(default_factory=dict)
 
     def group_of(self, student: str) -> str:
         """The group that a student works in, or the student."""
@@ -151,25 +185,30 @@ class Term:
         about = self.assignments.get(name, Assignment())
         dues = []
         for member in self.members(student):
-            extension = self.extensions.get((member, name))
-            longer = self.longer.get(member, 1)
+            own = self.extensions.get(member, {})
+            extension, longer = own.get(name), own.get("time")
             if isinstance(extension, datetime.datetime):
                 dues.append(extension)
             elif about.due is not None:
-                # Adding nothing would choose the first of an hour that a clock shows twice.
-                more = (about.due - about.opens) * (longer - 1) if about.opens else None
-                dues.append(about.due + more if more else about.due)
+                due = about.due
+                if about.opens is not None and isinstance(longer, (int, float)):
+                    more = (due - about.opens) * (longer - 1)
+                    # Adding nothing would choose the first of an hour that a clock shows twice.
+                    due = due + more if more else due
+                dues.append(due)
         return max(dues, default=None)
 
     def is_excused(self, student: str, name: str) -> bool:
-        return self.extensions.get((student, name)) == EXCUSED
+        return self.extensions.get(student, {}).get(name) == EXCUSED
 
     def is_late(self, student: str, name: str, notebook: Notebook) -> bool:
         """Whether a system says of an attempt that it came late."""
         due = self.due(student, name)
         if notebook.handed_in and due:
-            when = in_zone(datetime.datetime.fromisoformat(notebook.handed_in), self.zone, False)
-            return delay(when, due, self.zone) > self.grace
+            when = in_zone(
+                datetime.datetime.fromisoformat(notebook.handed_in), self.time_zone, False
+            )
+            return delay(when, due, self.time_zone) > self.late.grace
         return notebook.late
 
     def demand_people(self, path: Path, students: Collection[str]) -> None:
@@ -182,10 +221,10 @@ class Term:
         file = _File(path)
         groups = [member for members in self.groups.values() for member in members]
         for where, names in (
-            ("extensions", [*dict(self.extensions), *((name, "") for name in self.longer)]),
-            ("groups", [(name, "") for name in groups]),
+            ("extensions", list(self.extensions)),
+            ("groups", groups),
         ):
-            for student, _ in names:
+            for student in names:
                 if student not in students:
                     raise file.bad(
                         f"{where}.{student}" if where == "extensions" else student,
@@ -199,6 +238,8 @@ class _File:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.text = path.read_text("utf8") if path.exists() else ""
+        #: In which times are meant.
+        self.zone: datetime.tzinfo = datetime.UTC
 
     def bad(self, where: str, said: str) -> BadTerm:
         """An error on what stands at a place, such as ``late.a-day``."""
@@ -215,31 +256,30 @@ class _File:
                 number = line_number
         return BadTerm(f"{self.path}{f', line {number}' if number else ''}: {said}")
 
+    def leaf(self, kind: object, where: str, value: object, most: float) -> object:
+        """A value of the term that is no table and no list."""
+        if kind in (str, Roster):
+            return self.of(str, "a text", where, value)
+        if kind is float:
+            return self.number(where, value, most)
+        if kind is datetime.datetime:
+            return self.moment(where, value)
+        if kind is datetime.tzinfo:
+            return self.zone
+        if kind is Times:
+            return _times(self.path.parent / self.of(str, "a text", where, value), self.zone)
+        return value
+
+    def unknown(self, where: str, name: str, known: Iterable[str]) -> BadTerm:
+        there = f" in {where}" if where else ""
+        listed = ", ".join(sorted(known))
+        place = f"{where}.{name}".strip(".")
+        return self.bad(place, f"what is {name!r}{there}? There are {listed}.")
+
     def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
         if not isinstance(value, kind) or isinstance(value, bool):
             raise self.bad(where, f"{where} is {what}, and this is {value!r}.")
         return value
-
-    def table(self, where: str, value: object, names: Collection[str] = ()) -> dict[str, object]:
-        """A table; one that has no other ``names``, if any are given."""
-        table = self.of(dict, "a table", where, value)
-        for name in table:
-            if names and name not in names:
-                there = f" in {where}" if where else ""
-                place = f"{where}.{name}".strip(".")
-                known = ", ".join(sorted(names))
-                raise self.bad(place, f"what is {name!r}{there}? There are {known}.")
-        return table
-
-    def texts(self, where: str, value: object, known: Collection[str] = ()) -> tuple[str, ...]:
-        """A list of names, which are ``known`` where these are given."""
-        listed = self.of(list, "a list", where, value)
-        names = tuple(self.of(str, "a name", where, name) for name in listed)
-        for name in names:
-            if known and name not in known:
-                there = ", ".join(known)
-                raise self.bad(where, f"{where}: there is no {name!r}; there are {there}.")
-        return names
 
     def number(self, where: str, value: object, most: float = math.inf) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value <= most:
@@ -247,14 +287,14 @@ class _File:
             raise self.bad(where, f"{where} is a number from 0{upper}, and this is {value!r}.")
         return value
 
-    def moment(self, where: str, value: object, zone: datetime.tzinfo) -> datetime.datetime:
+    def moment(self, where: str, value: object) -> datetime.datetime:
         if not isinstance(value, datetime.datetime):
             shown = value.isoformat() if isinstance(value, datetime.date) else repr(value)
             raise self.bad(
                 where,
                 f"{where} is a date with a time, such as 2026-10-05T23:59:00, and this is {shown}.",
             )
-        return in_zone(value, zone)
+        return in_zone(value, self.zone)
 
 
 def term_of(folder: str | Path) -> Term:
@@ -310,6 +350,11 @@ attempts = "newest in time"
 # never-lower = ["{first}/question"]            # nobody loses by it
 # full-credit = ["{first}/question@taken-out"]  # all who had a variant that is gone; without @, all
 # void = ["{first}/question"]                   # it counts for nobody
+
+# What columns of the gradebook are called, if its language is not known here:
+# [gradebook]
+# identifier = "Tunniste"
+# grade = "Arvosana"
 """
 NEW_ASSIGNMENT = """
 [assignments.{name}]
@@ -360,15 +405,6 @@ def new_term(folder: str | Path, sources: Path, roster: str | None, dry_run: boo
     return text if dry_run else f"{path}: read it, and choose."
 
 
-KEYS = {
-    "": {"name", "time-zone", "roster", "attempts", "late", "assignments", "drop", "groups",
-         "extensions", "regrading"},
-    "late": {"grace-minutes", "a-day", "most", "nothing-after-days", "marked"},
-    "assignment": {"notebooks", "opens", "due", "weight", "column", "times"},
-    "regrading": {"never-lower", "full-credit", "void"},
-}  # fmt: skip
-
-
 def read_term(path: str | Path) -> Term:
     """Read the file of a term.
 
@@ -379,142 +415,89 @@ def read_term(path: str | Path) -> Term:
     """
     path = Path(path)
     try:
-        text = path.read_text("utf8")
-        said: dict[str, object] = tomllib.loads(text)
+        said: dict[str, object] = tomllib.loads(path.read_text("utf8"))
     except (OSError, ValueError) as error:
         raise BadTerm(f"{path}: {error}") from None
     file = _File(path)
-    file.table("", said, KEYS[""])
+    if zone := said.get("time-zone"):
+        try:
+            file.zone = ZoneInfo(str(zone))
+        except (ZoneInfoNotFoundError, ValueError):
+            raise file.bad("time-zone", f"there is no time zone {zone!r}.") from None
+    term: Term = from_table(file, Term, "", {"name": path.parent.name} | said)
     if "time-zone" not in said:
         raise file.bad("", "time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
-    try:
-        zone = ZoneInfo(str(said["time-zone"]))
-    except (ZoneInfoNotFoundError, ValueError):
-        raise file.bad("time-zone", f"there is no time zone {said['time-zone']!r}.") from None
-    assignments = {
-        name: _assignment(file, f"assignments.{name}", about, zone)
-        for name, about in file.table("assignments", said.get("assignments", {})).items()
-    }
-    if not assignments:
+    if not term.assignments:
         raise file.bad("assignments", "it names no assignment, such as [assignments.hw1].")
-    attempts = said.get("attempts", IN_TIME)
-    if attempts not in (IN_TIME, BEST, LAST):
+    if term.attempts not in (IN_TIME, BEST, LAST):
         known = f"{IN_TIME!r}, {BEST!r} or {LAST!r}"
-        raise file.bad("attempts", f"attempts are {known}, not {attempts!r}.")
-    late = file.table("late", said.get("late", {}), KEYS["late"])
-
-    def share(name: str, default: float, most: float = 1) -> float:
-        return file.number(f"late.{name}", late.get(name, default), most)
-
-    days = "nothing-after-days"
-    longer, extensions = _extensions(file, said, assignments, zone)
-    regrading = file.table("regrading", said.get("regrading", {}), KEYS["regrading"])
-    groups = _groups(file, said)
-    roster = file.of(str, "the name of a table", "roster", said.get("roster", ""))
-    return Term(
-        name=str(said.get("name", path.parent.name)),
-        zone=zone,
-        roster=Roster(path.parent / roster, groups) if roster else None,
-        attempts=attempts,
-        grace=datetime.timedelta(minutes=share("grace-minutes", 0, math.inf)),
-        a_day=share("a-day", 0),
-        most=share("most", 1),
-        nothing_after=datetime.timedelta(days=share(days, 0, math.inf)) if days in late else None,
-        marked=share("marked", 0) if "marked" in late else None,
-        assignments=assignments,
-        drop=_drop(file, said, list(assignments)),
-        groups=groups,
-        longer=longer,
-        extensions=extensions,
-        policies=Policies(
-            **{
-                name.replace("-", "_"): file.texts(f"regrading.{name}", questions)
-                for name, questions in regrading.items()
-            }
-        ),
-    )
-
-
-def _assignment(file: _File, where: str, about: object, zone: datetime.tzinfo) -> Assignment:
-    rules = file.table(where, about, KEYS["assignment"])
-
-    def text(name: str) -> str:
-        return file.of(str, "a text", f"{where}.{name}", rules.get(name, ""))
-
-    moments = {
-        name: file.moment(f"{where}.{name}", rules[name], zone)
-        for name in ("opens", "due")
-        if name in rules
+        raise file.bad("attempts", f"attempts are {known}, not {term.attempts!r}.")
+    _demand_order(file, term)
+    _demand_droppable(file, term)
+    _demand_members(file, term)
+    extensions = {
+        student: _extended(file, f"extensions.{student}", until, term)
+        for student, until in term.extensions.items()
     }
-    if len(moments) == 2 and moments["opens"] >= moments["due"]:
-        raise file.bad(f"{where}.opens", f"{where} is due before it opens.")
-    return Assignment(
-        notebooks=file.texts(f"{where}.notebooks", rules.get("notebooks", []))
-        or (where.partition(".")[2],),
-        **moments,
-        weight=file.number(f"{where}.weight", rules.get("weight", 1)),
-        column=text("column"),
-        times=_times(file.path.parent / text("times"), zone) if "times" in rules else None,
-    )
+    assignments = {
+        name: replace(about, notebooks=about.notebooks or (name,))
+        for name, about in term.assignments.items()
+    }
+    drop = tuple(replace(rule, of=rule.of or tuple(assignments)) for rule in term.drop)
+    roster = Roster(path.parent / str(term.roster), term.groups) if term.roster else None
+    return replace(term, assignments=assignments, drop=drop, extensions=extensions, roster=roster)
 
 
-def _drop(
-    file: _File, said: Mapping[str, object], assignments: Sequence[str]
-) -> list[tuple[int, Sequence[str]]]:
-    drop: list[tuple[int, Sequence[str]]] = []
-    for rule in file.of(list, "a list of tables", "drop", said.get("drop", [])):
-        about = file.table("drop", rule, {"lowest", "of"})
-        of = file.texts("drop.of", about.get("of", list(assignments)), assignments)
-        lowest = about.get("lowest", 1)
-        if type(lowest) is not int or not 0 <= lowest < len(of):
+def _demand_order(file: _File, term: Term) -> None:
+    for name, about in term.assignments.items():
+        if about.opens and about.due and about.opens >= about.due:
+            where = f"assignments.{name}"
+            raise file.bad(f"{where}.opens", f"{where} is due before it opens.")
+
+
+def _demand_droppable(file: _File, term: Term) -> None:
+    dropped: list[str] = []
+    for rule in term.drop:
+        of = rule.of or tuple(term.assignments)
+        if strangers := [name for name in of if name not in term.assignments]:
+            there = ", ".join(term.assignments)
+            raise file.bad("drop.of", f"drop.of: there is no {strangers[0]!r}; there are {there}.")
+        if type(rule.lowest) is not int or not 0 <= rule.lowest < len(of):
             raise file.bad(
                 "drop.lowest",
-                f"drop.lowest is a whole number below {len(of)}, and this is {lowest!r}.",
+                f"drop.lowest is a whole number below {len(of)}, and this is {rule.lowest!r}.",
             )
-        drop.append((lowest, of))
-    if len({name for _, of in drop for name in of}) < sum(len(of) for _, of in drop):
+        dropped += of
+    if len(set(dropped)) < len(dropped):
         raise file.bad("drop", "an assignment is in two rules of what is dropped.")
-    return drop
 
 
-def _groups(file: _File, said: Mapping[str, object]) -> dict[str, tuple[str, ...]]:
-    groups = {
-        name: file.texts(f"groups.{name}", members)
-        for name, members in file.table("groups", said.get("groups", {})).items()
-    }
-    for name, members in groups.items():
+def _demand_members(file: _File, term: Term) -> None:
+    for name, members in term.groups.items():
         for member in members:
-            both = [other for other, those in groups.items() if member in those]
-            if len(both) > 1 or member in groups:
+            both = [other for other, those in term.groups.items() if member in those]
+            if len(both) > 1 or member in term.groups:
                 raise file.bad(f"groups.{name}", f"{member!r} is in {' and in '.join(both)}.")
-    return groups
 
 
-def _extensions(
-    file: _File,
-    said: Mapping[str, object],
-    assignments: Mapping[str, Assignment],
-    zone: datetime.tzinfo,
-) -> tuple[dict[str, float], dict[tuple[str, str], datetime.datetime | str]]:
-    longer: dict[str, float] = {}
-    found: dict[tuple[str, str], datetime.datetime | str] = {}
-    for student, until in file.table("extensions", said.get("extensions", {})).items():
-        where = f"extensions.{student}"
-        for name, when in file.table(where, until, {"time", *assignments}).items():
-            if name == "time":
-                longer[student] = file.number(f"{where}.time", when)
-                without = [name for name, one in assignments.items() if one.due and not one.opens]
-                if longer[student] < 1 or without:
-                    raise file.bad(
-                        f"{where}.time",
-                        f"time = 1.5 is half as much again, from when an assignment opens until it "
-                        f"is due: {', '.join(without) or 'this'} has no such time.",
-                    )
-            else:
-                found[student, name] = (
-                    EXCUSED if when == EXCUSED else file.moment(f"{where}.{name}", when, zone)
+def _extended(file: _File, where: str, until: object, term: Term) -> dict[str, Extension]:
+    """What a student's table of extensions says."""
+    table = file.of(dict, "a table", where, until)
+    without = [name for name, about in term.assignments.items() if about.due and not about.opens]
+    for name, when in table.items():
+        place = f"{where}.{name}"
+        if name == "time":
+            if file.number(place, when) < 1 or without:
+                raise file.bad(
+                    place,
+                    f"time = 1.5 is half as much again, from when an assignment opens until it "
+                    f"is due: {', '.join(without) or 'this'} has no such time.",
                 )
-    return longer, found
+        elif name not in term.assignments:
+            raise file.unknown(where, name, ["time", *term.assignments])
+        elif when != EXCUSED:
+            table[name] = file.moment(place, when)
+    return table
 
 
 def in_zone(
@@ -670,14 +653,14 @@ def result_of(
     if record is None:
         state = "not due" if name not in worth or (due is not None and now <= due) else "missing"
     else:
-        points, when = record.points, _handed_in(student, record, about, term.zone)
+        points, when = record.points, _handed_in(student, record, about, term.time_zone)
         if when is None:
-            extended = any((one, name) in term.extensions for one in term.members(group))
+            extended = any(name in term.extensions.get(one, {}) for one in term.members(group))
             late = record.late and not extended
-            penalty = (term.marked or 0.0) if late else 0.0
+            penalty = (term.late.marked or 0.0) if late else 0.0
         elif due is not None:
-            delayed = delay(when, due, term.zone)
-            penalty, late = term.penalty(delayed), delayed > term.grace
+            delayed = delay(when, due, term.time_zone)
+            penalty, late = term.late.penalty(delayed), delayed > term.late.grace
     if term.is_excused(student, name):
         state, late, penalty = EXCUSED, False, 0.0
     full = record.worth if record else worth.get(name, 0)
@@ -697,7 +680,7 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     graded = [one for one in results if one.state not in ("missing", "not due", EXCUSED)]
     unknown = [one.assignment for one in graded if one.due and not one.handed_in]
     marked = [one.assignment for one in graded if one.late and not one.handed_in]
-    if marked and term.marked is None and term.late_costs:
+    if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
             f"Of {', '.join(sorted(set(marked)))}, {len(marked)} are marked as late by the system, "
             "which does not say when they came. "
@@ -758,14 +741,14 @@ def _dropped(results: Iterable[Result], term: Term) -> set[str]:
     mean = mean_without(())
     while mean is not None:
         worst: set[str] = set()
-        for lowest, of in term.drop:
+        for rule in term.drop:
             mine = sorted(
                 (term.assignments[name].weight * (counted[name].share - mean), name)
-                for name in of
+                for name in rule.of
                 if name in counted
             )
             # Of few that count so far, one is always kept.
-            worst.update(name for _, name in mine[: min(lowest, max(0, len(mine) - 1))])
+            worst.update(name for _, name in mine[: min(rule.lowest, max(0, len(mine) - 1))])
         again = mean_without(worst)
         if left_out is not None and (again is None or again <= mean + 1e-12):
             break

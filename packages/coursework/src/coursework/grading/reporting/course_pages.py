@@ -5,12 +5,11 @@ student, and pages on the questions.
 import datetime
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
-from ...checking.fields import Fields, by_name, text
-from ...checking.fields import number as a_number
 from ..judging.term import FILE, BadTerm, Result, Term, results_of, unknown_times
+from ..reading import AsJson
 from ..store import Store, as_text, file_name, write
 from ..tables import number, table
 from . import pages
@@ -39,23 +38,21 @@ MOST_ANSWERS = 100  # of one group on one page
 ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %Z")
 
 
-class Then(NamedTuple):
+@dataclass(frozen=True)
+class Then(AsJson):
     """What was kept of a question in an earlier year: the mean
     share of the credit, and the version.
     """
 
-    share: float | None
     version: str
-
-    @classmethod
-    def from_json(cls, found: object, where: str) -> "Then":
-        about = Fields(found, where)
-        return cls(about.maybe("share", a_number), about.get("version", text))
+    share: float | None = None
 
 
-class Year(NamedTuple):
+@dataclass(frozen=True)
+class Year(AsJson):
     """What was kept of an earlier year."""
 
+    format: int
     name: str
     questions: Mapping[str, Then]
 
@@ -256,10 +253,10 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
 
 def _earlier(path: str | Path) -> Year:
     try:
-        about = Fields(json.loads(Path(path).read_text("utf8")), "it")
-        if about.found.get("format") != FORMAT:
+        year = Year.from_json(json.loads(Path(path).read_text("utf8")), "it")
+        if year.format != FORMAT:
             raise ValueError("it is of another format")
-        return Year(about.get("name", text), about.get("questions", by_name(Then.from_json)))
+        return year
     except (OSError, ValueError) as error:
         raise BadTerm(f"{path} holds no counts of a course ({error}).") from None
 

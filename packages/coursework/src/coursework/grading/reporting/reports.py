@@ -9,6 +9,7 @@ import datetime
 import functools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import astuple
 from pathlib import Path
 from statistics import mean, median
 from urllib.parse import quote
@@ -161,7 +162,7 @@ def write_all(store: Store) -> None:
     refused = refused_of(store)
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
     write(store.folder / "undecided.csv", lines(UNDECIDED, _undecided_of(store.all())))
-    write(store.folder / "refused.csv", table(("file", "student", "why"), refused))
+    write(store.folder / "refused.csv", table(("file", "student", "why"), map(astuple, refused)))
     write(
         store.folder / "report.html",
         report(classes, refused),

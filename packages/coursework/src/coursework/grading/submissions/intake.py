@@ -26,10 +26,12 @@ import struct
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
-from ...checking.fields import a_list, by_name, many, text
+from ...checking.fields import by_name, many
+from ..reading import AsJson
 from ..record import Identity, Remembered
 from ..store import REFUSED, Store
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
@@ -95,16 +97,13 @@ class CodeCell(TypedDict):
     execution_count: int | None
 
 
-class Refused(NamedTuple):
+@dataclass(frozen=True, order=True)
+class Refused(AsJson):
     """A file that was handed in and is not graded, and why."""
 
     file: str
     student: str
     why: str
-
-    @classmethod
-    def from_json(cls, found: object, where: str) -> "Refused":
-        return cls(*(text(part, where) for part in a_list(found, where)))
 
 
 def refused_of(store: Store) -> list[Refused]:
@@ -301,7 +300,7 @@ def _of_whom(refused: Refused, layout: Layout, roster: Roster | None) -> Refused
     """
     claim = layout.claim(refused.file)
     known = roster.find(claim.keys, claim.place)[0] if roster and claim else None
-    return refused if known is None else refused._replace(student=known)
+    return refused if known is None else replace(refused, student=known)
 
 
 #: nbgrader's file beside what was handed in. Its time zone is UTC unless a course has changed that.
