@@ -22,11 +22,12 @@ import tempfile
 import time
 from pathlib import Path
 
+from sample_class import make_class
+
 from coursework.grading.assignments import Course
 from coursework.grading.grade import grade
 from coursework.grading.judging.term import Assignment, Term
 from coursework.grading.running import Running
-from coursework.grading.sample_class import make_class
 
 NOTEBOOKS = ("reference-frames", "unit-quaternions")
 ASSIGNMENT = "homework"

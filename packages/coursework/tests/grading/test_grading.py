@@ -31,10 +31,10 @@ from grading_class import (
     write_sources,
     write_term,
 )
+from sample_class import make_class
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
-from coursework.grading import sample_class
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import (
     Limits,
@@ -46,7 +46,7 @@ from coursework.grading.execution.sandbox import (
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import bring_in_decisions, grade, regrade
 from coursework.grading.judging.journal import Journal
-from coursework.grading.record import Answer, Identity
+from coursework.grading.record import Answer
 from coursework.grading.reporting import pages
 from coursework.grading.reporting.reports import write_all
 from coursework.grading.running import Running
@@ -1223,7 +1223,9 @@ def test_a_worksheet_of_moodle_in_another_language_is_filled(marks, tmp_path, la
 def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
     path = tmp_path / "book.csv"
     path.write_text("Tunniste,Koko nimi,Numero,Arvosana,Paras\nOsallistuja9,A,right,,6\n", "utf8")
-    with pytest.raises(gradebooks.CannotExport, match="German, .*--name 'identifier=") as found:
+    with pytest.raises(
+        gradebooks.CannotExport, match=r"German, .*\[gradebook\], and below it identifier = "
+    ) as found:
         gradebooks.fill(path, marks)
     assert "Its columns: Tunniste, Koko nimi" in str(found.value)
     names = {
@@ -1232,12 +1234,14 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
         "id number": "Numero",
         "grade": "Arvosana",
     }
-    gradebooks.fill(path, marks, names=names)
+    marks.term = replace(marks.term, gradebook=names)
+    gradebooks.fill(path, marks)
     assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
         1
     ] == "Osallistuja9,A,right,6,6"
     with pytest.raises(gradebooks.CannotExport, match="no column 'Note'"):
-        gradebooks.fill(path, marks, names={"grade": "Note"})
+        marks.term = replace(marks.term, gradebook={"grade": "Note"})
+        gradebooks.fill(path, marks)
 
 
 def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks, tmp_path):
@@ -1277,38 +1281,6 @@ def test_a_gradebook_of_canvas_with_names_in_two_columns_and_other_numbers(marks
 )
 def test_a_gradebook_that_is_not_changed_is_the_same_bytes(data):
     assert bytes(gradebooks.Gradebook(data)) == data
-
-
-def test_a_gradebook_is_matched_by_the_numbers_of_its_system(tmp_path):
-    for layout in ("canvas", "moodle", "brightspace"):
-        files = {f"student-{number:03}": b"" for number in range(1, 4)}
-        book = gradebooks.Gradebook(sample_class._gradebook(layout, list(files), 6))
-        sample_class.LAYOUTS[layout](tmp_path, files, "turns")
-        import zipfile
-
-        from coursework.grading.submissions.identity import Layout
-
-        names = [
-            name
-            for name in zipfile.ZipFile(tmp_path / "submissions.zip").namelist()
-            if name.endswith("ipynb")
-        ]
-        whose = {one.student: dict(one.keys) for one in map(Layout(names, ["turns"]).claim, names)}
-        stub = type(
-            "Marks",
-            (),
-            {
-                "students": whose,
-                "missing": [],
-                "damaged": [],
-                "identity": lambda self, student: Identity(whose[student]),
-            },
-        )()
-        first = gradebooks._scale(book, layout.title(), 4)[1]
-        found, several = gradebooks._match(book, layout.title(), stub, first)
-        assert len(found) == 3 and several == []
-        for line, student in found.items():
-            assert whose[student][layout] in "".join(field.says for field in book.lines[line][0])
 
 
 def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
@@ -1479,36 +1451,18 @@ def test_from_a_systems_download_to_what_it_takes_back_in_three_commands(
 
 def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
     out = str(course / "out")
-    main(
-        [
-            "export",
-            out,
-            "--nbgrader",
-            str(tmp_path / "grades.csv"),
-            "--gradescope",
-            str(tmp_path / "results.json"),
-            "--student",
-            "mistaken",
-        ]
-    )
+    main(["export", out, "--nbgrader", str(tmp_path / "grades.csv")])
     rows = {row["student_id"]: row for row in rows_of(tmp_path / "grades.csv")}
     assert list(rows["right"]) == list(gradebooks.NBGRADER)
-    assert (
-        rows["mistaken"]["assignment"],
-        rows["mistaken"]["score"],
-        rows["mistaken"]["max_score"],
-    ) == (
-        "turns",
-        "4",
-        "6",
-    )
+    mistaken = rows["mistaken"]
+    assert [mistaken[name] for name in ("assignment", "score", "max_score")] == ["turns", "4", "6"]
+    marks = gradebooks.Marks(Store(out))
+    gradebooks.write_gradescope(tmp_path / "results.json", marks, "mistaken")
     results = json.loads((tmp_path / "results.json").read_text())
     assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
     assert (
         results["tests"][0]["max_score"] == 2 and "the transpose" in results["tests"][0]["output"]
     )
-    with pytest.raises(SystemExit, match="one student at a time"):
-        main(["export", out, "--gradescope", str(tmp_path / "results.json")])
     with pytest.raises(SystemExit, match="name what to write"):
         main(["export", out])
 
@@ -1518,39 +1472,9 @@ def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
 
 def test_the_sample_class_gets_what_was_put_into_it(tmp_path, capsys, course):
     solutions = str(course / "solutions")
-    main(
-        [
-            "sample-class",
-            "--out",
-            str(tmp_path / "class"),
-            "--students",
-            "60",
-            "--seed",
-            "3",
-            "--notebooks",
-            "turns,axes",
-            "--solutions",
-            solutions,
-        ]
-    )
-    assert capsys.readouterr().out.startswith("60 students in ")
-    made = contents(tmp_path / "class")
-    main(
-        [
-            "sample-class",
-            "--out",
-            str(tmp_path / "again"),
-            "--students",
-            "60",
-            "--seed",
-            "3",
-            "--notebooks",
-            "turns,axes",
-            "--solutions",
-            solutions,
-        ]
-    )
-    assert contents(tmp_path / "again") == made
+    for name in ("class", "again"):
+        make_class(tmp_path / name, 60, 3, ["turns", "axes"], solutions)
+    assert contents(tmp_path / "again") == contents(tmp_path / "class")
     write_term(tmp_path / "out", assignments={"homework": ["turns", "axes"]})
     main(
         [

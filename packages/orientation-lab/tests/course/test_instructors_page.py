@@ -5,8 +5,8 @@ import re
 from pathlib import Path
 
 import pytest
+import sample_class
 
-from coursework.grading import sample_class
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import term

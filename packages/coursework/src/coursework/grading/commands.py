@@ -1,4 +1,4 @@
-"""The commands of instructors, from ``coursework grade`` to ``coursework sample-class``."""
+"""The commands of instructors, from ``coursework grade`` to ``coursework cluster``."""
 
 from __future__ import annotations
 
@@ -258,31 +258,6 @@ ARGUMENTS = {
                 help="start a worker for the scheduler at this address, such as tls://host:8786",
             ),
             WORKERS,
-        ],
-    ),
-    "sample-class": (
-        "make an invented class to try grading on",
-        [
-            _argument("--out", required=True, help="folder for the class"),
-            _argument(
-                "--students",
-                type=int,
-                default=200,
-                help="number of students (default: %(default)s)",
-            ),
-            _argument(
-                "--seed",
-                type=int,
-                default=1,
-                help="random seed of the class (default: %(default)s)",
-            ),
-            _argument(
-                "--notebooks",
-                default="",
-                help="names of the exercises, separated by commas; each student hands in one "
-                "notebook with all of them (default: the first)",
-            ),
-            SOLUTIONS,
         ],
     ),
 }
@@ -649,15 +624,6 @@ def cluster(
     os.execv(command[0], command)
 
 
-def sample_class(out: str, students: int, seed: int, notebooks: str, solutions: str | None) -> None:
-    from .sample_class import make_class
-
-    made = make_class(
-        out, students, seed, [name for name in notebooks.split(",") if name], solutions
-    )
-    print(f"{students} students in {made}")
-
-
 COMMANDS: dict[str, Callable[..., None]] = {
     "grade": grade,
     "regrade": regrade,
@@ -668,5 +634,4 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "gradescope": gradescope,
     "why": why,
     "cluster": cluster,
-    "sample-class": sample_class,
 }

@@ -362,78 +362,52 @@ class Class:
         return [], [], {}
 
 
+#: What two may have in common, that is worth a look.
+ANSWER, CODE = "unusual wrong answer", "code, sign by sign,"
+TRIED = "unusual wrong answers were tried on the way that one other tried, too"
+
+
 def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:
     """What a person may want to look at, by student and question; never a mark.
 
     Equal unusual wrong answers, also among those that were tried on the way, equal code that few
     share, and what a notebook tried that no exercise needs.
     """
-    found: Hints = defaultdict(list)
-    students = len({record.student for record in records})
-    few = max(2, int(FEW * students))
-    wrong, code, tried = (defaultdict[tuple[str, str], set[str]](set) for _ in range(3))
+    hints: Hints = defaultdict(list)
+    few = max(2, int(FEW * len({record.student for record in records})))
+    shared: defaultdict[tuple[str, str, str], set[str]] = defaultdict(set)
     for record in records:
         for question, about in record.remembered.items():
             for one in about.tried:
-                tried[question, one].add(record.student)
+                shared[TRIED, question, one].add(record.student)
         for question, mark in record.marks.items():
-            judged = mark.judged
+            judged, cell = mark.judged, record.answer(question).cell
             if judged.outcome == "wrong" and not judged.note and mark.group:
-                wrong[question, mark.group].add(record.student)
-            cell = record.answer(question).cell
+                shared[ANSWER, question, mark.group].add(record.student)
             for notebook in record.notebooks:
-                cells = work(notebook.sha256)
-                if cells and isinstance(cell, int) and cell < len(cells):
-                    written = "".join(map(_bare, cells[max(0, cell - 1) : cell + 1]))
-                    if len(written) >= SHORTEST_CODE:
-                        code[question, written].add(record.student)
-    together: Counter[tuple[str, str]] = Counter()
-    for same in wrong.values():
-        if 2 <= len(same) <= few:
-            together.update((one, other) for one in same for other in same if one < other)
-    for (question, _), same in wrong.items():
-        if 2 <= len(same) <= few:
-            for one in same:
-                shared = max(
-                    together[min(one, other), max(one, other)] for other in same if other != one
-                )
-                again = f", and {shared} such answers in all" if shared > 1 else ""
-                found[one, question].append(
-                    f"the same unusual wrong answer as {len(same) - 1} other{again}"
-                )
-    for (question, _), same in code.items():
-        if 2 <= len(same) <= few:
-            for one in same:
-                found[one, question].append(
-                    f"the same code, sign by sign, as {len(same) - 1} other"
-                )
-    _note_shared_tries(found, {key: same for key, same in tried.items() if 2 <= len(same) <= few})
+                cells = work(notebook.sha256) if cell is not None else ()
+                written = "".join(map(_bare, cells[max(0, (cell or 0) - 1) : (cell or 0) + 1]))
+                if cell is not None and cell < len(cells) and len(written) >= SHORTEST_CODE:
+                    shared[CODE, question, written].add(record.student)
+    pairs: Counter[tuple[str, str, str]] = Counter()
+    shared_by_few = [(key, same) for key, same in shared.items() if 2 <= len(same) <= few]
+    for (what, _, _), same in shared_by_few:
+        pairs.update((what, one, other) for one in same for other in same - {one})
+    for (what, question, _), same in shared_by_few:
+        for one in same:
+            several = max(pairs[what, one, other] for other in same - {one})
+            again = f", and {several} such answers in all" if several > 1 and what == ANSWER else ""
+            said = f"the same {what} as {len(same) - 1} other{again}"
+            if what == TRIED:
+                # One alone may be chance.
+                said = f"{several} {what}" if several > 1 else ""
+            if said and said not in hints[one, question]:
+                hints[one, question].append(said)
     for record in records:
         for said in dict.fromkeys(said for notebook in record.notebooks for said in notebook.tried):
             for question in record.marks:
-                found[record.student, question].append(f"the notebook {said}")
-    return found
-
-
-def _note_shared_tries(found: Hints, tried: Mapping[tuple[str, str], set[str]]) -> None:
-    """Note who tried the same wrong answers as one other, if they
-    were several: one may be chance.
-    """
-    together: Counter[tuple[str, str]] = Counter()
-    where: defaultdict[tuple[str, str], set[str]] = defaultdict(set)
-    for (question, _), same in tried.items():
-        for one in same:
-            for other in same - {one}:
-                together[one, other] += 1
-                where[one, other].add(question)
-    for (one, other), many in together.items():
-        if many > 1:
-            for question in sorted(where[one, other]):
-                said = (
-                    f"{many} unusual wrong answers were tried on the way that one other tried, too"
-                )
-                if said not in found[one, question]:
-                    found[one, question].append(said)
+                hints[record.student, question].append(f"the notebook {said}")
+    return hints
 
 
 def _bare(source: str) -> str:

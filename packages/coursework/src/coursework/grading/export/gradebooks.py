@@ -525,7 +525,7 @@ def fill(
 
 
 def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, list[str]]:
-    """What was written into a column for each student: what stands there of it is ours to change."""
+    """What was written into a column for each student, which is ours to change."""
     ours: dict[str, list[str]] = {}
     for event in marks.journal.events:
         if isinstance(event, Exported) and (event.assignment, event.column) == (assignment, header):

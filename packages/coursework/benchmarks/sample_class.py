@@ -6,6 +6,7 @@ out of grading can be held against it. Nobody in it is real, and the same seed m
 
 from __future__ import annotations
 
+import argparse
 import ast
 import contextlib
 import copy
@@ -18,18 +19,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..authoring.course import edition_of, find_course
-from ..authoring.release import KERNEL, exercise_notebook, shows_variants
-from ..authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
-from ..checking.question import Variant
-from ..checking.variants import numbers_of_variants
+from coursework.authoring.course import edition_of, find_course
+from coursework.authoring.release import KERNEL, exercise_notebook, shows_variants
+from coursework.authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
+from coursework.checking.question import Variant
+from coursework.checking.variants import numbers_of_variants
 
 if TYPE_CHECKING:
     import sympy
     from nbformat import NotebookNode
 
-    from ..authoring.author import AuthoredQuestion
-    from .judging.contract import Asked
+    from coursework.authoring.author import AuthoredQuestion
+    from coursework.grading.judging.contract import Asked
 
 #: Cells that try to get marks, or to get out. None of them knows an answer, so none of them earns
 #: anything; and none does damage if it succeeds, since somebody may try this class where students'
@@ -276,8 +277,8 @@ class _Answers:
     """
 
     def __init__(self, exercise: _Exercise, dice: random.Random) -> None:
-        from .judging.contract import Asked
-        from .judging.marking import contract_of
+        from coursework.grading.judging.contract import Asked
+        from coursework.grading.judging.marking import contract_of
 
         self.right: dict[tuple[str, int], list[Written]] = {}
         self.wrong: dict[tuple[str, int], list[Written]] = {}
@@ -311,8 +312,8 @@ class _Answers:
         judged: Asked,
         answers: Iterable[Any],
     ) -> list[Written]:
-        from .judging.marking import mark
-        from .record import Answer
+        from coursework.grading.judging.marking import mark
+        from coursework.grading.record import Answer
 
         written: list[Written] = []
         for answer in answers:
@@ -552,3 +553,25 @@ def _gradebook(students: Sequence[str], worth: float) -> str:
         first, last = student.title().split("-")
         lines.append(f'"{last}, {first}",{number},S{number},{student},Section 1,,')
     return "\r\n".join([*lines, ""])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", required=True, help="folder for the class")
+    parser.add_argument("--students", type=int, default=200, help="number of students")
+    parser.add_argument("--seed", type=int, default=1, help="random seed of the class")
+    parser.add_argument(
+        "--notebooks",
+        default="",
+        help="names of the exercises, separated by commas, which each student hands in as one "
+        "notebook",
+    )
+    parser.add_argument("--solutions", help="folder of the notebooks with solutions")
+    options = parser.parse_args()
+    notebooks = [name for name in options.notebooks.split(",") if name]
+    made = make_class(options.out, options.students, options.seed, notebooks, options.solutions)
+    print(f"{options.students} students in {made}")
+
+
+if __name__ == "__main__":
+    main()
