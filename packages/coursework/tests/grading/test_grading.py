@@ -869,8 +869,7 @@ def test_what_dies_under_a_notebook_costs_only_that_one(
     monkeypatch.setattr("coursework.grading.execution.sandbox.Sandbox", Stub)
     options = {
         "solutions": course / "solutions",
-        "running": Running(limits=LIMITS),
-        "workers": 2,
+        "running": Running(limits=LIMITS, workers=2),
         "show": io.StringIO(),
     }
     assert grade(tmp_path / "few", prepared, **options)["graded"] == 9
@@ -1234,7 +1233,7 @@ def test_columns_of_a_language_that_is_not_known_can_be_named(marks, tmp_path):
         "id number": "Numero",
         "grade": "Arvosana",
     }
-    marks.term = replace(marks.term, gradebook=names)
+    marks = gradebooks.Marks(marks.store, term=replace(marks.term, gradebook=names))
     gradebooks.fill(path, marks)
     assert (tmp_path / "book-filled.csv").read_text("utf8").splitlines()[
         1
@@ -1296,7 +1295,7 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
 @pytest.mark.parametrize(
     "header, message",
     [
-        ("Name,Points\nA,1\n", "no gradebook of Canvas"),
+        ("Name,Points\nA,1\n", "no gradebook of Moodle"),
         (
             "Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n",
             "'Turns (1)', 'Axes (2)'",

@@ -342,7 +342,7 @@ def out(tmp_path_factory):
     limits = Limits(cell_wall_seconds=60, answer_wall_seconds=60)
     options = {
         "solutions": write_sources(folder / "solutions"),
-        "limits": limits,
+        "running": Running(limits=limits),
         "show": io.StringIO(),
     }
     write_term(folder / "out", folder / "roster.csv")
@@ -511,7 +511,7 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
 def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp_path):
     (tmp_path / "book.csv").write_text(BOOK + '"Last, Dora",4,,dora,,\n"Other, Eve",5,,eve,,\n')
     late.folder.joinpath("refused.json").write_text(
-        '{"in": [["d.ipynb", "Dora Last", "It is damaged."]]}'
+        '{"in": [{"file": "d.ipynb", "student": "Dora Last", "why": "It is damaged."}]}'
     )
     said = "\n".join(gradebooks.fill(tmp_path / "book.csv", gradebooks.Marks(late)))
     assert "Dora" in said.partition("cannot be graded")[2]

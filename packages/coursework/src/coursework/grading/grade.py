@@ -189,7 +189,7 @@ class Desk:
             return not dry_run and self.agree(laboratory)
 
         laboratory = settle(self.store, self.journal, candidates, agree, why, dry_run)
-        if not laboratory.moves:
+        if not laboratory.moves and (self.store.folder / reports.PAGE).exists():
             reports.write_moves(laboratory, self.store.folder)
         if laboratory.agreed and not dry_run:
             for attempt in self.attempts:

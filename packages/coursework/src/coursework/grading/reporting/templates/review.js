@@ -1,7 +1,13 @@
-// Keys: each thing that has one names it in `data-key`. Without this script everything is still reached by Tab.
+// Keys: each thing that has one names it in `data-key`. Without this script everything is still reached by Tab. Single
+// keys are off at first: whoever dictates, or strikes a key by accident, decides nothing by it.
+const keys = document.getElementById("keys");
+keys.checked = sessionStorage.getItem("keys") === "on";
+keys.addEventListener("change", () => sessionStorage.setItem("keys", keys.checked ? "on" : "off"));
+
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const field = event.target.closest("input, textarea, select");
+  if (!keys.checked && event.key !== "Escape") return;
+  const field = event.target.closest("input:not([type=checkbox]), textarea, select");
   if (field) {
     // In a field signs are signs; Escape leaves it.
     if (event.key === "Escape") field.blur();
