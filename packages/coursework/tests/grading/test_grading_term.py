@@ -27,6 +27,7 @@ from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Answer, Identity, Mark, Record, RunNotebook
 from coursework.grading.reporting.course_pages import write_course
 from coursework.grading.reporting.statistics import HIDDEN_BELOW, Correlation
+from coursework.grading.running import Running
 from coursework.grading.store import Store
 from coursework.grading.submissions import intake
 
