@@ -28,7 +28,7 @@ from .judging.cases import Contracts, answered, changed_since, variants_of
 from .judging.contract import Asked
 from .judging.journal import Journal, Standing, appeals_open, with_decisions
 from .judging.judge import Judge
-from .judging.laboratory import Agree, Laboratory, settle
+from .judging.laboratory import PAGE, Agree, Laboratory, settle
 from .judging.term import BEST, FILE, result_of, term_of
 from .pairing import (
     HandedIn,
@@ -189,7 +189,7 @@ class Desk:
             return not dry_run and self.agree(laboratory)
 
         laboratory = settle(self.store, self.journal, candidates, agree, why, dry_run)
-        if not laboratory.moves and (self.store.folder / reports.PAGE).exists():
+        if not laboratory.moves and (self.store.folder / PAGE).exists():
             reports.write_moves(laboratory, self.store.folder)
         if laboratory.agreed and not dry_run:
             for attempt in self.attempts:
