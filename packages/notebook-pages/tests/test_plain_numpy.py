@@ -3,8 +3,10 @@ one, written the same, or none at all.
 """
 
 import importlib.util
+import inspect
 import random
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -61,34 +63,26 @@ A.sum(), A.sum(axis=0), A.sum(axis=1), A.mean(), A.mean(axis=-1, keepdims=True)
 A.max(axis=1), A.min(), A.std(axis=0)
 S.sum(axis=(1, 2)), S.mean(axis=0), S.max(axis=-1).max(axis=-1), np.linalg.norm(S, axis=(1, 2))
 np.linalg.norm(A, axis=1)
-A.argmax(), A.argmin(axis=0), (A > 0).all(), (A > 0).any(axis=0), np.ptp(v), np.median(v)
+A.argmax(), A.argmin(axis=0), (A > 0).all(), (A > 0).any(axis=0)
 A.ravel(), A.reshape(1, -1)
-np.percentile(v, 90), np.percentile(S, (5, 50, 95), axis=0), np.percentile(v, (5, 50, 95))
 np.sin(v), np.cos(0.3), np.arctan2(v, 2), np.degrees([1, 2]), np.radians(30), np.sqrt(2)
 np.hypot(3, v), np.exp(v)
 np.sign([-2.0, 0, 3]), np.abs([-1.5, 2]), np.square(v), np.minimum(v, 1), np.clip(v, -1, 1)
 np.rint([0.5, 1.5, -0.2])
 np.round([1.005, 2.675, -0.04], 1), np.array([-0.2]).round(), np.around(123.456, -1), np.sinc(v)
 np.where(v > 0, v, 0), np.isfinite(v), np.isclose(v, v + 1e-9), np.allclose(v, v + 1e-3)
-np.array_equal(v, v)
 np.cross(v, [1, 2, 3]), np.outer(v, v), np.cross(A, v), np.trace(A), np.diag([1, 2]), np.diag(A)
 np.dot(v, v)
 np.einsum('ij,j->i', A, v), np.einsum('kij,kj->ki', S, A[:2]), np.einsum('...i,i->...', S, v)
 np.linalg.inv(A), np.linalg.det(A).round(12), np.linalg.solve(A, v), np.linalg.solve(A, A)
-np.linalg.matrix_rank(A)
 np.linalg.svd(A, compute_uv=False), np.linalg.eigvalsh(A + A.T).round(12)
 np.linalg.matrix_power(A, 5)
 np.stack([v, v], axis=-1), np.concatenate([A, A], axis=1), np.column_stack([v, v])
-np.vstack([v, v]), np.hstack([v, v])
-np.tile(v, 2), np.tile(v, (2, 1)), np.repeat([1.0, 2], 2), np.broadcast_to(v, (2, 3))
-np.append(v, 1)
+np.broadcast_to(v, (2, 3))
 np.diff(v), np.diff(A, axis=0), np.diff(v, prepend=v[0]), np.cumsum(v)
-np.cumsum(A, axis=0), np.gradient(v)
-np.gradient(v, [0, 1, 3.0]), np.gradient(A, 0.5, axis=0), np.unwrap([0, 3.0, 6.5, -3])
-np.unwrap([0.0, 350, 10], period=360)
-np.flatnonzero(v > 0), np.argwhere(A > 1), np.searchsorted([1.0, 2, 3], [0.5, 2.0])
-np.unique([3, 1, 3])
-np.sort(v), np.full(2, 3.0), np.ones((2, 2)), np.zeros(2, int), np.zeros_like(v), np.empty(0).shape
+np.cumsum(A, axis=0)
+np.flatnonzero(v > 0)
+np.full(2, 3.0), np.ones((2, 2)), np.zeros(2, int), np.zeros_like(v), np.empty(0).shape
 np.atleast_2d(v)
 np.float64(3)[..., None]
 v.tolist(), A.shape, A.size, A.ndim, A.dtype, v.astype(int), len(A), list(v), v[0].shape
@@ -101,6 +95,7 @@ S, S[:, None] - S[None], np.random.default_rng(3).normal(size=(2, 3))
 np.random.default_rng(0).uniform(-3, 3, 4)
 np.random.default_rng(7).random(), np.random.default_rng(2**70).standard_normal(2)
 np.random.default_rng(7).normal(1.0, 2.0)
+np.percentile(v, 90), np.percentile(S, (5, 50, 95), axis=0), np.percentile(v, (5, 50, 95))
 v.dot(v), A.trace(), A.transpose(), A.flatten(), S.transpose(2, 0, 1).shape, A.copy()
 A.T.reshape(-1), A.T.ravel()
 """.strip().splitlines()
@@ -154,6 +149,11 @@ np.linspace(0, 1, 1)
 np.array([2**70])
 np.array([3]) ** -1
 A.mean(axis=0, dtype=float)
+np.linalg.norm(v, 0)
+np.linalg.norm(A, 1)
+np.diff(v, 2)
+np.linalg.inv(np.array([[1.0, 2, 3], [4, 5, 6], [7, 8, 9]]))
+np.sum(A, 0, float)
 """.strip().splitlines()
 
 
@@ -162,6 +162,126 @@ def test_what_it_does_not_do_asks_for_the_real_one(line):
     with pytest.raises(ModuleNotFoundError) as raised:
         eval(line, values(STAND_IN))
     assert raised.value.name == "numpy"
+
+
+def parameters(function):
+    """The names of a function's parameters, with their places, and of those without."""
+    named = list(inspect.signature(function).parameters.values())
+    places = {
+        number: parameter.name
+        for number, parameter in enumerate(named)
+        if parameter.kind is parameter.POSITIONAL_OR_KEYWORD
+    }
+    return places, {
+        parameter.name for parameter in named if parameter.kind is parameter.KEYWORD_ONLY
+    }
+
+
+@pytest.mark.parametrize("name", sorted(plain_numpy.OFFERED))
+def test_arguments_have_numpys_places_and_names(name):
+    ours, theirs = plain_numpy.OFFERED[name], getattr(np, name)
+    if isinstance(ours, plain_numpy.Part):
+        pairs = [
+            (own, getattr(theirs, part))
+            for part, own in ours.offered.items()
+            if part != "default_rng"
+        ]
+    else:
+        pairs = [(ours, theirs)]
+    for own, real_one in pairs:
+        if not inspect.isfunction(own) or isinstance(real_one, np.ufunc) or name == "sinc":
+            continue
+        try:
+            places, names = parameters(real_one)
+        except ValueError:  # some of NumPy's own tell no signature
+            continue
+        own_places, own_names = parameters(own)
+        assert own_places.items() <= places.items(), own
+        assert own_names <= names | set(places.values()), own
+
+
+POOL = (
+    "0 1 -2 3 0.5 -1.25 True None float int [3,4] [0.5,-2.0] [1,2,3] [[1,2],[3,4]] [] v A S v[:2] "
+    "A>1 v>0 A[0] A.T (0,1) (2,3) (1,-1) np.array(2.0) np.array([1,2,3])"
+).split()
+OPTIONS = "axis=0 axis=1 axis=-1 axis=(0,1) keepdims=True dtype=float dtype=int".split()
+METHODS_TRIED = (
+    "T all() any() argmax() argmin() sum() mean() std() max() min() trace() ravel() flatten() "
+    "copy() transpose() squeeze() tolist() item() sum(0) sum(1) max(0) mean(-1) sum(0,float) "
+    "std(0,float) max(0,None) reshape(-1) reshape(3,3) transpose(1,0) swapaxes(0,1) round(1) "
+    "astype(int) astype(float) dot(v) argmax(0) all(0) any(1) sum(axis=0,keepdims=True)"
+).split()
+
+
+def ordinary_lines(count):
+    """Lines that people may write: functions of the stand-in, with arguments from a pool."""
+    draw = random.Random("ordinary lines")
+    functions = [
+        f"np.{name}"
+        for name, value in plain_numpy.OFFERED.items()
+        if inspect.isfunction(value) or name == "linalg"
+    ]
+    functions = [name for name in functions if name not in ("np.linalg", "np.empty")]
+    functions += [f"np.linalg.{name}" for name in plain_numpy.PARTS["linalg"].offered]
+    operators = ["+", "-", "*", "/", "**", "@", "//", "%", "==", "<", "&", "|"]
+    for _ in range(count):
+        kind = draw.random()
+        if kind < 0.7:
+            arguments = draw.choices(POOL, k=draw.choice([1, 1, 2, 2, 2, 3]))
+            arguments += draw.sample(OPTIONS, draw.choice([0, 0, 0, 1, 1, 2]))
+            names = [part.partition("=")[0] for part in arguments if "=" in part]
+            if len(names) == len(set(names)):
+                yield f"{draw.choice(functions)}({', '.join(arguments)})"
+        elif kind < 0.85:
+            yield f"np.array({draw.choice(POOL)}).{draw.choice(METHODS_TRIED)}"
+        else:
+            one, two = (f"np.array({value})" for value in draw.choices(POOL, k=2))
+            yield f"{one} {draw.choice(operators)} {two}"
+
+
+def plain(value):
+    """The kinds and shapes of a value, and its numbers."""
+    if isinstance(value, (tuple, list)):
+        parts = [plain(part) for part in value]
+        return [type(value).__name__, [part[0] for part in parts]], sum(
+            (part[1] for part in parts), []
+        )
+    if hasattr(value, "dtype"):
+        array = isinstance(value, (np.ndarray, plain_numpy.Array))
+        return [tuple(value.shape), value.dtype.kind, array], np.ravel(value.tolist()).tolist()
+    return type(value).__name__, [value]
+
+
+def test_of_ordinary_lines_none_has_another_answer():
+    """Given by place or by name: the same kind, shape and numbers, or the real one is asked."""
+    wrong, answered = [], 0
+    for line in ordinary_lines(12_000):
+        plain_numpy.begin()
+        try:
+            ours = eval(line, values(STAND_IN))
+        except ModuleNotFoundError:
+            continue
+        except Exception as error:  # noqa: BLE001 (compared with NumPy's)
+            ours = error
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            try:
+                theirs = eval(line, values(np))
+            except Exception as error:  # noqa: BLE001
+                theirs = error
+        answered += 1
+        if isinstance(ours, Exception) or isinstance(theirs, Exception):
+            same = isinstance(theirs, type(ours)) and str(ours) == str(theirs)
+        else:
+            (form, numbers), (their_form, their_numbers) = plain(ours), plain(theirs)
+            same = form == their_form and (
+                numbers == their_numbers
+                or np.allclose(numbers, their_numbers, rtol=1e-12, atol=1e-14, equal_nan=True)
+            )
+        if not same:
+            wrong.append((line, ours, theirs))
+    assert not wrong, (len(wrong), answered, wrong[:40])
+    assert answered > 3_000
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,8 @@ a moment) is handed to the real NumPy. The page then fetches it; a notebook does
 imports it.
 """
 
+import bisect
+import collections
 import functools
 import importlib.machinery
 import itertools
@@ -326,8 +328,6 @@ class Truth(Scalar):
     def __int__(self):
         return int(self.value)
 
-    __index__ = __int__
-
     def __float__(self):
         return float(self.value)
 
@@ -451,7 +451,7 @@ class Array:
     # Shapes.
 
     def reshape(self, *shape):
-        shape = shape_of(shape)
+        shape = shape_of(shape, -1)
         if -1 in shape:
             rest = math.prod(length for length in shape if length != -1)
             shape = tuple(self.size // rest if length == -1 else length for length in shape)
@@ -471,8 +471,8 @@ class Array:
     flat = property(lambda self: iter([scalar(self.kind, value) for value in self.values]))
 
     def transpose(self, *order):
-        order = shape_of(order) if order else tuple(range(self.ndim))[::-1]
-        order = [position % self.ndim for position in order]
+        order = shape_of(order, -self.ndim) if order else tuple(range(self.ndim))[::-1]
+        order = [position + self.ndim if position < 0 else position for position in order]
         if sorted(order) != list(range(self.ndim)):
             raise ValueError(order)
         steps = steps_of(self.shape)
@@ -493,7 +493,7 @@ class Array:
     def copy(self):
         return Array(list(self.values), self.shape, self.kind)
 
-    def astype(self, dtype, copy=True):
+    def astype(self, dtype, *, copy=True):
         return as_array(self, dtype).copy() if copy else as_array(self, dtype)
 
     # Parts.
@@ -663,9 +663,12 @@ def nested(values, shape):
     return [nested(values[k * step : (k + 1) * step], shape[1:]) for k in range(shape[0])]
 
 
-def shape_of(shape):
+def shape_of(shape, least=0):
     shape = shape[0] if len(shape) == 1 and not isinstance(shape[0], int) else shape
-    return tuple(operator.index(length) for length in shape)
+    shape = [length.tolist() if isinstance(length, Integer) else length for length in shape]
+    if any(type(length) is not int or length < least for length in shape):
+        raise TypeError("lengths")
+    return tuple(shape)
 
 
 def written(shape):
@@ -908,11 +911,28 @@ for _name in ("add", "sub", "mul", "truediv", "pow", "mod"):
     setattr(Array, f"__i{_name}__", in_place(_name))
 
 
-def of_numbers(name, function, kind="f"):
-    """Offer a function of floats, entry by entry."""
+OF_TWO = {
+    "arctan2", "hypot", "true_divide", "divide", "add", "subtract", "multiply", "power", "mod",
+    "minimum", "maximum",
+}  # fmt: skip
 
-    def applied(*arguments):
-        return entry_by_entry(function, *arguments, kind=kind)
+
+def of_numbers(name, function, kind="f"):
+    """Offer a function of numbers, entry by entry."""
+
+    def applied(*arguments, out=None):
+        if len(arguments) != 1 + (name in OF_TWO):
+            raise TypeError("other arguments")
+        arrays = list(map(as_array, arguments))
+        if kind != "b" and any(array.kind == "b" for array in arrays):
+            raise TypeError("truth values")
+        if name in ("floor", "ceil") and arrays[0].kind != "f":
+            raise TypeError("whole numbers stay whole")
+        found = entry_by_entry(function, *arrays, kind=kind)
+        if out is None:
+            return found
+        out[...] = found
+        return out
 
     applied.__name__ = name
     offered(applied)
@@ -972,19 +992,16 @@ OFFERED["absolute"] = abs_
 @offered
 def sign(value):
     value = as_array(value)
+    if value.kind == "b":
+        raise TypeError("truth values")
     return entry_by_entry(
         sign_of if value.kind == "f" else lambda entry: (entry > 0) - (entry < 0), value
     )
 
 
 @offered
-def round_(value, decimals=0):
-    return around(value, decimals)
-
-
-@offered
-def around(value, decimals=0):
-    value = as_array(value)
+def around(a, decimals=0):
+    value, decimals = as_array(a), shape_of((operator.index(decimals),), -99)[0]
     if value.kind != "f":
         if value.kind == "i" and decimals >= 0:
             return value[()] if not value.shape else value.copy()
@@ -995,94 +1012,106 @@ def around(value, decimals=0):
     return entry_by_entry(lambda entry: nearest_whole(entry * scale) / scale, value)
 
 
-@offered
-def clip(value, low, high):
-    found = as_array(value)
-    if low is not None:
-        found = OFFERED["maximum"](found, low)
-    return OFFERED["minimum"](found, high) if high is not None else found
+OFFERED["round"] = around
 
 
 @offered
-def where(condition, yes, no):
-    kind = max(as_array(yes).kind, as_array(no).kind, key="bif".index)
+def clip(a, a_min, a_max):
+    return OFFERED["minimum"](OFFERED["maximum"](a, a_min), a_max)
+
+
+@offered
+def where(condition, x, y, /):
+    kind = max(as_array(x).kind, as_array(y).kind, key="bif".index)
     convert = KINDS[kind]
     return entry_by_entry(
-        lambda c, y, n: convert(y if c else n), condition, yes, no, kind=kind, quiet=True
+        lambda c, yes, no: convert(yes if c else no), condition, x, y, kind=kind, quiet=True
     )
 
 
 @offered
-def choose(number, choices):
-    return entry_by_entry(lambda k, *entries: entries[k], number, *choices,
-                          kind=as_array(choices[0]).kind, quiet=True)  # fmt: skip
+def putmask(a, /, mask, values):
+    if not isinstance(a, Array) or as_array(values).size not in (1, a.size):
+        raise NotImplementedError("repeated values")
+    a[...] = where(as_array(mask).reshape(a.shape), values, a)
 
 
 @offered
-def isclose(one, two, rtol=1e-5, atol=1e-8):
-    def close(a, b):
+def choose(a, choices):
+    number = as_array(a)
+    if number.kind != "i" or not all(0 <= k < len(choices) for k in number.values):
+        raise ValueError("no such choice")
+    return in_other_words(
+        functools.partial(entry_by_entry, kind=as_array(choices[0]).kind, quiet=True),
+        lambda k, *entries: entries[k],
+        number,
+        *choices,
+    )
+
+
+@offered
+def isclose(a, b, rtol=1e-5, atol=1e-8):
+    rtol, atol = float(rtol), float(atol)
+
+    def close(x, y):
         return (
-            abs(a - b) <= atol + rtol * abs(b) if math.isfinite(a) and math.isfinite(b) else a == b
+            abs(x - y) <= atol + rtol * abs(y) if math.isfinite(x) and math.isfinite(y) else x == y
         )
 
-    return entry_by_entry(close, one, two, kind="b")
+    return entry_by_entry(close, a, b, kind="b")
 
 
 @offered
-def allclose(one, two, rtol=1e-5, atol=1e-8):
-    return all(as_array(isclose(one, two, rtol, atol)).values)
-
-
-@offered
-def array_equal(one, two):
-    one, two = as_array(one), as_array(two)
-    return one.shape == two.shape and one.values == two.values
+def allclose(a, b, rtol=1e-5, atol=1e-8):
+    return all(as_array(isclose(a, b, rtol, atol)).values)
 
 
 # --- arrays made --------------------------------------------------------------------------------
 
 
 @offered
-def array(value, dtype=None, copy=True):
-    return as_array(value, dtype).copy()
+def array(object, dtype=None):
+    return as_array(object, dtype).copy()
 
 
 @offered
-def asarray(value, dtype=None):
-    return as_array(value, dtype)
+def asarray(a, dtype=None):
+    return as_array(a, dtype)
 
 
 @offered
-def ascontiguousarray(value):
-    return as_array(value)
+def ascontiguousarray(a):
+    return atleast_1d(a)
 
 
 @offered
-def atleast_1d(value):
+def atleast_1d(value, /):
     value = as_array(value)
     return value if value.shape else value.reshape(1)
 
 
 @offered
-def atleast_2d(value):
+def atleast_2d(value, /):
     value = as_array(value)
     return value if value.ndim > 1 else value.reshape(1, -1)
 
 
 @offered
-def full(shape, value, dtype=None):
-    value = as_array(value, dtype)
+def full(shape, fill_value, dtype=None):
+    value = as_array(fill_value, dtype)
+    if value.shape:
+        raise ValueError("one value")
     return Array(value.values * math.prod(shape := shape_of((shape,))), shape, value.kind)
 
 
 @offered
 def zeros(shape, dtype=float):
-    return full(shape, 0, dtype)
+    return full(shape, 0, dtype or float)
 
 
 @offered
 def ones(shape, dtype=float):
-    return full(shape, 1, dtype)
+    return full(shape, 1, dtype or float)
 
 
 @offered
@@ -1091,38 +1120,24 @@ def empty(shape, dtype=float):
 
 
 @offered
-def zeros_like(value):
-    value = as_array(value)
+def zeros_like(a):
+    value = as_array(a)
     return zeros(value.shape, value.dtype)
 
 
 @offered
-def ones_like(value):
-    value = as_array(value)
-    return ones(value.shape, value.dtype)
-
-
-@offered
-def full_like(value, filling):
-    value = as_array(value)
-    return full(value.shape, filling, value.dtype)
-
-
-@offered
-def eye(count, dtype=float):
+def eye(N, *, dtype=float):
+    (N,) = shape_of((N,))
     convert = KINDS[kind_of(dtype)]
     return Array(
-        [convert(row == column) for row in range(count) for column in range(count)],
-        (count, count),
+        [convert(row == column) for row in range(N) for column in range(N)],
+        (N, N),
         kind_of(dtype),
     )
 
 
-OFFERED["identity"] = eye
-
-
 @offered
-def arange(start, stop=None, step=1):
+def arange(start, stop=None, step=1, /):
     start, stop = (0, start) if stop is None else (start, stop)
     if all(isinstance(value, int) for value in (start, stop, step)):
         values = list(range(int(start), int(stop), int(step)))
@@ -1150,61 +1165,55 @@ def logspace(start, stop, num=50):
 
 
 @offered
-def loadtxt(file, delimiter, skiprows=0):
-    rows = [
-        [float(entry) for entry in line.split(delimiter)]
-        for line in list(file)[skiprows:]
-        if line.strip()
-    ]
-    return as_array(rows)
+def loadtxt(fname, *, delimiter, skiprows=0):
+    lines = list(fname)[skiprows:]
+    return as_array([list(map(float, line.split(delimiter))) for line in lines if line.strip()])
 
 
 @offered
-def broadcast_to(value, shape):
-    value = as_array(value)
+def broadcast_to(array, shape):
+    value = as_array(array)
     shape = shape_of((shape,))
-    return Array(list(spread(value, shape)), shape, value.kind)
+    return Array(list(in_other_words(spread, value, shape)), shape, value.kind)
+
+
+def in_other_words(function, *arguments):
+    """What ``function`` answers; the reader's own error NumPy tells in other words."""
+    try:
+        return function(*arguments)
+    except Told as told:
+        raise told.args[0] from None
 
 
 @offered
-def broadcast_shapes(*shapes):
-    return common_shape(*map(tuple, shapes))
+def broadcast_shapes(*args):
+    return in_other_words(common_shape, *[shape_of((shape,)) for shape in args])
 
 
 @offered
-def reshape(value, shape):
-    return as_array(value).reshape(shape)
+def reshape(a, /, shape):
+    return as_array(a).reshape(shape)
 
 
 @offered
-def ravel(value):
-    return as_array(value).ravel()
+def ravel(a):
+    return as_array(a).ravel()
 
 
 @offered
-def transpose(value, axes=None):
-    return as_array(value).transpose(*([axes] if axes else []))
+def transpose(a, axes=None):
+    return as_array(a).transpose(*([] if axes is None else [axes]))
 
 
 @offered
-def swapaxes(value, one, two):
-    return as_array(value).swapaxes(one, two)
+def swapaxes(a, axis1, axis2):
+    return as_array(a).swapaxes(axis1, axis2)
 
 
 @offered
-def shape(value):
-    return as_array(value).shape
-
-
-@offered
-def ndim(value):
-    return as_array(value).ndim
-
-
-@offered
-def concatenate(arrays, axis=0):
+def concatenate(arrays, /, axis=0):
     arrays = [as_array(array) for array in arrays]
-    axis %= arrays[0].ndim
+    axis = range(arrays[0].ndim)[axis]
     kind = max([array.kind for array in arrays], key="bif".index)
     if len({array.shape[:axis] + array.shape[axis + 1 :] for array in arrays}) > 1:
         raise ValueError("shapes")
@@ -1224,38 +1233,22 @@ def concatenate(arrays, axis=0):
 @offered
 def stack(arrays, axis=0):
     arrays = [as_array(array) for array in arrays]
-    axis %= arrays[0].ndim + 1
+    axis = range(arrays[0].ndim + 1)[axis]
     return concatenate(
         [array.reshape(*array.shape[:axis], 1, *array.shape[axis:]) for array in arrays], axis
     )
 
 
 @offered
-def vstack(arrays):
-    return concatenate([atleast_2d(array) for array in arrays])
-
-
-@offered
-def hstack(arrays):
-    arrays = [atleast_1d(array) for array in arrays]
-    return concatenate(arrays, 0 if arrays[0].ndim == 1 else 1)
-
-
-@offered
-def column_stack(arrays):
+def column_stack(tup):
     return concatenate(
-        [array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, arrays)], 1
+        [array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, tup)], 1
     )
 
 
 @offered
-def append(one, two):
-    return concatenate([as_array(one).ravel(), as_array(two).ravel()])
-
-
-@offered
-def tile(value, counts):
-    value, counts = as_array(value), shape_of((counts,))
+def tile(A, reps):
+    value, counts = as_array(A), shape_of((reps,))
     longest = max(value.ndim, len(counts))
     value = value.reshape((1,) * (longest - value.ndim) + value.shape)
     for axis, count in enumerate((1,) * (longest - len(counts)) + counts):
@@ -1264,21 +1257,15 @@ def tile(value, counts):
 
 
 @offered
-def repeat(value, count):
-    value = as_array(value).ravel()
-    return Array(
-        [entry for entry in value.values for _ in range(count)], (value.size * count,), value.kind
-    )
-
-
-@offered
-def diag(value):
-    value = as_array(value)
+def diag(v):
+    value = as_array(v)
     if value.ndim == 1:
         found = zeros((value.size, value.size), value.dtype)
         for k, entry in enumerate(value.values):
             found[k, k] = entry
         return found
+    if value.ndim != 2:
+        raise NotImplementedError("stacks")
     return Array(
         [value[k, k].tolist() for k in range(min(value.shape))], (min(value.shape),), value.kind
     )
@@ -1322,10 +1309,15 @@ def along(value, axis, function, kind=None, keepdims=False, other=None):
     """
     value = as_array(value)
     kind = kind or value.kind
-    axes = range(value.ndim) if axis is None else [axis] if isinstance(axis, int) else axis
-    axes = sorted(k + value.ndim if k < 0 else k for k in axes)
+    if axis is None:
+        axes = range(value.ndim)
+    elif type(axis) in (int, tuple) and value.ndim:
+        axes = [axis] if type(axis) is int else axis
+    else:
+        raise TypeError("other axes")
+    axes = sorted(operator.index(k) + (value.ndim if k < 0 else 0) for k in axes)
     if any(k not in range(value.ndim) for k in axes) or len(set(axes)) < len(axes):
-        raise Told(ValueError(f"axis {axis} is out of bounds for array of dimension {value.ndim}"))
+        raise ValueError("axes")
     kept = [k for k in range(value.ndim) if k not in axes]
     if kept and axes and axes[-1] < kept[-1] and other:
         if len(axes) > 1:
@@ -1352,8 +1344,8 @@ def along(value, axis, function, kind=None, keepdims=False, other=None):
 def reduction(name, function, kind=None, other=None):
     """Offer a reduction as a function and as a method."""
 
-    def applied(value, axis=None, keepdims=False):
-        return along(value, axis, function, kind, keepdims, other)
+    def applied(a, axis=None, *, keepdims=False):
+        return along(a, axis, function, kind, keepdims, other)
 
     applied.__name__ = name
     offered(applied)
@@ -1370,11 +1362,17 @@ def smallest(values):
     return found if all_finite(values) or not any(map(math.isnan, values)) else nan
 
 
+def without_truth(value):
+    if isinstance(value, bool):
+        raise TypeError("truth values")
+    return value
+
+
 reduction("max", largest)
 reduction("min", smallest)
 reduction("all", all, "b")
 reduction("any", any, "b")
-reduction("ptp", lambda values: largest(values) - smallest(values))
+reduction("ptp", lambda values: without_truth(largest(values)) - smallest(values))
 reduction("count_nonzero", lambda values: sum(map(bool, values)), "i")
 OFFERED.update({"amax": OFFERED["max"], "amin": OFFERED["min"]})
 
@@ -1389,8 +1387,10 @@ def place_of(choose):
 
 
 def place(name, choose):
-    def applied(value, axis=None):
-        return along(value, axis, place_of(choose), "i")
+    def applied(a, axis=None):
+        if isinstance(axis, tuple):
+            raise TypeError("several axes")
+        return along(a, axis, place_of(choose), "i")
 
     applied.__name__ = name
     offered(applied)
@@ -1401,8 +1401,8 @@ place("argmax", max)
 place("argmin", min)
 
 
-def sum_(value, axis=None, keepdims=False):
-    value = as_array(value)
+def sum_(a, axis=None, *, keepdims=False):
+    value = as_array(a)
     if value.kind != "f":
         return along(value, axis, sum, "i", keepdims)
     if axis is None and not isinstance(value.places, range) and value.ndim > 1:
@@ -1410,52 +1410,39 @@ def sum_(value, axis=None, keepdims=False):
     return along(value, axis, pairwise, "f", keepdims, in_turn)
 
 
-def mean(value, axis=None, keepdims=False):
-    value = as_array(value, float)
-    total = sum_(value, axis, keepdims)
+def mean(a, axis=None, *, keepdims=False):
+    value = as_array(a, float)
+    total = sum_(value, axis, keepdims=keepdims)
     return total / (value.size // max(as_array(total).size, 1))
 
 
-def var(value, axis=None):
-    value = as_array(value, float)
-    return mean((value - mean(value, axis, True)) ** 2, axis)
+def std(a, axis=None):
+    value = as_array(a, float)
+    return OFFERED["sqrt"](mean((value - mean(value, axis, keepdims=True)) ** 2, axis))
 
 
-def std(value, axis=None):
-    return OFFERED["sqrt"](var(value, axis))
-
-
-for _function in (sum_, mean, var, std):
+for _function in (sum_, mean, std):
     setattr(Array, _function.__name__.rstrip("_"), _function)
     offered(_function)
 
 
 @offered
-def median(value, axis=None):
-    def middle(values):
-        if not all_finite(values):
-            raise ValueError("not finite")
-        ordered, half = sorted(values), len(values) // 2
-        return ordered[half] if len(values) % 2 else (ordered[half - 1] + ordered[half]) / 2
-
-    return along(as_array(value, float), axis, middle)
-
-
-@offered
-def percentile(value, q, axis=None):
-    value, q = as_array(value, float), as_array(q)
+def percentile(a, q, axis=None):
+    value, q = as_array(a, float), as_array(q)
+    if (
+        q.ndim > 1
+        or q.kind == "b"
+        or not all_finite(value.values)
+        or not all(0 <= part <= 100 for part in q.values)
+    ):
+        raise ValueError("not finite")
 
     def at(part):
         def found(values):
-            if not all_finite(values) or not 0 <= part <= 100:
-                raise ValueError("not finite")
             ordered, exact = sorted(values), part / 100 * (len(values) - 1)
             below = math.floor(exact)
-            low, high, share = (
-                ordered[below],
-                ordered[min(below + 1, len(values) - 1)],
-                exact - below,
-            )
+            low, high = ordered[below], ordered[min(below + 1, len(values) - 1)]
+            share = exact - below
             return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
 
         return found
@@ -1466,8 +1453,8 @@ def percentile(value, q, axis=None):
 
 
 @offered
-def cumsum(value, axis=None):
-    value = as_array(value)
+def cumsum(a, axis=None):
+    value = as_array(a)
     if axis is None:
         value, axis = value.ravel(), 0
     last = value.swapaxes(axis, -1)
@@ -1483,15 +1470,15 @@ def cumsum(value, axis=None):
 
 def between(value, axis):
     """All but the first along an axis, and all but the last."""
-    front = (slice(None),) * (axis % value.ndim)
+    front = (slice(None),) * range(value.ndim)[axis]
     return value[(*front, slice(1, None))], value[(*front, slice(None, -1))]
 
 
 @offered
-def diff(value, axis=-1, prepend=None):
-    value = as_array(value)
-    if value.kind == "b":
-        raise TypeError("truth values")
+def diff(a, n=1, axis=-1, prepend=None):
+    value = as_array(a)
+    if value.kind == "b" or n != 1:
+        raise NotImplementedError("truth values, or differences of differences")
     if prepend is not None:
         if value.ndim != 1:
             raise NotImplementedError("prepend")
@@ -1501,99 +1488,29 @@ def diff(value, axis=-1, prepend=None):
 
 
 @offered
-def gradient(value, *spacing, axis=None):
-    value = as_array(value, float)
-    if axis is None and value.ndim != 1 or len(spacing) > 1:
-        raise NotImplementedError("several axes")
-    moved = value.swapaxes(axis or 0, 0)
-    spaces = diff(as_array(spacing[0], float)) if spacing and as_array(spacing[0]).ndim else None
-    found = empty(moved.shape)
-    if spaces is not None and any(space != spaces.values[0] for space in spaces.values):
-        one, two = (part.reshape(-1, *[1] * (value.ndim - 1)) for part in (spaces[:-1], spaces[1:]))
-        a, b, c = -two / (one * (one + two)), (two - one) / (one * two), one / (two * (one + two))
-        found[1:-1] = a * moved[:-2] + b * moved[1:-1] + c * moved[2:]
-        first, last = spaces[0], spaces[-1]
-    else:
-        first = last = spaces[0] if spaces is not None else spacing[0] if spacing else 1.0
-        found[1:-1] = (moved[2:] - moved[:-2]) / (2.0 * first)
-    found[0] = (moved[1] - moved[0]) / first
-    found[-1] = (moved[-1] - moved[-2]) / last
-    return found.swapaxes(axis or 0, 0)
-
-
-@offered
-def unwrap(value, period=2 * math.pi, axis=-1):
-    value = as_array(value)
-    if value.kind != "f" and not isinstance(period, float):
-        raise NotImplementedError("whole numbers")
-    value, half = as_array(value, float), period / 2
-    steps = diff(value, axis)
-    wrapped = entry_by_entry(lambda step: half if (step + half) % period == 0 and step > 0
-                             else (step + half) % period - half, steps)  # fmt: skip
-    corrections = where(abs_(steps) < half, 0.0, wrapped - steps)
-    found = value.copy()
-    front = (slice(None),) * (axis % value.ndim)
-    found[(*front, slice(1, None))] = value[(*front, slice(1, None))] + cumsum(corrections, axis)
-    return found
-
-
-@offered
-def flatnonzero(value):
-    found = [place for place, entry in enumerate(as_array(value).values) if entry]
+def flatnonzero(a):
+    found = [place for place, entry in enumerate(as_array(a).values) if entry]
     return Array(found, (len(found),), "i")
 
 
 @offered
-def argwhere(value):
-    value = as_array(value)
-    return as_array(
-        [unravel_index(place, value.shape) for place in flatnonzero(value).values]
-        or zeros((0, value.ndim), int)
+def unravel_index(indices, shape):
+    place = operator.index(indices)
+    if not 0 <= place < math.prod(shape):
+        raise IndexError(place)
+    return tuple(
+        Integer(place // step % length) for step, length in zip(steps_of(tuple(shape)), shape)
     )
 
 
 @offered
-def unravel_index(place, shape):
-    found = []
-    for step, length in zip(steps_of(tuple(shape)), shape):
-        found.append(Integer(place // step % length))
-    return tuple(found)
-
-
-@offered
-def searchsorted(ordered, value, side="left"):
-    import bisect
-
-    find, ordered = (
-        {"left": bisect.bisect_left, "right": bisect.bisect_right}[side],
-        as_array(ordered),
-    )
+def searchsorted(a, v, side="left"):
+    find = {"left": bisect.bisect_left, "right": bisect.bisect_right}[side]
+    ordered = as_array(a)
     if ordered.ndim != 1:
         raise ValueError("one axis")
     values = ordered.values
-    return entry_by_entry(lambda entry: find(values, entry), value, kind="i")
-
-
-@offered
-def unique(value):
-    found = sorted(set(as_array(value).values))
-    return Array(found, (len(found),), as_array(value).kind)
-
-
-@offered
-def sort(value):
-    value = as_array(value)
-    if value.ndim != 1 or not all_finite(value.values):
-        raise NotImplementedError("several axes")
-    return Array(sorted(value.values), value.shape, value.kind)
-
-
-@offered
-def argsort(value):
-    value = as_array(value)
-    if value.ndim != 1 or not all_finite(value.values) or len(set(value.values)) < value.size:
-        raise NotImplementedError("several axes, or equal entries")
-    return Array(sorted(range(value.size), key=value.values.__getitem__), value.shape, "i")
+    return entry_by_entry(lambda entry: find(values, entry), v, kind="i")
 
 
 # --- products, and matrices ---------------------------------------------------------------------
@@ -1610,7 +1527,7 @@ def product(one, two):
     """``one @ two``, rows times columns."""
     one, two = as_array(one), as_array(two)
     if not one.shape or not two.shape:
-        raise Told(ValueError("matmul: Input operand does not have enough dimensions"))
+        raise ValueError("NumPy says in its own words which of the two")
     left = one.reshape(1, -1) if one.ndim == 1 else one
     right = two.reshape(-1, 1) if two.ndim == 1 else two
     if left.shape[-1] != right.shape[-2]:
@@ -1642,50 +1559,48 @@ def product(one, two):
 
 
 @offered
-def matmul(one, two):
-    return product(one, two)
-
-
-@offered
-def dot(one, two):
-    one, two = as_array(one), as_array(two)
+def dot(a, b):
+    one, two = as_array(a), as_array(b)
     if not one.shape or not two.shape:
         return one * two
     if two.ndim > 2 or one.ndim > 2:
         raise NotImplementedError("stacks")
-    return product(one, two)
+    return in_other_words(product, one, two)
 
 
 @offered
-def outer(one, two):
-    return as_array(one).reshape(-1, 1) * as_array(two).reshape(1, -1)
+def outer(a, b):
+    return as_array(a).reshape(-1, 1) * as_array(b).reshape(1, -1)
 
 
 @offered
-def cross(one, two):
-    one, two = as_array(one), as_array(two)
+def cross(a, b):
+    one, two = as_array(a), as_array(b)
     if one.shape[-1] != 3 or two.shape[-1] != 3:
         raise ValueError("three components")
-    (a, b, c), (x, y, z) = ([value[..., k] for k in range(3)] for value in (one, two))
-    return stack([b * z - c * y, c * x - a * z, a * y - b * x], -1)
+    (r, s, t), (x, y, z) = ([value[..., k] for k in range(3)] for value in (one, two))
+    return stack([s * z - t * y, t * x - r * z, r * y - s * x], -1)
 
 
 @offered
-def trace(value):
-    return sum_(diag(as_array(value)))
+def trace(a):
+    value = as_array(a)
+    if value.ndim < 2:
+        raise ValueError("a matrix")
+    return sum_(diag(value))
 
 
 @offered
-def tensordot(one, two, axes):
-    one, two = as_array(one), as_array(two)
+def tensordot(a, b, axes):
+    one, two = as_array(a), as_array(b)
     if axes != 1 or one.ndim != 1:
         raise NotImplementedError("other axes")
     return (one @ two.reshape(two.shape[0], -1)).reshape(two.shape[1:])
 
 
 @offered
-def einsum(formula, *arrays):
-    arrays = [as_array(array) for array in arrays]
+def einsum(formula, /, *operands):
+    arrays = [as_array(array) for array in operands]
     inputs, _, output = formula.replace(" ", "").partition("->")
     inputs = inputs.split(",")
     if not output or any(array.kind != "f" for array in arrays):
@@ -1737,7 +1652,17 @@ def inner(one, two):
     return sum(map(operator.mul, one, two))
 
 
-def eliminated(rows, right):
+def asked_by_a_module():
+    """Whether a module calls, and not the reader's own cell, who looks at every digit and sign.
+
+    Which signs LAPACK gives to the vectors of a factor, and which digits to the determinant of a
+    matrix that is next to singular, no rule says; modules make nothing of either.
+    """
+    # Between this and the caller stand the function that is called and what it is wrapped in.
+    return sys._getframe(3).f_globals.get("__name__", "__main__") != "__main__"
+
+
+def eliminated(rows, right, careful=True):
     """Solve by Gauss's elimination with row exchanges; returns the solution and the determinant."""
     rows, right, n, determinant = (
         [row[:] for row in rows],
@@ -1745,14 +1670,18 @@ def eliminated(rows, right):
         len(rows),
         1.0,
     )
+    largest_entry = max(abs(entry) for row in rows for entry in row)
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(rows[i][k]))
         if best != k:
             rows[k], rows[best], right[k], right[best] = rows[best], rows[k], right[best], right[k]
             determinant = -determinant
-        determinant *= rows[k][k]
+        pivot = rows[k][k]
+        if careful and 0 < abs(pivot) < 1e-10 * largest_entry:
+            raise ArithmeticError("next to singular: all digits are rounding's")
+        determinant *= pivot
         for i in range(k + 1, n):
-            if not rows[k][k]:
+            if not pivot:
                 break
             factor = rows[i][k] / rows[k][k]
             rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k])]
@@ -1766,14 +1695,16 @@ def eliminated(rows, right):
 
 
 @within("linalg")
-def solve(matrix, right):
-    stack_of, batch, n = matrices(matrix)
-    right = as_array(right, float)
+def solve(a, b):
+    stack_of, batch, n = matrices(a)
+    right = as_array(b, float)
     if batch or right.ndim > 2:
         if right.ndim != len(batch) + 2:
             raise NotImplementedError("stacks")
         right = broadcast_to(right, (*batch, *right.shape[-2:]))
     columns = right.shape[-1] if right.ndim > 1 else 1
+    if right.shape[-2 if right.ndim > 1 else 0] != n:
+        raise ValueError("rows")
     rights = nested(right.values, (len(stack_of), n, columns))
     values = [
         entry
@@ -1785,8 +1716,8 @@ def solve(matrix, right):
 
 
 @within("linalg")
-def inv(matrix):
-    stack_of, batch, n = matrices(matrix)
+def inv(a):
+    stack_of, batch, n = matrices(a)
     unit = eye(n).tolist()
     return Array(
         [entry for rows in stack_of for row in eliminated(rows, unit)[0] for entry in row],
@@ -1796,9 +1727,10 @@ def inv(matrix):
 
 
 @within("linalg")
-def det(matrix):
-    stack_of, batch, n = matrices(matrix)
-    return result([eliminated(rows, [[]] * n)[1] for rows in stack_of], batch, "f")
+def det(a):
+    stack_of, batch, n = matrices(a)
+    careful = not asked_by_a_module()
+    return result([eliminated(rows, [[]] * n, careful)[1] for rows in stack_of], batch, "f")
 
 
 def of_symmetric(rows):
@@ -1833,19 +1765,36 @@ def of_symmetric(rows):
     return [a[k][k] for k in order], [vectors[k] for k in order]
 
 
+EighResult = collections.namedtuple("EighResult", "eigenvalues eigenvectors")
+SVDResult = collections.namedtuple("SVDResult", "U S Vh")
+
+
+def symmetric(a):
+    """Matrices as the halves below their diagonals have them: NumPy looks at no more."""
+    stack_of, batch, n = matrices(a)
+    halves = range(n)
+    return (
+        [[[rows[max(p, q)][min(p, q)] for q in halves] for p in halves] for rows in stack_of],
+        batch,
+        n,
+    )
+
+
 @within("linalg")
-def eigh(matrix):
-    stack_of, batch, n = matrices(matrix)
+def eigh(a):
+    if not asked_by_a_module():
+        raise NotImplementedError("signs")
+    stack_of, batch, n = symmetric(a)
     found = [of_symmetric(rows) for rows in stack_of]
     # A vector and its opposite are both right, and no rule says which LAPACK gives.
     vectors = [entry for _, rows in found for column in zip(*rows) for entry in column]
-    return (Array([value for values, _ in found for value in values], (*batch, n), "f"),
-            Array(vectors, (*batch, n, n), "f"))  # fmt: skip
+    sizes = Array([value for values, _ in found for value in values], (*batch, n), "f")
+    return EighResult(sizes, Array(vectors, (*batch, n, n), "f"))
 
 
 @within("linalg")
-def eigvalsh(matrix):
-    stack_of, batch, n = matrices(matrix)
+def eigvalsh(a):
+    stack_of, batch, n = symmetric(a)
     return Array([value for rows in stack_of for value in of_symmetric(rows)[0]], (*batch, n), "f")
 
 
@@ -1902,8 +1851,10 @@ def orthonormal(columns, sizes):
 
 
 @within("linalg")
-def svd(matrix, compute_uv=True):
-    stack_of, batch, n = matrices(matrix)
+def svd(a, full_matrices=True, compute_uv=True):
+    if compute_uv and not asked_by_a_module():
+        raise NotImplementedError("signs")
+    stack_of, batch, n = matrices(a)
     spend(len(stack_of) * n**3 * 90)
     lefts, sizes, rights = [], [], []
     for rows in stack_of:
@@ -1917,22 +1868,23 @@ def svd(matrix, compute_uv=True):
     sizes = Array(sizes, (*batch, n), "f")
     if not compute_uv:
         return sizes
-    return Array(lefts, (*batch, n, n), "f"), sizes, Array(rights, (*batch, n, n), "f")
+    left, right = (Array(entries, (*batch, n, n), "f") for entries in (lefts, rights))
+    return SVDResult(left, sizes, right)
 
 
 @within("linalg")
-def norm(value, axis=None, keepdims=False):
-    value = as_array(value, float)
+def norm(x, *, axis=None, keepdims=False):
+    value = as_array(x, float)
     if axis is None and value.ndim < 3 or isinstance(axis, tuple) and len(axis) > 2:
         value, axis = (value.ravel(), None) if not keepdims else (value, axis)
-    return OFFERED["sqrt"](sum_(value * value, axis, keepdims))
+    return OFFERED["sqrt"](sum_(value * value, axis, keepdims=keepdims))
 
 
 @within("linalg")
-def matrix_power(matrix, exponent):
-    found, matrix = None, as_array(matrix)
-    if exponent < 1:
-        raise ValueError("positive powers")
+def matrix_power(a, n):
+    found, matrix, exponent = None, as_array(a), operator.index(n)
+    if exponent < 1 or matrix.ndim < 2 or matrix.shape[-1] != matrix.shape[-2]:
+        raise ValueError("positive powers of square matrices")
     if exponent == 3:
         return product(product(matrix, matrix), matrix)
     while exponent:
@@ -1940,15 +1892,6 @@ def matrix_power(matrix, exponent):
         found = (matrix if found is None else product(found, matrix)) if odd else found
         matrix = product(matrix, matrix) if exponent else matrix
     return found
-
-
-@within("linalg")
-def matrix_rank(matrix):
-    sizes = svd(matrix, compute_uv=False)
-    if sizes.ndim != 1:
-        raise NotImplementedError("stacks")
-    limit = sizes.values[0] * as_array(matrix).shape[-1] * sys.float_info.epsilon
-    return Integer(sum(size > limit for size in sizes.values))
 
 
 class Quiet:
