@@ -119,106 +119,89 @@ def exchanged(values, rng):
     return values @ turns[rng.integers(len(turns))]
 
 
-def plant(kind, recording, rng):
-    """Return the recording with one fault; each size is one that happens."""
-    now = {name: column.copy() for name, column in recording.items()}
-    gyroscope, accelerometer = now["gyroscope"], now["accelerometer"]
-    magnetometer, time = now["magnetometer"], now["time"]
+def shift(rng, low, high):
+    """Return a push of one axis, of a size between two."""
     axis, sign = some_axis(rng)
-    shift = np.zeros(3)
-    shift[axis] = sign
-    if kind == "gyroscope saturated":
-        limit = rng.uniform(0.45, 0.65) * np.abs(gyroscope).max()
-        now["gyroscope"] = np.clip(gyroscope, -limit, limit)
-    elif kind == "gyroscope late":
-        now["gyroscope"] = late(gyroscope, 0.06)
-    elif kind == "gyroscope bias":
-        now["gyroscope"] = gyroscope + shift * rng.uniform(1.0, 4.0)
-    elif kind == "gyroscope drifts":
-        warm = 1 - np.exp(-time / rng.uniform(20.0, 60.0))
-        now["gyroscope"] = gyroscope + np.outer(warm, shift) * rng.uniform(2.0, 4.0)
-    elif kind == "gyroscope follows temperature":
-        warm = 1 - np.exp(-time / rng.uniform(20.0, 60.0))
+    return np.eye(3)[axis] * sign * rng.uniform(low, high)
+
+
+def stretched(values, rng):
+    """Return values (n, 3) with one axis 6 to 15 per cent too long or too short."""
+    axis, sign = some_axis(rng)
+    return scaled(values, axis, 1 + sign * rng.uniform(0.06, 0.15))
+
+
+def warming(time, rng):
+    """Return a share (n,) that rises from 0 towards 1, as an instrument warms up."""
+    return 1 - np.exp(-time / rng.uniform(20.0, 60.0))
+
+
+def soft(values, rng):
+    """Return values (n, 3) that iron near the instrument has stretched along one axis."""
+    axis = shift(rng, 1.0, 1.0)
+    stretch = np.eye(3) + 0.2 * np.outer(axis, axis) + 0.06 * rng.normal(size=(3, 3))
+    return values @ (stretch + stretch.T) / 2
+
+
+def clipped(values, limit):
+    """Return values (n, 3) that stop at a limit."""
+    return np.clip(values, -limit, limit)
+
+
+def passed_by(time, rng):
+    """Return what iron adds (n, 3) while the instrument passes it."""
+    middle = rng.uniform(0.3, 0.7) * time[-1]
+    push = rng.normal(size=3)
+    push *= rng.uniform(25.0, 60.0) / np.linalg.norm(push)
+    return np.outer(np.exp(-(((time - middle) / rng.uniform(1.5, 4.0)) ** 2)), push)
+
+
+#: What happens to the numbers of one sensor, given them, the time and a generator; each size is one
+#: that happens. A range of less than one g is what a wrong setting of the full scale gives.
+CHANGES = {
+    "gyroscope saturated": lambda v, t, rng: clipped(v, rng.uniform(0.45, 0.65) * np.abs(v).max()),
+    "gyroscope late": lambda v, t, rng: late(v, 0.06),
+    "gyroscope bias": lambda v, t, rng: v + shift(rng, 1.0, 4.0),
+    "gyroscope drifts": lambda v, t, rng: v + np.outer(warming(t, rng), shift(rng, 2.0, 4.0)),
+    "gyroscope scale of an axis": lambda v, t, rng: stretched(v, rng),
+    "gyroscope axis reversed": lambda v, t, rng: scaled(v, some_axis(rng)[0], -1.0),
+    "gyroscope axes exchanged": lambda v, t, rng: exchanged(v, rng),
+    "gyroscope in rad/s": lambda v, t, rng: np.radians(v),
+    "gyroscope in counts": lambda v, t, rng: np.round(v * rng.choice([16.4, 32.8, 65.5, 131.0])),
+    "accelerometer axis reversed": lambda v, t, rng: scaled(v, some_axis(rng)[0], -1.0),
+    "accelerometer negated": lambda v, t, rng: -v,
+    "accelerometer axes exchanged": lambda v, t, rng: exchanged(v, rng),
+    "accelerometer in g": lambda v, t, rng: v / 9.81,
+    "accelerometer bias": lambda v, t, rng: v + shift(rng, 0.5, 1.5),
+    "accelerometer scale of an axis": lambda v, t, rng: stretched(v, rng),
+    "accelerometer saturated": lambda v, t, rng: clipped(v, rng.uniform(0.75, 0.9) * 9.81),
+    "magnetometer late": lambda v, t, rng: late(v, 0.2),
+    "magnetometer hard iron": lambda v, t, rng: v + shift(rng, 10.0, 30.0),
+    "magnetometer soft iron": lambda v, t, rng: soft(v, rng),
+    "magnetometer axis reversed": lambda v, t, rng: scaled(v, some_axis(rng)[0], -1.0),
+    "magnetometer disturbed for a while": lambda v, t, rng: v + passed_by(t, rng),
+}
+KINDS = (*CHANGES, "gyroscope follows temperature", "samples lost")
+
+
+def plant(kind, recording, rng):
+    """Return the recording with one fault."""
+    now, time = dict(recording), recording["time"]
+    if kind == "gyroscope follows temperature":
+        warm = warming(time, rng)
         now["temperature"] = now["temperature"] + 18 * warm
-        now["gyroscope"] = gyroscope + np.outer(warm, shift) * rng.uniform(2.0, 4.0)
-    elif kind == "gyroscope scale of an axis":
-        now["gyroscope"] = scaled(gyroscope, axis, 1 + sign * rng.uniform(0.06, 0.15))
-    elif kind == "gyroscope axis reversed":
-        now["gyroscope"] = scaled(gyroscope, axis, -1.0)
-    elif kind == "gyroscope axes exchanged":
-        now["gyroscope"] = exchanged(gyroscope, rng)
-    elif kind == "gyroscope in rad/s":
-        now["gyroscope"] = np.radians(gyroscope)
-    elif kind == "gyroscope in counts":
-        now["gyroscope"] = np.round(gyroscope * rng.choice([16.4, 32.8, 65.5, 131.0]))
-    elif kind == "accelerometer axis reversed":
-        now["accelerometer"] = scaled(accelerometer, axis, -1.0)
-    elif kind == "accelerometer negated":
-        now["accelerometer"] = -accelerometer
-    elif kind == "accelerometer axes exchanged":
-        now["accelerometer"] = exchanged(accelerometer, rng)
-    elif kind == "accelerometer in g":
-        now["accelerometer"] = accelerometer / 9.81
-    elif kind == "accelerometer bias":
-        now["accelerometer"] = accelerometer + shift * rng.uniform(0.5, 1.5)
-    elif kind == "accelerometer scale of an axis":
-        now["accelerometer"] = scaled(accelerometer, axis, 1 + sign * rng.uniform(0.06, 0.15))
-    elif kind == "accelerometer saturated":
-        # A range of one g and a bit is what a wrong setting of full scale gives.
-        limit = rng.uniform(0.75, 0.9) * 9.81
-        now["accelerometer"] = np.clip(accelerometer, -limit, limit)
-    elif kind == "magnetometer late":
-        now["magnetometer"] = late(magnetometer, 0.2)
-    elif kind == "magnetometer hard iron":
-        now["magnetometer"] = magnetometer + shift * rng.uniform(10.0, 30.0)
-    elif kind == "magnetometer soft iron":
-        stretch = np.eye(3) + 0.2 * np.outer(shift, shift) + 0.06 * rng.normal(size=(3, 3))
-        now["magnetometer"] = magnetometer @ (stretch + stretch.T) / 2
-    elif kind == "magnetometer axis reversed":
-        now["magnetometer"] = scaled(magnetometer, axis, -1.0)
-    elif kind == "magnetometer disturbed for a while":
-        middle = rng.uniform(0.3, 0.7) * time[-1]
-        bump = np.exp(-(((time - middle) / rng.uniform(1.5, 4.0)) ** 2))
-        push = rng.normal(size=3)
-        push *= rng.uniform(25.0, 60.0) / np.linalg.norm(push)
-        now["magnetometer"] = magnetometer + np.outer(bump, push)
+        now["gyroscope"] = now["gyroscope"] + np.outer(warm, shift(rng, 2.0, 4.0))
     elif kind == "samples lost":
-        fast = np.flatnonzero(np.linalg.norm(gyroscope, axis=1) > 60)
+        fast = np.flatnonzero(np.linalg.norm(now["gyroscope"], axis=1) > 60)
         keep = np.ones(len(time), bool)
         for start in rng.choice(fast, 4):
             keep[start : start + rng.integers(20, 60)] = False
         now = {name: column[keep] for name, column in now.items()}
-        now["time"] = np.arange(keep.sum()) / RATE
+        now["time"] = time[: keep.sum()]
     elif kind != "none":
-        raise ValueError(f"no fault is called {kind!r}")
+        sensor = kind.split()[0]
+        now[sensor] = CHANGES[kind](now[sensor], time, rng)
     return now
-
-
-KINDS = (
-    "gyroscope saturated",
-    "gyroscope late",
-    "gyroscope bias",
-    "gyroscope drifts",
-    "gyroscope follows temperature",
-    "gyroscope scale of an axis",
-    "gyroscope axis reversed",
-    "gyroscope axes exchanged",
-    "gyroscope in rad/s",
-    "gyroscope in counts",
-    "accelerometer axis reversed",
-    "accelerometer negated",
-    "accelerometer axes exchanged",
-    "accelerometer in g",
-    "accelerometer bias",
-    "accelerometer scale of an axis",
-    "accelerometer saturated",
-    "magnetometer late",
-    "magnetometer hard iron",
-    "magnetometer soft iron",
-    "magnetometer axis reversed",
-    "magnetometer disturbed for a while",
-    "samples lost",
-)
 
 
 def text(recording):

@@ -148,27 +148,36 @@ def test_unrelated_poses_get_no_name(count, piece):
 @FEW_AND_MANY
 @pytest.mark.parametrize("start", ["planar", "at rest"])
 def test_the_pose_that_is_asked_for_decides(count, piece, start):
-    generator = random.Random(700 + piece)
+    """One more pose decides, turned about as far as was asked; where an entry happens to print as
+    zero again, as one in some hundred does, the next.
+    """
+    generator, asked_twice = random.Random(700 + piece), 0
     for _ in range(count):
         axis = generator.choice("xyz")
         angle = generator.uniform(0.2, 1.2) if start == "planar" else 0.0
-        dcm = np.array(simple_dcm(axis, angle))
+        dcms = [np.array(simple_dcm(axis, angle))]
         kinds = [{"kind": generator.choice(["matrix", "quaternion"])} for _ in range(2)]
         truth = random_chain(generator, kinds, generator.randint(1, 2))
-        texts = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
-        found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
-        assert found.further_pose, (truth.words(), str(found))
-        turns = next(turns for words, turns in table.FURTHER_POSES if words == found.further_pose)
-        for name, degrees in turns:
-            dcm = np.array(simple_dcm(name, np.radians(degrees + generator.uniform(-4, 4)))) @ dcm
-        more = [printed(numbers) for numbers in both_sides(truth, dcm[None])]
-        texts = ["\n".join(pair) for pair in zip(texts, more)]
-        decided = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
-        assert decided.verdict in ("named", "same") or decided.names, (texts, str(decided))
+        for asked in range(3):
+            texts = [printed(numbers) for numbers in both_sides(truth, np.array(dcms))]
+            found = explain(*texts, first_declared=kinds[0], second_declared=kinds[1])
+            if asked and not found.further_pose:
+                break
+            turns = next(
+                turns for words, turns in table.FURTHER_POSES if words == found.further_pose
+            )
+            dcm = dcms[-1]
+            for name, degrees in turns:
+                turn = simple_dcm(name, np.radians(degrees + generator.uniform(-4, 4)))
+                dcm = np.array(turn) @ dcm
+            dcms.append(dcm)
+        asked_twice += asked == 2
+        assert found.verdict in ("named", "same") or found.names, (texts, str(found))
         # Orders that nobody uses are not asked about.
-        if decided.names and usual_orders(truth):
-            assert shows(decided, truth, kinds), (texts, truth.words(), str(decided))
-        assert same_meaning([truth, *decided.chains], texts[0], kinds[0]["kind"])[1]
+        if found.names and usual_orders(truth):
+            assert shows(found, truth, kinds), (texts, truth.words(), str(found))
+        assert same_meaning([truth, *found.chains], texts[0], kinds[0]["kind"])[1]
+    assert asked_twice <= 0.01 * count
 
 
 def test_what_special_poses_leave_open():

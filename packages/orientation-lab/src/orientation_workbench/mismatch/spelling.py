@@ -53,10 +53,27 @@ SIGNS_OF_A_SUM = ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1"))
 PART_OF_A_SUM = rf"({NUMBER})\s*[*.]?\s*([ijk])\b"
 SCALAR_OF_A_SUM = rf"(?<![\w.=+-])({NUMBER})(?![\w.])"
 
-#: In this order: pattern and what takes its place.
+#: Of whole files in which numbers mean nothing without the rest: what to cut out of them.
+CUT_OUT = (
+    (
+        r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
+        "a whole file of BVH: cut the three angles of one joint out of the lines below MOTION, and "
+        "say their sequence, which is that of the joint's CHANNELS",
+    ),
+)
+#: In this order: pattern and what takes its place; the first four before tables too.
 CLEANING = (
     ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
     ("[\u2212\u2013\ufe63\uff0d]", "-"),
+    # Headings of PX4's tables: the scalar part is the first of four.
+    (r"^(timestamp,.*?\b)q\[0\],q\[1\],q\[2\],q\[3\]", "$1q_w,q_x,q_y,q_z"),
+    (r"(?<=[a-z])\[(\d)\](?=,|$)", "_$1"),
+    # A line of COLMAP's images.txt, and the points of the image below it.
+    (rf"^\d+((?:[ \t]+{NUMBER}){{4}})(?:[ \t]+{NUMBER}){{3}}[ \t]+\d+[ \t]+\S+\.[a-z]\S*$"
+     r"(?:\n[-+.\d \t]*$)?",
+     "(w, x, y, z) $1"),
+    # A frame of transforms.json has a number of that name before its matrix.
+    (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
     (r"(\d)d([-+]\d)", "$1e$2"),
     # The report of ROS's tf2_echo says each orientation several times.
     (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
@@ -117,6 +134,7 @@ def whole_spelling():
         "not a number": NOT_A_NUMBER,
         "arithmetic": ARITHMETIC,
         "sum": SUM,
+        "cut out": [list(entry) for entry in CUT_OUT],
         "signs of a sum": [list(entry) for entry in SIGNS_OF_A_SUM],
         "part of a sum": PART_OF_A_SUM,
         "scalar of a sum": SCALAR_OF_A_SUM,

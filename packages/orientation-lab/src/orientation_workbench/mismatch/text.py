@@ -37,6 +37,7 @@ _NOT_A_NUMBER, _ARITHMETIC = _pattern(spelling.NOT_A_NUMBER), _pattern(spelling.
 _DEGREES, _RADIANS = _pattern(spelling.DEGREES), _pattern(spelling.RADIANS)
 _ORDERS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_ANGLES]
 _PARTS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_PARTS]
+_CUT_OUT = [(_pattern(pattern), words) for pattern, words in spelling.CUT_OUT]
 _PARTING, _AROUND, _UNIT, _OF_A_QUATERNION, _ENTRY, _NO_ROW = map(_pattern, (
     spelling.PARTING, spelling.AROUND_A_FIELD, spelling.UNIT_OF_A_COLUMN, spelling.OF_A_QUATERNION,
     spelling.ENTRY_OF_A_MATRIX, spelling.NO_ROW))  # fmt: skip
@@ -124,6 +125,9 @@ def _rows_of_array(given, name):
 
 
 def _rows_of_text(text, name):
+    for pattern, words in _CUT_OUT:
+        if pattern.search(text):
+            raise ValueError(f"the {name} side is {words}")
     if columns := _columns(text):
         return columns
     for pattern, replacement in _CLEANING:
@@ -186,7 +190,7 @@ def _columns(text):
     """Rows, half a unit and what is said, of a table under a line that names
     its columns; None where none does.
     """
-    for pattern, replacement in _CLEANING[:2]:
+    for pattern, replacement in _CLEANING[:4]:
         text = pattern.sub(replacement, text)
     lines = text.split("\n")
     for place, line in enumerate(lines):

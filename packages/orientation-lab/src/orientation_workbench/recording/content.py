@@ -37,6 +37,8 @@ UNITS = {
 COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tick"
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
+#: What a bench can use.
+PLAYED = ("gyroscope", "accelerometer", "magnetometer", "quaternion", "angles")
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
 #: Lengths of what points one way only, in the units that are in use:
 #: standard gravity, and the Earth's field.
@@ -87,6 +89,8 @@ class Content(NamedTuple):
     remarks : list of str
     unused : list of str
         Headings of columns that nothing was made of.
+    temperature : pair of arrays of shape ``(n,)`` or None
+        Times and values of the first column that is called so.
     """
 
     groups: dict[str, Group]
@@ -94,6 +98,7 @@ class Content(NamedTuple):
     counted: bool
     remarks: list[str]
     unused: list[str]
+    temperature: tuple[Array, Array] | None = None
 
 
 def read_content(
@@ -126,6 +131,7 @@ def read_content(
     clocks: list[tuple[str, bool]] = []
     unused: list[str] = []
     remarks: list[str] = []
+    warmth: tuple[Array, Array] | None = None
     for table in tables:
         remarks += [
             f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks
@@ -135,6 +141,9 @@ def read_content(
         found, left = _groups(table, column, time)
         groups += found
         unused += left
+        warm = [k for k, name in enumerate(table.columns) if "temp" in name.lower()]
+        if warm and warmth is None and np.isfinite(table.values[:, warm[0]]).all():
+            warmth = time, table.values[:, warm[0]]
     chosen = _roles(groups)
     for group in groups:
         if (
@@ -169,7 +178,9 @@ def read_content(
         }
     start = min(group.time[0] for group in kinds.values())
     kinds = {kind: group._replace(time=group.time - start) for kind, group in kinds.items()}
-    return Content(kinds, clock, counted and not rate, remarks, unused)
+    if warmth is not None:
+        warmth = (warmth[0] / (rate or 1.0) if counted else warmth[0]) - start, warmth[1]
+    return Content(kinds, clock, counted and not rate, remarks, unused, warmth)
 
 
 #: One entry of what a reader says the columns are.
@@ -189,7 +200,12 @@ def _told(table: Table, columns: str) -> Table:
                 f"{entry!r} says nothing of the {len(names)} columns: an entry is like "
                 "gyroscope=2-4 or gyroscope=2-4:rad/s"
             )
-        axes = {1: [""], 3: ["_x", "_y", "_z"], 4: ["_w", "_x", "_y", "_z"]}.get(last - first + 1)
+        axes = {
+            1: [""],
+            2: [" secs", " nsecs"],
+            3: ["_x", "_y", "_z"],
+            4: ["_w", "_x", "_y", "_z"],
+        }.get(last - first + 1)
         if axes is None:
             raise RecordingError(f"{entry!r} has {last - first + 1} columns; a vector has three")
         for column, axis in zip(range(first - 1, last), axes, strict=True):
@@ -253,19 +269,6 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
                 precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
                 counts = bool(re.search(COUNTS, column.lower()))
                 candidates.append((float(called + precise + 0.5 * even - counts - 0.01 * k), k))
-    for k in range(len(table.columns) - 1):  # the same without headings
-        whole, part = table.values[:, k], table.values[:, k + 1]
-        begins = np.diff(whole) > 0
-        if (
-            begins.any()
-            and (whole == whole.round()).all()
-            and 0 <= part.min()
-            and 1e8 < part.max() < 1e9
-            and np.mean(np.diff(part)[begins] < 0) > 0.5  # a mere count begins nothing anew
-        ):
-            time = whole - whole[0] + 1e-9 * part
-            if np.mean(np.diff(time) > 0) > 0.97:
-                return k, time, f"{table.columns[k]} with {table.columns[k + 1]}, in s", False
     if not candidates:
         words = "there is no column of time"
         for k, column in enumerate(table.columns):
@@ -306,7 +309,8 @@ def _by_rate(table: Table, step: float) -> float | None:
 
 def _parts(heading: str) -> tuple[str, str]:
     """A heading without its unit, parted into what it is about and the letter of its axis."""
-    heading = re.sub(r"^field\.", "", heading)  # before every heading of a robot's log
+    # Before the headings of a robot's log, and behind those of a drone's and of a phone's.
+    heading = re.sub(r"^field\.|(?<=[WXYZ])(?::[A-Z]|Mps2|RadPerSec|MicroT)$", "", heading)
     text = re.sub(r"[(\[](?![0-3wxyzWXYZ][)\]]).*?[)\]]", "", heading).strip().lower()
     text = re.sub(
         r"(?<=[a-z])(?=\[)|[\[\]|:. _/-]+", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", text)
@@ -407,40 +411,6 @@ def _groups(table: Table, time_column: int | None, time: Array) -> tuple[list[Gr
     if len(angles) >= 3:
         known = places_by_name([table.columns[k] for k in angles])
         add("angles", [angles[k] for k in known] if known else angles[:3], "angles")
-    rest = [k for k in usable if k not in taken]
-    for k in list(rest):
-        four = [k, k + 1, k + 2, k + 3]
-        if set(four) <= set(rest) and not set(four) & taken and _is_unit(table.values[:, four]):
-            add("quaternion", four, "")
-    runs: list[list[int]] = []
-    for k in usable:
-        if k not in taken and np.nanstd(table.values[:, k]) > 0:
-            if runs and runs[-1][-1] == k - 1:
-                runs[-1].append(k)
-            else:
-                runs.append([k])
-    for run in runs:
-        spare = len(run) % 3
-        sizes = np.log(
-            np.nanstd(table.values[:, run], axis=0)
-            + np.abs(np.nanmedian(table.values[:, run], axis=0))
-        )
-
-        def unlike(first: int) -> float:
-            return sum(
-                float(np.std(sizes[k : k + 3])) for k in range(first, len(run) - spare + first, 3)
-            )
-
-        first = min(range(spare + 1), key=unlike)
-        for k in range(first, len(run) - spare + first, 3):
-            add(
-                "vector",
-                run[k : k + 3],
-                _called(" ".join(table.columns[c].lower() for c in run[k : k + 3]))
-                or (
-                    _called(table.name.lower()) if re.search("[a-z]{3}", table.name.lower()) else ""
-                ),
-            )
     return groups, [table.columns[k] for k in range(len(table.columns)) if k not in taken]
 
 
@@ -465,19 +435,9 @@ def places_by_name(names: Iterable[str]) -> tuple[int, ...] | None:
 
 
 def _is_unit(values: Array) -> bool:
-    values = values[np.isfinite(values).all(axis=1)]
-    squares = (values**2).sum(axis=1)
-    off = np.median(np.abs(squares - 1))
-    if any(
-        np.median(np.abs((part**2).sum(axis=1) - 1)) < 0.5 * off
-        for part in (values[:, 1:], values[:, :-1])
-    ):
-        return False  # three of the four are a direction, and the other belongs elsewhere
-    return (
-        len(values) > 8
-        and abs(np.median(squares) - 1) < 0.02
-        and np.mean(np.abs(squares - 1) < 0.05) > 0.98
-    )
+    """Whether four columns have length 1 in nearly all rows, as a quaternion's have."""
+    lengths = np.linalg.norm(values[np.isfinite(values).all(axis=1)], axis=1)
+    return len(lengths) > 8 and float(np.mean(np.abs(lengths - 1) < 0.025)) > 0.98
 
 
 def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str]:
@@ -515,76 +475,20 @@ def points_one_way(values: Array) -> bool:
 
 
 def _roles(groups: Sequence[Group]) -> dict[str, Group]:
-    """The group that plays each part: by behaviour where that decides,
-    by its heading where it does not.
+    """The first group of each name that moves. Where what is called a gyroscope points one way
+    all the time and what is called an accelerometer does not, the two have changed places.
     """
     chosen: dict[str, Group] = {}
-    quaternions = [group for group in groups if group.kind == "quaternion"]
-    angles = [group for group in groups if group.kind == "angles"]
-    vectors = [
-        group
-        for group in groups
-        if group.kind == "vector" and np.ptp(group.values, axis=0).max() > 0
-    ]
-    # What some call linear holds gravity nevertheless: its length tells.
-    vectors = [
-        group._replace(called="accelerometer")
-        if group.called == "linear acceleration" and points_one_way(group.values)
-        else group
-        for group in vectors
-        if group.called not in ("gravity", "quaternion")
-    ]
-    vectors = [group for group in vectors if group.called != "linear acceleration"]
-    vectors = [group for group in vectors if group.called not in ("", "something else")]
-    for group in list(vectors):
-        if group.called == "angles":
-            angles.append(group)
-            vectors.remove(group)
-    steady = [group for group in vectors if points_one_way(group.values)]
-    changing = [group for group in vectors if not any(group is one for one in steady)]
-    # Of an instrument that does nothing but lie, only the headings can tell.
-    if not changing and len(steady) > 1:
-        changing = [group for group in steady if group.called == "gyroscope"][:1]
-        steady = [group for group in steady if not any(group is one for one in changing)]
-
-    def length(group: Group) -> float:
-        return float(np.median(np.linalg.norm(group.values, axis=1)))
-
-    def as_gravity(group: Group) -> int:
-        off = min(abs(np.log(length(group) / one)) for one in GRAVITY.values())
-        alone = not any(low < length(group) < high for low, high in list(FIELD.values())[:4])
-        named = (group.called == "accelerometer") - (group.called == "magnetometer")
-        return 2 * named + (alone and bool(off < 0.06))
-
-    if steady:
-        best = max(steady, key=as_gravity)
-        others = [group for group in steady if group is not best]
-        like_a_field = best.called == "magnetometer" or any(
-            low < length(best) < high for low, high in FIELD.values()
-        )
-        if as_gravity(best) > 0 or len(steady) > 1 or not like_a_field:
-            chosen["accelerometer"] = best
-        else:
-            chosen["magnetometer"] = best
-        field = [group for group in others if group.called == "magnetometer"]
-        if field:
-            chosen["magnetometer"] = field[0]
-    if "accelerometer" not in chosen:
-        shaken = [group for group in changing if group.called == "accelerometer"]
-        if shaken:
-            chosen["accelerometer"] = shaken[0]
-            changing = [group for group in changing if group is not shaken[0]]
-    if "magnetometer" not in chosen:
-        disturbed = [group for group in changing if group.called == "magnetometer"]
-        if disturbed:
-            chosen["magnetometer"] = disturbed[0]
-            changing = [group for group in changing if group is not disturbed[0]]
-    if changing:
-        chosen["gyroscope"] = max(changing, key=lambda group: group.called == "gyroscope")
-    if quaternions:
-        chosen["quaternion"] = quaternions[0]
-    if angles:
-        chosen["angles"] = angles[0]
+    for group in groups:
+        kind = group.called if group.kind == "vector" else group.kind
+        # What some call linear holds gravity nevertheless: its length tells.
+        if kind == "linear acceleration" and points_one_way(group.values):
+            kind = "accelerometer"
+        if kind in PLAYED and np.ptp(group.values, axis=0).any():
+            chosen.setdefault(kind, group._replace(called=kind))
+    turning, felt = chosen.get("gyroscope"), chosen.get("accelerometer")
+    if turning and felt and points_one_way(turning.values) and not points_one_way(felt.values):
+        chosen |= {"gyroscope": felt, "accelerometer": turning}
     return chosen
 
 

@@ -255,3 +255,54 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
         axes,
         float(stretches[0] / stretches[-1]),
     )
+
+
+def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
+    """Which fault of an accelerometer explains best that gravity has several lengths in still
+    poses: an offset, or a scale of its own, of one axis or of all.
+
+    Each is tried on poses that were not used: left out, one after another.
+
+    Parameters
+    ----------
+    means : array of shape ``(m, 3)``
+        In multiples of gravity.
+
+    Returns
+    -------
+    name, offset of shape ``(3,)``, scales of shape ``(3,)``, and the range of lengths that is left
+        True is ``(measured - offset) / scales``.
+    """
+    axes = np.eye(3, dtype=bool)
+    none, every = np.zeros(3, dtype=bool), np.ones(3, dtype=bool)
+    faults = {
+        **{f"An offset of {axis}": (own, none) for axis, own in zip("xyz", axes, strict=True)},
+        **{f"A scale of {axis}": (none, own) for axis, own in zip("xyz", axes, strict=True)},
+        "Offsets of several axes": (every, none),
+        "Offsets and scales of several axes": (every, every),
+    }
+
+    def fitted(poses: Array, offsets: Array, scales: Array) -> tuple[Array, Array]:
+        offset, scale = np.zeros(3), np.ones(3)
+        for _ in range(4):
+            true = (poses - offset) / scale
+            slopes = np.concatenate([true[:, offsets], true[:, scales] ** 2], axis=1)
+            slopes /= np.linalg.norm(true, axis=1, keepdims=True)
+            found = np.linalg.lstsq(slopes, np.linalg.norm(true, axis=1) - 1, rcond=1e-6)[0]
+            offset[offsets] += found[: offsets.sum()] * scale[offsets]
+            scale[scales] *= 1 + found[offsets.sum() :]
+        return offset, scale
+
+    best = ("Nothing", np.zeros(3), np.ones(3), float(np.ptp(np.linalg.norm(means, axis=1))))
+    for name, (offsets, scales) in faults.items():
+        if offsets.sum() + scales.sum() > len(means) - 3:
+            continue
+        lengths = []
+        for k, mean in enumerate(means):
+            offset, scale = fitted(np.delete(means, k, axis=0), offsets, scales)
+            lengths.append(np.linalg.norm((mean - offset) / scale))
+        left = float(np.ptp(lengths))
+        # What needs more numbers comes after what explains nearly all.
+        if left < best[3] and (offsets.sum() + scales.sum() == 1 or best[3] > 0.025):
+            best = name, *fitted(means, offsets, scales), left
+    return best

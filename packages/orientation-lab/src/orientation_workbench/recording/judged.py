@@ -242,8 +242,13 @@ def filter_inputs(
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
         by_field = max(spread(field), 1e-3) if field is not None else ASSUMED.field
+        # A scale that is off by half a per cent errs by that much of each turn.
+        turning = 0.005 * float(np.sqrt(np.mean(rates**2)))
         noise = Noise(
-            spread(rates) * np.sqrt(step), ASSUMED.bias, max(spread(forces), 1e-3), by_field
+            float(np.hypot(spread(rates) * np.sqrt(step), turning)),
+            ASSUMED.bias,
+            max(spread(forces), 1e-3),
+            by_field,
         )
     # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
     push = np.linalg.norm(forces, axis=1) - 1

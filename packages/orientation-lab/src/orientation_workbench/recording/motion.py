@@ -385,6 +385,37 @@ def fit_scale(
     )
 
 
+def fit_one_scale(
+    time: Array, rates: Array, forces: Array, poses: Sequence[Stretch]
+) -> tuple[int, float, float]:
+    """The axis of a gyroscope that, multiplied by a number of its own, carries gravity best.
+
+    Parameters
+    ----------
+    time : array of shape ``(n,)``
+    rates, forces : arrays of shape ``(n, 3)``
+        Along the same axes, rates in radians per second, without their bias.
+    poses : list of Stretch
+
+    Returns
+    -------
+    axis, the number, and what is left in radians
+    """
+    ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
+    ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
+    best = (0, 1.0, np.inf)
+    for axis in range(3):
+        middle, width = 1.0, 0.3
+        for _ in range(4):
+            grid = middle + width * np.linspace(-1, 1, 9)
+            factors = np.where(np.arange(3) == axis, grid[:, None], 1.0)
+            ends = (carried(time, factors[:, None] * rates, poses) @ ups[:-1, :, None])[..., 0]
+            left = np.sqrt(((ups[1:] - ends) ** 2).sum(axis=-1).mean(axis=-1))
+            middle, width = grid[left.argmin()], width / 4
+            best = min(best, (axis, float(middle), float(left.min())), key=lambda one: one[2])
+    return best
+
+
 # --- the convention of an orientation -------------------------------------------------------------
 
 

@@ -97,7 +97,8 @@ def as_code(examined: Examined) -> str:
             lines.append(f"rates = rates @ {array(facts['axes of the gyroscope'])}.T")
         if "bias of the gyroscope" in facts:
             lines.append(f"rates = rates - {array(facts['bias of the gyroscope'])}")
-        lines.append(f"rates = rates * {float(facts.get('multiplied', 1))!r}")
+        if np.any(facts.get("multiplied", 1.0) != 1.0):
+            lines.append(f"rates = rates * {array(facts['multiplied'])}")
     if examined.forces is not None:
         lines.append(f"forces = accelerometer / {float(facts['gravity'])!r}")
         if "offset of the accelerometer" in facts:
@@ -105,6 +106,7 @@ def as_code(examined: Examined) -> str:
                 "forces = forces - "
                 f"{array(facts['offset of the accelerometer'] / facts['gravity'])}"
             )
+            lines.append(f"forces = forces / {array(facts['scales of the accelerometer'])}")
     if examined.field is not None:
         lines.append("field = magnetometer")
         if "offset of the magnetometer" in facts:
@@ -115,22 +117,12 @@ def as_code(examined: Examined) -> str:
 
 
 def as_fragment(examined: Examined) -> str:
-    """The report for a page of another's: verdicts, evidence, plots and code."""
+    """The report for a page of another's: verdicts, plots and code."""
     rows = "".join(
         f'<tr class="{verdict.light.replace(" ", "-")}"><td>{verdict.light}</td>'
         f'<th scope="row">{escape(verdict.about)}</th>'
         f"<td>{escape(verdict.words)}"
         + (f"<p><b>{escape(verdict.advice)}</b></p>" if verdict.advice else "")
-        + (
-            "<details><summary>evidence</summary>"
-            + "<br>".join(
-                f"{escape(str(name))}: {escape(str(value))}"
-                for name, value in verdict.evidence.items()
-            )
-            + "</details>"
-            if verdict.evidence
-            else ""
-        )
         + "</td></tr>"
         for verdict in examined.verdicts
     )

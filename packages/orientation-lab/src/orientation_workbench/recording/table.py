@@ -426,6 +426,8 @@ def _from_log(rows: Sequence[list[str]], name: str, comma: bool, key: int) -> li
         # Of ArduPilot: type, length, name, formats, names of the columns.
         if row[0] == "FMT" and len(row) > 5:
             names[row[3]] = row[5:]
+        elif row[0].startswith("#"):  # of Android: a heading of each kind among the remarks
+            names[row[0].lstrip("# ")] = row[1:]
         else:
             # Of several instruments of one kind each is a table of its own.
             columns = names.get(row[0], [])

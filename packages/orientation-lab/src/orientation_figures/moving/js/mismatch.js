@@ -20,7 +20,7 @@ function spellingOf(table) {
     const pairs = (entries) => entries.map(([pattern, replacement]) => [made(pattern), replacement]);
     READY.set(table, { ...Object.fromEntries(Object.entries(said).filter(([, pattern]) => typeof pattern === 'string')
       .map(([name, pattern]) => [name, made(pattern)])), cleaning: pairs(said.cleaning), signs: pairs(said['signs of a sum']),
-    orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]),
+    whole: said['cut out'].map(([pattern, words]) => [made(pattern, 'im'), words]), orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]),
     parts: said['orders of parts'].map(([pattern, more]) => [made(pattern, 'im'), more]), value: made(said['not turns'] + said.value),
     names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
       [{ x: 0, y: 1, z: 2 }, {}]] });
@@ -43,7 +43,8 @@ export function readPoses(given, name, table, kind = null, noise = 0) {
 }
 
 function rowsOf(given, name, spelling) {
-  const columns = columnsOf(given, spelling);
+  const whole = spelling.whole.find(([pattern]) => pattern.test(given)), columns = columnsOf(given, spelling);
+  if (whole) throw new Error(`the ${name} side is ${whole[1]}`);
   if (columns) return columns;
   let text = spelling.cleaning.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given);
   const parts = spelling.parts.filter(([pattern]) => pattern.test(text));
@@ -80,7 +81,7 @@ function fieldsOf(line, spelling) {
 
 // The rows of a table under a line that names its columns; null where none does.
 function columnsOf(given, spelling) {
-  const lines = spelling.cleaning.slice(0, 2).reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given).split('\n');
+  const lines = spelling.cleaning.slice(0, 4).reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given).split('\n');
   for (const [place, line] of lines.entries()) {
     const names = has(spelling.number, line) ? [] : fieldsOf(line.replace(spelling['around a field'], ''), spelling).map((field) => field.toLowerCase());
     if (names.length < 3) continue;
