@@ -480,9 +480,11 @@ def sentences(explanation):
     more = f"{left - 1} other reading{'s' * (left != 2)}"
     if explanation.verdict == "unrelated":
         yield (
-            f"These are not the same motion: no mix-up of up to {table.MOST_FAULTS} faults "
-            f"explains {several}."
+            f"Nothing that was tried explains these numbers: no mix-up of up to "
+            f"{table.MOST_FAULTS} faults fits {several}."
         )
+        if explanation.poses < 3:
+            yield "An instrument that is mounted askew shows in three poses or more: paste them."
         if explanation.mirrored:
             yield (
                 f"The {explanation.mirrored} side's matrix has the determinant -1: a mirror image, "
@@ -497,6 +499,7 @@ def sentences(explanation):
         )
         for name in explanation.names:
             yield f"- {_condition(name)}{'; '.join(name.faults)}."
+        yield f"- {table.NONE_OF_THESE}"
     elif explanation.verdict == "same":
         yield "Both sides give the same orientation" + (f" in {several}." if left > 1 else ".")
     elif explanation.verdict == "named":

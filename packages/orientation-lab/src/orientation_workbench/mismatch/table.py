@@ -553,6 +553,11 @@ def _choices(group):
 
 #: Turns that a reader can make with a thing in the hand: each the words, and
 #: the turns about the body's own axes.
+#: The last line of a list of descriptions.
+NONE_OF_THESE = (
+    "None of these? Then something else is wrong that these poses hide: paste more of them, that "
+    "differ by turns about all axes."
+)
 FURTHER_POSES = (
     ("turn it by about 40 degrees about its x axis", (("x", 40),)),
     ("turn it by about 30 degrees about its y axis", (("y", 30),)),
@@ -673,6 +678,7 @@ def whole_table():
         "further poses": [
             [words, [list(turn) for turn in turns]] for words, turns in FURTHER_POSES
         ],
+        "none": NONE_OF_THESE,
         "body axes": [[list(names), words] for names, words in BODY_AXES.items()],
         "world axes": [[list(names), words] for names, words in WORLD_AXES.items()],
     }

@@ -9,8 +9,9 @@ const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'x
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
 // Of one engine and its prose: what the answer is called.
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
-  unrelated: 'These are not the same motion.' };
+  unrelated: 'Nothing that was tried explains these numbers.' };
 
+const ONE_QUESTION = 'One question decides.';
 const LANGUAGES = { 'NumPy and SciPy': mendingLine, 'C++ with Eigen': eigenLine, 'A formula': formulaOf };
 const AS_THE_MANUALS_SAY = { same: 'Both give what their manuals say.', named: 'They differ by more than their manuals say:' };
 
@@ -134,7 +135,9 @@ export function render({ model, el }) {
     const said = found ? answer(found, table, (declare) => change(model, answered(...declare))) : [element('p', { class: 'heading' }, 'Not readable yet'), element('p', {}, `${capital(fault)}.`)];
     verdict.replaceChildren(...said);
     mended();
-    words.say(found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)].join(' ') : `${capital(fault)}.`);
+    // Where a question is open, no answer to it stands under the drawing.
+    const told = found?.question ? [ONE_QUESTION, found.question] : found ? [headingOf(found), ...found.faults.map((one) => `${capital(one)}.`)] : [`${capital(fault)}.`];
+    words.say(told.join(' '));
     if (found) glideTo(drawnDcms(found, table, found.poses - 1));
   }
 
@@ -195,13 +198,15 @@ function answer(found, table, declare) {
   const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
-    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.${
+    const more = found.poses < 3 ? ' An instrument that is mounted askew shows in three poses or more: paste them.' : '';
+    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.${more}${
       found.mirrored && ` The ${found.mirrored} side's matrix has the determinant −1: a mirror image, and no rotation.`}`)];
   }
   if (found.names.length) {
     const told = ({ condition, faults, declare: known }) => [`${condition ? `If ${condition}: ` : ''}${faults.join('; ')}. `,
       ...(Object.keys(known[0]).length + Object.keys(known[1]).length ? [button('So it is', () => declare(known))] : [])];
-    return [element('p', { class: 'heading' }, 'One question decides.'), element('p', {}, found.question), element('ul', {}, ...found.names.map((name) => element('li', {}, ...told(name))))];
+    return [element('p', { class: 'heading' }, ONE_QUESTION), element('p', {}, found.question), element('ul', {}, ...found.names.map((name) => element('li', {}, ...told(name))),
+      element('li', {}, table.none))];
   }
   if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest reading is:'));
   if (found.faults.length) {

@@ -1,0 +1,78 @@
+"""An engineer pastes the numbers of two programs into the workbench's page, and answers it."""
+
+import pytest
+from test_numbers_from_elsewhere import FLU, FRD, OPENCV, OPENGL
+
+#: A window on a desk and one of a telephone.
+WINDOWS = {"desk": (1300, 900), "telephone": (380, 760)}
+
+
+@pytest.fixture(params=WINDOWS)
+def page(request, browser, site):
+    width, height = WINDOWS[request.param]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    page = context.new_page()
+    page.goto(site + "workbench.html")
+    page.locator(".answer .heading").wait_for()
+    yield page
+    context.close()
+
+
+def answer(page):
+    return page.locator(".answer")
+
+
+def paste(page, first, second):
+    """Click into each field, take all that stands there, and type over it."""
+    for side, numbers in (("first", first), ("second", second)):
+        page.get_by_label(f"What the {side} program gives").click()
+        page.keyboard.press("Control+a")
+        page.keyboard.insert_text(numbers)
+
+
+def click(page, button):
+    """Move the mouse to the middle of a button, and press it there."""
+    button.scroll_into_view_if_needed()
+    box = button.bounding_box()
+    assert 0 <= box["x"] and box["x"] + box["width"] <= page.viewport_size["width"]
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+
+
+def test_a_click_answers_the_question_of_a_shared_order(page):
+    paste(page, FLU, FRD)
+    answer(page).get_by_text("One question decides.").wait_for()
+    assert "scalar part of the quaternions stand first or last?" in answer(page).inner_text()
+    last = answer(page).get_by_role("listitem").filter(has_text="stands last in both")
+    click(page, last.get_by_role("button", name="So it is"))
+    answer(page).get_by_text("They differ, and this is how:").wait_for()
+    told = answer(page).inner_text().lower()
+    assert "y and z of the body reversed" in told and "world" not in told
+    # Other numbers: what was answered of these is not known of those.
+    paste(page, FLU, FLU.replace("0.301", "0.302"))
+    paste(page, FLU, FRD)
+    answer(page).get_by_text("One question decides.").wait_for()
+
+
+def test_keys_answer_the_question_of_a_shared_layout(page):
+    paste(page, OPENCV, OPENGL)
+    answer(page).get_by_text("One question decides.").wait_for()
+    assert "are the body's axes its rows or its columns?" in answer(page).inner_text()
+    # Nor does the line under the drawing answer what is still asked.
+    reversed_axes = page.locator(".moving").get_by_text("reversed (").all()
+    assert all(each.evaluate("(own) => !!own.closest('.answer')") for each in reversed_axes)
+    columns = answer(page).get_by_role("listitem").filter(has_text="are the columns")
+    button = columns.get_by_role("button", name="So it is")
+    for _ in range(12):  # from the field to the button with the tabulator alone
+        page.keyboard.press("Tab")
+        if button.evaluate("(own) => own === document.activeElement"):
+            break
+    page.keyboard.press("Enter")
+    answer(page).get_by_text("They differ, and this is how:").wait_for()
+    assert "of the body reversed" in answer(page).inner_text().lower()
+
+
+def test_a_mistake_is_told_and_mended(page):
+    paste(page, "0.1 0.3", FRD)
+    answer(page).get_by_text("Not readable yet").wait_for()
+    paste(page, FLU, FRD)
+    answer(page).get_by_text("None of these?").wait_for()
