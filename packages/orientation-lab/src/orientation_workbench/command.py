@@ -213,8 +213,6 @@ def _explain(chosen):
         if found.has_line:
             print("Fix it with this line (NumPy and SciPy; `second` is one pose):")
             print(f"    {mend.python_line(found.chains[0])}")
-            print("or in C++ with Eigen, as the first program's matrix:")
-            print(f"    {mend.cpp_line(found.chains[0])}")
             print(f"The matrices satisfy {mend.formula(found.chains[0])}.")
         if chosen.all:
             for chain in found.chains[1:]:
@@ -243,6 +241,5 @@ def as_data(explanation):
         "question": explanation.question,
         "descriptions": [name._asdict() for name in explanation.names],
         "mended by": line(mend.python_line),
-        "mended in C++ by": line(mend.cpp_line),
         "formula": line(mend.formula),
     }

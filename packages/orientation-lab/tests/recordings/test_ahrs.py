@@ -15,14 +15,12 @@ with warnings.catch_warnings():  # of its docstrings, where it has never been im
     warnings.simplefilter("ignore")
     import ahrs
     from ahrs.common.orientation import hughes, itzhack, shepperd, slerp
-    from ahrs.filters import TRIAD, AngularRate, Davenport, Madgwick
+    from ahrs.filters import TRIAD, AngularRate, Davenport
     from ahrs.utils import metrics
 
 from orientations import random_unit_vectors
 
-import orientation_recordings as recordings
 from orientation import (
-    MultiplicativeKalmanFilter,
     angle_between,
     dcm_from_directions,
     dcm_from_quaternion,
@@ -106,37 +104,3 @@ def test_distances_means_and_ways_between():
     theirs = theirs / np.linalg.norm(theirs, axis=1, keepdims=True)
     ours = dcm_from_quaternion(interpolate_quaternions(q[0], p[0], shares))
     assert angle_between(dcm_from_quaternion(theirs), ours).max() < 1e-7
-
-
-@pytest.mark.long
-def test_the_kalman_filter_follows_the_recording_as_madgwicks_filter_does():
-    """Two filters of quite different kinds, from one start, stay within some
-    degrees while it is carried about.
-    """
-    x_imu, step = recordings.x_imu(), 1 / recordings.X_IMU_RATE
-    force, field = x_imu.specific_force[:128].mean(axis=0), x_imu.magnetic_field[:128].mean(axis=0)
-    level = np.cross(force, np.cross(field, force))
-    start = dcm_from_two_directions([force, level], [[0, 0, 1], [1, 0, 0]])
-    estimate = MultiplicativeKalmanFilter(
-        start, np.diag([0.03**2] * 3 + [0.02**2] * 3), 0.005, 1e-4
-    )
-    ours = []
-    for rate, force, field in zip(
-        x_imu.angular_velocity, x_imu.specific_force, x_imu.magnetic_field, strict=True
-    ):
-        estimate.turn(rate, step)
-        estimate.observe(force, (0, 0, 1), np.hypot(0.1, np.linalg.norm(force) - 1))
-        x, y, z = estimate.dcm.T @ field
-        estimate.observe(field, (np.hypot(x, y), 0, z), 0.3)
-        ours.append(estimate.dcm)
-    theirs = Madgwick(
-        gyr=x_imu.angular_velocity,
-        acc=9.81 * x_imu.specific_force,
-        mag=1e5 * x_imu.magnetic_field,
-        frequency=recordings.X_IMU_RATE,
-        q0=quaternion_from_dcm(start),
-        gain=0.05,
-    ).Q
-    apart = np.degrees(angle_between(dcm_from_quaternion(theirs), np.array(ours)))
-    assert np.sqrt((apart**2).mean()) < 3 and apart.max() < 5
-    assert np.degrees(angle_between(np.array(ours), start)).max() > 90

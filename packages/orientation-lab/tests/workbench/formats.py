@@ -144,18 +144,6 @@ def sensor_logger_json():
     )
 
 
-def lists_in_json():
-    """A list for each sensor, with names of their own."""
-    found, content = recording(), {}
-    for kind, stem in (("gyroscope", "g"), ("accelerometer", "a")):
-        content[f"{kind}Sensor"] = [
-            {f"{stem}{axis}": part for axis, part in zip("xyz", row, strict=True)}
-            | {"timeStamp": round(1.48e12 + 1e3 * t)}
-            for t, row in zip(found["time"], found[kind].round(6).tolist(), strict=True)
-        ]
-    return Form(json.dumps(content).encode(), {"gyroscope": 1, "accelerometer": 1})
-
-
 def sensor_log():
     """SensorLog of the App Store: everything in one table, times of several
     clocks, and gravity in its own columns.
@@ -517,35 +505,6 @@ def rostopic():
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
 
-def rostopic_in_blocks():
-    """As `rostopic echo` and `ros2 topic echo` print messages: one after
-    another, parted by three hyphens.
-    """
-    _, time, gyr, acc, _, quaternion = _parts()
-    lines = []
-    for k, t in enumerate(time):
-        lines += [
-            "header:",
-            "  stamp:",
-            f"    sec: {1_700_000_000 + int(t)}",
-            f"    nanosec: {round(1e9 * (t % 1))}",
-        ]
-        lines += ["  frame_id: imu_link", "orientation:"]
-        lines += [
-            f"  {axis}: {part!r}"
-            for axis, part in zip("xyzw", np.roll(quaternion[k], -1).tolist(), strict=True)
-        ]
-        lines += [
-            "orientation_covariance: [0.0025, 0.0, 0.0, 0.0, 0.0025, 0.0, 0.0, 0.0, 0.0025]",
-            "angular_velocity:",
-        ]
-        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", gyr[k].tolist(), strict=True)]
-        lines += ["angular_velocity_covariance:", *["- 0.02"] * 9, "linear_acceleration:"]
-        lines += [f"  {axis}: {part!r}" for axis, part in zip("xyz", acc[k].tolist(), strict=True)]
-        lines.append("---")
-    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
-
-
 def bagpy():
     _, time, gyr, acc, _, quaternion = _parts()
     names = ["Time", "header.seq", "header.stamp.secs", "header.stamp.nsecs", "header.frame_id"]
@@ -581,15 +540,6 @@ def euroc():
     )
 
 
-def uzh_fpv():
-    _, time, gyr, acc, _, _ = _parts()
-    names = "# id timestamp ang_vel_x ang_vel_y ang_vel_z lin_acc_x lin_acc_y lin_acc_z"
-    columns = [np.arange(len(time)), 1.54e9 + time, gyr, acc]
-    return Form(
-        _table(None, columns, " ", "{:.15g}", head=[names]), {"gyroscope": 1, "accelerometer": 1}
-    )
-
-
 def tum():
     """A remark with the names, blanks between numbers, seconds
     since 1970; turning before pushes.
@@ -599,20 +549,6 @@ def tum():
     return Form(
         _table(None, [1.3e9 + time, gyr, acc], " ", "{:.14g}", head=head),
         {"gyroscope": 1, "accelerometer": 1},
-    )
-
-
-def oxiod():
-    """No headings: time, three angles, turning, gravity of length one, the rest of the
-    acceleration, the field.
-    """
-    found, time, gyr, acc, mag, _ = _parts()
-    gravity = _gravity(found) / GRAVITY
-    angles = found["truth"].as_euler("ZXY")[:, [2, 1, 0]]
-    columns = [time, angles, gyr, gravity, acc / GRAVITY - gravity, mag]
-    return Form(
-        _table(None, columns, number="{:.6f}"),
-        {"gyroscope": 1, "accelerometer": 1 / GRAVITY, "magnetometer": 1},
     )
 
 
@@ -731,24 +667,6 @@ def rates_called_after_angles():
     )
 
 
-def ros2_table():
-    """As `ros2 topic echo --csv` writes it: no headings, seconds and what is
-    left of them, covariances between.
-    """
-    _, time, gyr, acc, _, quaternion = _parts()
-    lines = []
-    for k, t in enumerate(time):
-        vectors = [
-            ",".join(f"{one:.9f}" for one in row[k])
-            for row in (np.roll(quaternion, -1, axis=1), gyr, acc)
-        ]
-        stamp = f"{1_700_000_000 + int(t)},{round(1e9 * (t % 1))},imu_link,"
-        lines.append(
-            stamp + ",".join(f"{one},{','.join(['0.02', '0.0', '0.0'] * 3)}" for one in vectors)
-        )
-    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
-
-
 def witmotion():
     """Tabs, a clock of its own whose parts have no zeros before them, angles
     called AngleX, a field without a unit.
@@ -854,22 +772,6 @@ def dat_con():
     )
 
 
-def kalibr():
-    """Its acceleration is called alpha."""
-    _, time, gyr, acc, _, _ = _parts()
-    names = [
-        "timestamp",
-        *(f"omega_{axis}" for axis in "xyz"),
-        *(f"alpha_{axis}" for axis in "xyz"),
-    ]
-    rows = [
-        f"{1_385_030_208_736_607_488 + round(1e9 * t)},"
-        + ",".join(f"{one:.8f}" for one in (*g, *a))
-        for t, g, a in zip(time, gyr, acc, strict=True)
-    ]
-    return Form("\n".join([",".join(names), *rows]).encode(), {"gyroscope": 1, "accelerometer": 1})
-
-
 def core_motion():
     """JSON of an iPhone: dictionaries in dictionaries, and gravity down."""
     found, entries = recording(), []
@@ -894,21 +796,6 @@ def core_motion():
         json.dumps({"metadata": {"device": "iPhone14,2"}, "samples": entries}).encode(),
         {"gyroscope": 1, "accelerometer": -1 / GRAVITY, "magnetometer": 1, "quaternion": 1},
     )
-
-
-def mavlogdump():
-    """Two instruments take turns in one table; a column says which."""
-    _, time, gyr, acc, _, _ = _parts()
-    random, lines = (
-        np.random.default_rng(2),
-        ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ,EG,EA,T"],
-    )
-    for k, t in enumerate(time):
-        for number in (0, 1):
-            other = 0.01 * random.normal(size=6) * number
-            six = ",".join(f"{one:.6f}" for one in np.concatenate([gyr[k], acc[k]]) + other)
-            lines.append(f"{1.7e9 + t:.6f},{5e7 + 1e6 * t:.0f},{number},{six},0,0,45.1")
-    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1})
 
 
 def one_sensor_a_line():
@@ -945,26 +832,6 @@ def plot_juggler():
     )
 
 
-def vector_nav():
-    """Sentences of a serial line: no headings, no time, a checksum behind the last number."""
-    found, _, gyr, acc, mag, _ = _parts()
-    angles = found["truth"].as_euler("ZYX", degrees=True)
-    rows = _table(None, [angles, mag / 100, acc, gyr], number="{:+.6f}").decode().splitlines()
-    text = "\r\n".join(f"$VNYMR,{row}*{k % 256:02X}" for k, row in enumerate(rows))
-    return Form(
-        text.encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 0.01}, counted=True
-    )
-
-
-def increments():
-    """What many navigation programs read: seconds of the week, and by how
-    much angle and speed have grown.
-    """
-    _, time, gyr, acc, _, _ = _parts()
-    columns = [456_300 + time, 0.01 * gyr, 0.01 * acc]
-    return Form(_table(None, columns, " ", "{:.10f}"), {"gyroscope": 0.01, "accelerometer": 0.01})
-
-
 def xsens_mtw_with_a_clock():
     """Its clock counts ten thousandths of a second, which nothing
     says but the rate above the table.
@@ -992,7 +859,6 @@ FORMS = [
     phyphox_table,
     sensor_logger,
     sensor_logger_json,
-    lists_in_json,
     sensor_log,
     andro_sensor,
     physics_toolbox,
@@ -1008,12 +874,9 @@ FORMS = [
     ardupilot,
     px4,
     rostopic,
-    rostopic_in_blocks,
     bagpy,
     euroc,
-    uzh_fpv,
     tum,
-    oxiod,
     gnss_logger,
     repo_imu,
     no_headings,
@@ -1021,17 +884,12 @@ FORMS = [
     matlab_mobile,
     flight_test,
     rates_called_after_angles,
-    ros2_table,
     witmotion,
     polar,
     dat_con,
-    kalibr,
     core_motion,
-    mavlogdump,
     # fmt: skip
     one_sensor_a_line,
     plot_juggler,
-    vector_nav,
-    increments,
     xsens_mtw_with_a_clock,
 ]

@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from more_threads import PASTED
+from pasted import PASTED
 from places import REPOSITORY
 from test_mismatch import (
     BAD,
@@ -31,7 +31,7 @@ SCRIPTS = (
 )
 PROGRAM = """
 import { readFileSync } from 'node:fs';
-import { eigenLine, explain, formulaOf, mendingLine } from '%s';
+import { explain, formulaOf, mendingLine } from '%s';
 const { table, cases } = JSON.parse(readFileSync(0, 'utf8'));
 console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs }) => {
   try {
@@ -44,7 +44,7 @@ console.log(JSON.stringify(cases.map(({ first, second, declared, noise, programs
       further: found.furtherPose, question: found.question ?? '',
       names: (found.names ?? []).map((each) => [each.condition, each.faults, each.declare]),
       mended: (found.verdict === 'named' || found.names?.length) && !found.chains[0].relation.inside
-        ? [mendingLine, eigenLine, formulaOf].map((write) => write(found.chains[0])) : [] };
+        ? [mendingLine, formulaOf].map((write) => write(found.chains[0])) : [] };
   } catch (error) { return { error: error.message }; }
 })));
 """
@@ -82,9 +82,7 @@ def in_python(case):
         "further": found.further_pose,
         "question": found.question,
         "names": [[name.condition, list(name.faults), list(name.declare)] for name in found.names],
-        "mended": [
-            write(found.chains[0]) for write in (mend.python_line, mend.cpp_line, mend.formula)
-        ]
+        "mended": [write(found.chains[0]) for write in (mend.python_line, mend.formula)]
         if found.has_line
         else [],
     }

@@ -1,4 +1,4 @@
-"""The one line that mends a mix-up: in NumPy with SciPy, in C++ with Eigen, and as a formula.
+"""The one line that mends a mix-up: in NumPy with SciPy, and as a formula.
 
 Each line makes of ``second``, what the second program gives, what the first program gives for the
 same pose. Before one is shown, the Python line is run on the numbers that were pasted.
@@ -180,60 +180,3 @@ def _rows(matrix):
         )
         + "]"
     )
-
-
-def cpp_line(chain):
-    """The same in C++ with Eigen, for matrices ``first`` and
-    ``second`` of type ``Eigen::Matrix3d``.
-    """
-    relation = chain.relation
-    code = "second"
-    if chain.second["kind"] == "quaternion":
-        order = chain.second["choices"]["order"]
-        parts = ", ".join(f"second[{order.index(part)}]" for part in _ORDINARY)
-        code = f"Eigen::Quaterniond({parts}).toRotationMatrix().transpose()"
-    elif chain.second["kind"] == "Euler angles":
-        code = _eigen_angles(chain.second["choices"])
-    elif chain.second["kind"] == "rotation vector":
-        scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
-        code = (
-            f"Eigen::AngleAxisd(second.norm(){scale}, "
-            "second.normalized()).toRotationMatrix().transpose()"
-        )
-    elif chain.second["kind"] == "axis and angle":
-        scale = " * EIGEN_PI / 180" if chain.second["choices"]["unit"] == "degrees" else ""
-        last = chain.second["choices"]["place of the angle"] == "last"
-        angle, axis = (
-            ("second[3]", "second.head<3>()") if last else ("second[0]", "second.tail<3>()")
-        )
-        code = (
-            f"Eigen::AngleAxisd({angle}{scale}, {axis}.normalized()).toRotationMatrix().transpose()"
-        )
-    for whose in ("body", "world"):
-        turn = relation.get(f"{whose} turn")
-        if turn is not None:
-            constant = _eigen_matrix(turn.T)
-            code = f"{constant} * {code}" if whose == "body" else f"{code} * {constant}"
-    if not _is_identity(relation["body"]):
-        code = f"{_eigen_matrix(np.transpose(table.axes_matrix(relation['body'])))} * {code}"
-    if not _is_identity(relation["world"]):
-        code = f"{code} * {_eigen_matrix(table.axes_matrix(relation['world']))}"
-    if relation["inverse"]:
-        code = f"({code}).transpose()" if "*" in code else f"{code}.transpose()"
-    return f"Eigen::Matrix3d first = {code.replace('.transpose().transpose()', '')};"
-
-
-def _eigen_matrix(rows):
-    entries = ", ".join(f"{entry:.6g}" for row in np.asarray(rows, float) for entry in row)
-    return f"(Eigen::Matrix3d() << {entries}).finished()"
-
-
-def _eigen_angles(choices):
-    scale = " * EIGEN_PI / 180" if choices["unit"] == "degrees" else ""
-    turns = []
-    for which, letter, sign in zip("123", choices["sequence"], choices["signs"]):
-        angle = f"{'-' if sign == '-' else ''}second[{choices['places'].index(which)}]{scale}"
-        turns.append(f"Eigen::AngleAxisd({angle}, Eigen::Vector3d::Unit{letter.upper()}())")
-    if choices["axes of the turns"] == "space fixed":
-        turns.reverse()
-    return f"({' * '.join(turns)}).toRotationMatrix().transpose()"

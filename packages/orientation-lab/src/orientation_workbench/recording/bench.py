@@ -237,11 +237,10 @@ class _Bench:
                 # A constant part belongs to the instrument, not to the Earth.
                 if kind == "magnetometer":
                     vectors[kind] = vectors[kind] - _centre(vectors[kind])
-        units = DEGREES | ({"rad a sample": self.rate} if self.rate > 20 else {})
         whole = bool((raw == raw.round()).all())
         counts = whole and not said
         grid = np.unique(
-            np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in units.values()])
+            np.concatenate([unit * np.geomspace(0.45, 2.3, 8) for unit in DEGREES.values()])
         )
         if whole:  # as a chip has them
             chips = np.radians(np.geomspace(0.002, 0.2, 24))
@@ -265,9 +264,9 @@ class _Bench:
         if self.content.counted:
             self._rate(fit, said)
             return
-        names = {scale: unit for unit, scale in units.items()}
+        names = {scale: unit for unit, scale in DEGREES.items()}
         if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
-            unit = min(units.values(), key=lambda one: abs(np.log(fit.scale / one)))
+            unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
             ratio = fit.scale / unit
             counts = whole and (not said or DEGREES[said] != unit or abs(ratio - 1) > 0.2)
             if counts and abs(ratio - 1) > 0.04 or not 0.4 < ratio < 2.5:
@@ -650,7 +649,7 @@ class _Bench:
         quiet = (
             np.concatenate([raw[one.first : one.last] for one in self.still]) if self.still else raw
         )
-        unit, gravity, off = unit_of_gravity(quiet, self.rate)
+        unit, gravity, off = unit_of_gravity(quiet)
         self.forces = raw / gravity
         self.facts["gravity"] = gravity
         said = _said_gravity(self.content.groups["accelerometer"].names)

@@ -492,15 +492,14 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
     return chosen
 
 
-def unit_of_gravity(values: Array, rate: float = 0.0) -> tuple[str, float, float]:
+def unit_of_gravity(values: Array) -> tuple[str, float, float]:
     """The unit in which vectors have gravity's length, how many of it
     make one, and by how much it is off.
     """
     middle = float(np.median(np.linalg.norm(values, axis=1)))
-    units = GRAVITY | ({"m/s a sample": GRAVITY["m/s²"] / rate} if rate > 20 else {})
-    unit = min(units, key=lambda one: abs(np.log(middle / units[one])))
-    if abs(np.log(middle / units[unit])) < 0.2:
-        return unit, units[unit], middle / units[unit] - 1
+    unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
+    if abs(np.log(middle / GRAVITY[unit])) < 0.2:
+        return unit, GRAVITY[unit], middle / GRAVITY[unit] - 1
     return f"counts, {middle:.4g} for gravity", middle, 0.0
 
 

@@ -193,12 +193,12 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
 def _from_text(text: str, name: str) -> list[Table]:
     if text.lstrip()[:1] in "[{":
         return _from_json(text, name)
-    lines = [
-        re.sub(r"\*[0-9A-Fa-f]{2}\s*$", "", line) if line[:1] == "$" else line
-        for line in text.splitlines()
-    ]
+    lines = text.splitlines()
     if sum(line.startswith("---") for line in lines) > 8:
-        return _from_blocks(lines, name)
+        raise RecordingError(
+            f"{name} holds messages of ROS: rostopic echo -p, or ros2 topic echo --csv, "
+            "writes a table of them"
+        )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
     comma = delimiter != "," and sum(_is_comma(field) for row in rows[:400] for field in row) > 10
@@ -494,31 +494,6 @@ def _from_entries(
     if not tables:
         raise RecordingError(otherwise)
     return tables
-
-
-def _from_blocks(lines: Sequence[str], name: str) -> list[Table]:
-    """Messages one after another, parted by hyphens, as robots print them;
-    indented lines belong to the one above.
-    """
-    entries: list[dict[str, str]] = []
-    entry: dict[str, str] = {}
-    path: list[tuple[int, str]] = []
-    for line in [*lines, "---"]:
-        if line.startswith("---"):
-            if entry:
-                entries.append(entry)
-            entry, path = {}, []
-            continue
-        found = re.fullmatch(r"(\s*)(\w+):\s*(\S*)\s*", line)
-        if found:
-            path = [(indent, key) for indent, key in path if indent < len(found[1])] + [
-                (len(found[1]), found[2])
-            ]
-            if found[3]:
-                entry[".".join(key for _, key in path)] = found[3]
-    return _from_entries(
-        {name: entries}, f"{name} holds messages, but no table of numbers comes of them"
-    )
 
 
 def _flat(entry: Mapping[str, object], before: str = "") -> dict[str, object]:

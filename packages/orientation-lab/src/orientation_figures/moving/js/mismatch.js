@@ -932,34 +932,7 @@ export function mendingLine({ first, second, relation }) {
   return writeInPython(first, matrix.replace(/\.T\.T$/, ''));
 }
 
-// ---- the same in C++ with Eigen, and as a formula -----------------------------------------------------------
-
-const eigenMatrix = (rows) => `(Eigen::Matrix3d() << ${rows.flat().map((entry) => String(Number(entry.toPrecision(6)) + 0)).join(', ')}).finished()`;
-
-function eigenTurns(choices) {
-  const inRadians = choices.unit === 'degrees' ? ' * EIGEN_PI / 180' : '';
-  const turns = ['1', '2', '3'].map((which, k) => `Eigen::AngleAxisd(${choices.signs[k] === '-' ? '-' : ''}second[${choices.places.indexOf(which)}]${inRadians}, `
-    + `Eigen::Vector3d::Unit${choices.sequence[k].toUpperCase()}())`);
-  return `(${backwards(turns, choices['axes of the turns'] === 'space fixed').join(' * ')}).toRotationMatrix().transpose()`;
-}
-
-export function eigenLine({ second: { kind, choices }, relation }) {
-  const inRadians = choices.unit === 'degrees' ? ' * EIGEN_PI / 180' : '', last = choices['place of the angle'] === 'last';
-  let code = 'second';
-  if (kind === 'quaternion') code = `Eigen::Quaterniond(${indices(choices.order, 'wxyz').map((k) => `second[${k}]`).join(', ')}).toRotationMatrix().transpose()`;
-  if (kind === 'Euler angles') code = eigenTurns(choices);
-  if (kind === 'rotation vector') code = `Eigen::AngleAxisd(second.norm()${inRadians}, second.normalized()).toRotationMatrix().transpose()`;
-  if (kind === 'axis and angle') {
-    code = `Eigen::AngleAxisd(${last ? 'second[3]' : 'second[0]'}${inRadians}, ${last ? 'second.head<3>()' : 'second.tail<3>()'}.normalized()).toRotationMatrix().transpose()`;
-  }
-  const [body, world] = [relation['body turn'], relation['world turn']];
-  if (body) code = `${eigenMatrix(transpose(body))} * ${code}`;
-  if (world) code = `${code} * ${eigenMatrix(transpose(world))}`;
-  if (relation.body !== SAME_AXES) code = `${eigenMatrix(transpose(axesMatrix(relation.body)))} * ${code}`;
-  if (relation.world !== SAME_AXES) code = `${code} * ${eigenMatrix(axesMatrix(relation.world))}`;
-  if (relation.inverse) code = code.includes('*') ? `(${code}).transpose()` : `${code}.transpose()`;
-  return `Eigen::Matrix3d first = ${code.replace('.transpose().transpose()', '')};`;
-}
+// ---- the same as a formula -----------------------------------------------------------
 
 const written = (rows) => `[${rows.map((row) => `[${row.map((entry) => String(Number(entry.toFixed(4)) + 0)).join(', ')}]`).join(', ')}]`;
 

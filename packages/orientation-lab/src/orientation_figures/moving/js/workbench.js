@@ -1,6 +1,6 @@
 import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, slerp } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
-import { drawnDcms, eigenLine, explain, formulaOf, mendingLine, taughtBy } from './mismatch.js';
+import { drawnDcms, explain, formulaOf, mendingLine, taughtBy } from './mismatch.js';
 import { picture, SIZE } from './workbench_picture.js';
 import { button, calm, change, choice, element, follow, glide, group, liveText, numberField,
   onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
@@ -12,7 +12,7 @@ const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is
   unrelated: 'Nothing that was tried explains these numbers.' };
 
 const ONE_QUESTION = 'One question decides.';
-const LANGUAGES = { 'NumPy and SciPy': mendingLine, 'C++ with Eigen': eigenLine, 'A formula': formulaOf };
+const LANGUAGES = { 'NumPy and SciPy': mendingLine, 'A formula': formulaOf };
 const AS_THE_MANUALS_SAY = { same: 'Both give what their manuals say.', named: 'They differ by more than their manuals say:' };
 
 const PLACE = 'workbench', STATE = ['first', 'second', 'first_is', 'second_is', 'noise'], LONGEST = 5000;

@@ -1,198 +1,4 @@
-"""Threads and pasted numbers that no reading, relation or cost was chosen for:
-looked for when the table was done.
-
-``MORE_THREADS`` is like ``THREADS``. ``PASTED`` holds what people really pasted: numbers with the
-brackets, names and digits that stand in the thread.
-"""
-
-from threads import (
-    FLIP,
-    LAST_FOR_FIRST,
-    MATRIX,
-    NED,
-    OTHER_HAND,
-    OTHER_WAY,
-    SPACE_FOR_BODY,
-    VECTOR,
-    angles,
-    quaternion,
-)
-from threads import thread as _thread
-
-XYZW, WXYZ = quaternion("xyzw"), quaternion()
-DEGREES = {"unit": "degrees"}
-
-
-def thread(where, *rest, **more):
-    name, _, number = where.rpartition(" ")
-    return _thread(name, int(number), *rest, **more)
-
-
-MORE_THREADS = [
-    thread("facebookresearch/habitat-sim 131", LAST_FOR_FIRST, XYZW, WXYZ),
-    thread("ARISE-Initiative/robosuite 488", LAST_FOR_FIRST, WXYZ, XYZW),
-    thread("RoboVerseOrg/RoboVerse 237", LAST_FOR_FIRST, WXYZ, XYZW),
-    thread("yuanfei-Wang/AdaManip 1", LAST_FOR_FIRST, XYZW, WXYZ),
-    thread("clydemcqueen/flock2 1", LAST_FOR_FIRST, XYZW, WXYZ),
-    thread("fkanehiro/hrpsys-base 50", LAST_FOR_FIRST, XYZW, WXYZ),
-    thread("MrNeRF/LichtFeld-Studio 73", LAST_FOR_FIRST, WXYZ, XYZW),
-    thread("NIRVANALAN/STream3R 22", LAST_FOR_FIRST, MATRIX, WXYZ, inverse=True),
-    thread("g-truc/glm 681", LAST_FOR_FIRST, WXYZ, XYZW),
-    thread("g-truc/glm 913", "the conjugate out of a matrix", MATRIX, WXYZ),
-    thread("raysan5/raylib 1793", "the transpose out of a quaternion", XYZW, MATRIX),
-    thread("rbdl/rbdl 38", "the transpose out of a quaternion", XYZW, MATRIX),
-    thread("CesiumGS/cesium 340", "the transpose out of a quaternion", XYZW, MATRIX),
-    thread("simonfuhrmann/mve 306", "written out column by column", WXYZ, MATRIX),
-    thread("microsoft/WinObjC 549", "the transpose", angles("xyz"), MATRIX),
-    thread("moble/quaternion 145", "the transpose of MATLAB's", MATRIX, MATRIX, inverse=True),
-    thread(
-        "tyrex-team/benchmarks-attitude-smartphones 2",
-        "of the transpose",
-        MATRIX,
-        WXYZ,
-        inverse=True,
-    ),
-    thread(
-        "IlyaKuprov/Spinach 325",
-        "the transpose of an axis and an angle",
-        MATRIX,
-        MATRIX,
-        inverse=True,
-    ),
-    thread("ArduPilot/ardupilot 17090", OTHER_WAY, WXYZ, WXYZ, inverse=True),
-    thread("rpng/open_vins 100", "JPL's quaternion for Hamilton's", XYZW, XYZW, inverse=True),
-    thread("ethz-asl/kalibr 161", "JPL's quaternion for Hamilton's", MATRIX, WXYZ, inverse=True),
-    thread(
-        "ceres-solver/ceres-solver 211", "degrees expected", angles("zyx"), angles("zyx", **DEGREES)
-    ),
-    thread(
-        "snowkit/old-haxe-alpha 382",
-        "degrees out, radians in",
-        angles("xyz", **DEGREES),
-        angles("xyz"),
-    ),
-    thread("g-truc/glm 128", "degrees out, radians in", WXYZ, angles("zyx", **DEGREES)),
-    thread("IlyaKuprov/Spinach 395", "degrees for radians", angles("zyz", **DEGREES), MATRIX),
-    thread("dartsim/dart 250", SPACE_FOR_BODY, angles("xyz"), angles("xyz", "space fixed")),
-    thread(
-        "PickNikRobotics/rosparam_shortcuts 22",
-        SPACE_FOR_BODY,
-        angles("xyz"),
-        angles("xyz", "space fixed"),
-    ),
-    thread("godotengine/godot 105115", SPACE_FOR_BODY, angles("yxz"), angles("yxz", "space fixed")),
-    thread("moveit/moveit_calibration 132", SPACE_FOR_BODY, XYZW, angles("xyz")),
-    thread(
-        "dronecrew/px4tools 45", "space fixed z-y-x for x-y-z", WXYZ, angles("zyx", "space fixed")
-    ),
-    thread(
-        "DeepMotionEditing/deep-motion-editing 195",
-        SPACE_FOR_BODY,
-        WXYZ,
-        angles("zxy", "space fixed", "degrees"),
-    ),
-    thread("ORB-HD/rbdl-orb 88", "z-y-x for x-y-z", angles("xyz"), angles("zyx", places="321")),
-    thread("fan-ziqi/robot_viewer 16", "x-y-z for z-y-x", WXYZ, angles("xyz")),
-    thread("KhronosGroup/glTF-Blender-IO 1343", "z-x-y read as x-y-z", XYZW, angles("xyz")),
-    thread(
-        "bulletphysics/bullet3 4407",
-        "yaw, pitch, roll printed the other way",
-        XYZW,
-        angles("zyx", places="321"),
-    ),
-    thread(
-        "ros/geometry 231",
-        "roll, pitch, yaw against yaw, pitch, roll",
-        angles("zyx"),
-        angles("zyx", places="321"),
-    ),
-    thread(
-        "Mayitzin/ahrs 65",
-        "roll, pitch, yaw read backwards",
-        angles("zyx"),
-        angles("zyx", places="321"),
-    ),
-    thread(
-        "rawify/Quaternion.js 12",
-        "Unity's angles",
-        WXYZ,
-        angles("yxz", unit="degrees", places="213"),
-    ),
-    thread(
-        "carla-simulator/carla 4693",
-        "pitch and yaw reversed",
-        angles("zyx", **DEGREES),
-        angles("zyx", unit="degrees", signs="--+"),
-    ),
-    thread(
-        "microsoft/AirSim 4902",
-        "yaw reversed",
-        angles("zyx", **DEGREES),
-        angles("zyx", unit="degrees", signs="-++"),
-    ),
-    thread("naval-group/LOTUSim 33", "the body's side not converted", WXYZ, WXYZ, world=NED),
-    thread(
-        "ros-drivers/microstrain_mips 4",
-        "x and y exchanged, z reversed",
-        XYZW,
-        XYZW,
-        body=NED,
-        world=NED,
-    ),
-    thread("dawonn/vectornav 143", "NED and FRD to ENU and FLU", XYZW, XYZW, body=FLIP, world=NED),
-    thread(
-        "Auterion/px4-ros2-interface-lib 168",
-        "NED and FRD to ENU and FLU",
-        WXYZ,
-        WXYZ,
-        body=FLIP,
-        world=NED,
-    ),
-    thread("nex-mpi/nex-code 13", "OpenGL's camera for OpenCV's", MATRIX, MATRIX, world=FLIP),
-    thread("NVlabs/dex-ycb-toolkit 40", "OpenCV's camera for OpenGL's", MATRIX, MATRIX, body=FLIP),
-    thread(
-        "nianticlabs/ace 31",
-        "OpenCV to OpenGL on both sides",
-        MATRIX,
-        MATRIX,
-        body=FLIP,
-        world=FLIP,
-    ),
-    thread("heheyas/V3D 20", "camera to world, for OpenGL", WXYZ, MATRIX, world=FLIP),
-    thread(
-        "kwea123/nerf_pl 135",
-        "OpenCV's camera for OpenGL's",
-        MATRIX,
-        MATRIX,
-        inverse=True,
-        world=FLIP,
-    ),
-    thread("nerfstudio-project/gsplat 180", OTHER_WAY, MATRIX, MATRIX, inverse=True),
-    thread(
-        "microsoft/MixedReality-SceneUnderstanding-Samples 17",
-        OTHER_HAND,
-        MATRIX,
-        MATRIX,
-        body="x y -z",
-        world="x y -z",
-    ),
-    thread("vrm-c/UniVRM 756", OTHER_HAND, XYZW, XYZW, body="-x y z", world="-x y z"),
-    thread("siemens/ros-sharp 126", "ROS to Unity", XYZW, XYZW, body="-y z x", world="-y z x"),
-    thread("atteneder/glTFast 200", "half a turn about y", XYZW, XYZW, world="-x y -z"),
-    thread("STAR-Center/VINS-RGBD 16", "half a turn about x", XYZW, XYZW, body=FLIP),
-    thread(
-        "facontidavide/LeGO-LOAM-BOR 10",
-        "axes of the camera",
-        XYZW,
-        XYZW,
-        body="-y -z x",
-        world="-y -z x",
-    ),
-    thread(
-        "EnoxSoftware/OpenCVForUnity 36", OTHER_HAND, VECTOR, XYZW, body="x -y z", world="x -y z"
-    ),
-    thread("materializr-cad/materializr 46", "y up for z up", MATRIX, MATRIX, world="x -z y"),
-]
+"""What people pasted into public threads: their own numbers, with what they said of them."""
 
 
 def pasted(where, first, second, verdict, *words, known=({}, {})):
@@ -211,6 +17,7 @@ SQUAD = """# Result:
 # y=0.00735193956643343
 # z=0.8875043392181396
 # w=0.46072492003440857"""
+
 TF = """transforms:
   -
     header:
@@ -231,6 +38,7 @@ TF = """transforms:
         z: 0.0338153541435
         w: 0.999211948416
 ---"""
+
 GLTF = """{
 "nodes" : [
         { "mesh" : 0, "name" : "Cube" },
@@ -256,23 +64,31 @@ GLTF = """{
         }
     ]
 }"""
+
 BLENDER = """<Quaternion (w=0.5709, x=0.1691, y=0.2722, z=0.7559)>
 <Quaternion (w=0.7805, x=0.4835, y=0.2087, z=0.3369)>"""
+
 RBDL = """Rotation matrix:
   -0.972871 -0.0705752  -0.220319
    0.21634  0.0598777   -0.97448
  0.0819664  -0.995708 -0.0429851"""
+
 EIGEN = "Eigen quaternion:\n 0.0505867i + 0.72037j + -0.683741k + -0.104906"
+
 OWN = "RBDL quaternion:\n 0.0505867\n  0.72037\n-0.683741\n 0.104906"
+
 KORNIA = """R_mat = tensor([[[ 0.9965,  0.0377, -0.0749],
               [-0.0399,  0.9988, -0.0278],
               [ 0.0738,  0.0307,  0.9968]]])"""
+
 EXTRINSIC = """[[ 0.66446302 -0.49145005  0.5629971 ]
  [ 0.66446302  0.73329482 -0.14410968]
  [-0.34202014  0.46984631  0.81379768]]"""
+
 BEFORE = """BEFORE tensor([[[ 0.8888,  0.1516, -0.4325],
          [-0.4552,  0.1834, -0.8713],
          [ 0.0528, -0.9713, -0.2321]]], device='cuda:0')"""
+
 AFTER = """AFTER tensor([[[ 0.8888,  0.0357, -0.4569],
          [-0.4552,  0.1834, -0.8713],
          [ 0.0528,  0.9824,  0.1793]]], device='cuda:0',)"""
