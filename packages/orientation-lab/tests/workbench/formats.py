@@ -179,38 +179,6 @@ def sensor_log():
     return Form("\n".join([",".join(names), *rows]).encode(), scales)
 
 
-def andro_sensor():
-    """AndroSensor: semicolons, three accelerations, angles last, and a date that is no number."""
-    found, time, gyr, acc, mag, _ = _parts()
-    gravity = _gravity(found)
-    names = []
-    for stem, unit in (
-        ("ACCELEROMETER", "m/s²"),
-        ("GRAVITY", "m/s²"),
-        ("LINEAR ACCELERATION", "m/s²"),
-        ("GYROSCOPE", "rad/s"),
-        ("MAGNETIC FIELD", "μT"),
-    ):
-        names += [f"{stem} {axis} ({unit})" for axis in "XYZ"]
-    names += ["SOUND LEVEL (dB)", "Time since start in ms ", "YYYY-MO-DD HH-MI-SS_SSS"]
-    columns = [
-        acc,
-        gravity,
-        acc - gravity,
-        gyr,
-        mag,
-        np.full(len(time), 41.3),
-        np.round(1000 * time),
-    ]
-    text = _table(None, columns, ";", "{:.6f}").decode().splitlines()
-    text = [
-        f"{row};2014-01-12 15:20:{int(t) % 60:02}_{int(1000 * t) % 1000:03}"
-        for t, row in zip(time, text, strict=True)
-    ]
-    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1}
-    return Form("\n".join([";".join(names), *text]).encode(), scales)
-
-
 def physics_toolbox():
     """Physics Toolbox Sensor Suite: g-force, linear acceleration,
     turning and field, in short names.
@@ -502,23 +470,6 @@ def rostopic():
         lines.append(
             f"{stamp},{k},{stamp},imu_link," + ",".join(f"{one},{covariance}" for one in vectors)
         )
-    return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
-
-
-def bagpy():
-    _, time, gyr, acc, _, quaternion = _parts()
-    names = ["Time", "header.seq", "header.stamp.secs", "header.stamp.nsecs", "header.frame_id"]
-    names += [f"orientation.{one}" for one in "xyzw"] + [
-        f"orientation_covariance_{k}" for k in range(9)
-    ]
-    names += [
-        f"{one}.{axis}" for one in ("angular_velocity", "linear_acceleration") for axis in "xyz"
-    ]
-    lines = [",".join(names)]
-    for k, t in enumerate(time):
-        numbers = [*np.roll(quaternion[k], -1), *[0.0] * 9, *gyr[k], *acc[k]]
-        lines.append(f"{1.7e9 + t:.6f},{k},{1_700_000_000 + int(t)},{round(1e9 * (t % 1))},imu,"
-                     + ",".join(f"{one:.8f}" for one in numbers))  # fmt: skip
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "quaternion": 1})
 
 
@@ -815,23 +766,6 @@ def one_sensor_a_line():
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
 
 
-def plot_juggler():
-    """Headings are paths, and a counter stands before the acceleration."""
-    _, time, gyr, acc, _, quaternion = _parts()
-    names = [
-        "__time",
-        *(f"/imu/data/angular_velocity/{axis}" for axis in "xyz"),
-        "/imu/data/header/seq",
-    ]
-    names += [*(f"/imu/data/linear_acceleration/{axis}" for axis in "xyz")]
-    names += [*(f"/imu/data/orientation/{axis}" for axis in "wxyz")]
-    columns = [1.7e9 + time, gyr, np.arange(len(time)), acc, quaternion]
-    return Form(
-        _table(names, columns, number="{:.13g}"),
-        {"gyroscope": 1, "accelerometer": 1, "quaternion": 1},
-    )
-
-
 def xsens_mtw_with_a_clock():
     """Its clock counts ten thousandths of a second, which nothing
     says but the rate above the table.
@@ -860,7 +794,6 @@ FORMS = [
     sensor_logger,
     sensor_logger_json,
     sensor_log,
-    andro_sensor,
     physics_toolbox,
     motion_sense,
     meta_wear,
@@ -874,7 +807,6 @@ FORMS = [
     ardupilot,
     px4,
     rostopic,
-    bagpy,
     euroc,
     tum,
     gnss_logger,
@@ -890,6 +822,5 @@ FORMS = [
     core_motion,
     # fmt: skip
     one_sensor_a_line,
-    plot_juggler,
     xsens_mtw_with_a_clock,
 ]

@@ -129,21 +129,6 @@ def test_mixtures_of_up_to_three_faults(count, piece):
     assert first_place >= 0.95 * count
 
 
-@FEW_AND_ALL
-def test_unrelated_poses_get_no_name(count, piece):
-    generator, orientations = random.Random(600 + piece), np.random.default_rng(600 + piece)
-    for _ in range(count):
-        declared = known(generator), known(generator)
-        texts = []
-        for one in declared:
-            (reading,) = by_faults(tuple(sorted(one.items())))[0]
-            texts.append(
-                printed(numbers_from_dcms(reading, random_orientations(2, orientations))[0], 4)
-            )
-        found = explain(*texts, first_declared=declared[0], second_declared=declared[1])
-        assert found.verdict == "unrelated", (texts, str(found))
-
-
 @FEW_AND_MANY
 @pytest.mark.parametrize("start", ["planar", "at rest"])
 def test_the_pose_that_is_asked_for_decides(count, piece, start):
