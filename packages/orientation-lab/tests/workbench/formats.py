@@ -520,20 +520,6 @@ def gnss_logger():
     return Form("\n".join(lines).encode(), {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1})
 
 
-def repo_imu():
-    """A stick with an instrument: names of one line above, units of the next, semicolons."""
-    _, time, gyr, acc, mag, quaternion = _parts()
-    names = ["Time", *(f"Quat {one}" for one in "WXYZ")]
-    names += [f"{stem} {axis}" for stem in ("Acc", "Gyro", "Magn") for axis in "XYZ"]
-    head = [
-        ";".join(names),
-        ";".join(["s", *["-"] * 4, *["m/s^2"] * 3, *["rad/s"] * 3, *["uT"] * 3]),
-    ]
-    columns = [time, quaternion, acc, gyr, mag]
-    scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1}
-    return Form(_table(None, columns, ";", "{:.8f}", head=head), scales)
-
-
 def no_headings():
     _, time, gyr, acc, mag, quaternion = _parts()
     scales = {"gyroscope": 1, "accelerometer": 1, "magnetometer": 1, "quaternion": 1}
@@ -606,15 +592,6 @@ def flight_test():
     return Form(
         "\n".join([",".join(names), *rows]).encode(),
         {"gyroscope": DEG, "accelerometer": 1 / GRAVITY, "angles": 1},
-    )
-
-
-def rates_called_after_angles():
-    _, time, gyr, acc, _, _ = _parts()
-    names = ["time_ms", "yaw_rate", "pitch_rate", "roll_rate", "accel_x", "accel_y", "accel_z"]
-    return Form(
-        _table(names, [np.round(1000 * time), gyr[:, ::-1], acc]),
-        {"gyroscope": 1, "accelerometer": 1},
     )
 
 
@@ -810,12 +787,10 @@ FORMS = [
     euroc,
     tum,
     gnss_logger,
-    repo_imu,
     no_headings,
     arduino,
     matlab_mobile,
     flight_test,
-    rates_called_after_angles,
     witmotion,
     polar,
     dat_con,

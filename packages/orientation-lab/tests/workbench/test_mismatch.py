@@ -586,14 +586,6 @@ def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):
     assert left.value.code == 3 and said in capsys.readouterr().err
 
 
-def test_numbers_that_begin_with_a_minus_are_no_option(capsys):
-    with pytest.raises(SystemExit) as left:
-        main(["explain", "-0.5,0.5,-0.5,0.5", "-0.5,0.5,-0.5,0.5", "--json"])
-    assert (
-        left.value.code == 0 and json.loads(capsys.readouterr().out)["residual in degrees"] == 0.0
-    )
-
-
 def test_the_command_is_installed():
     done = subprocess.run(
         [sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
