@@ -372,38 +372,38 @@ class _Bench:
         """Bring the gyroscope into the axes of the accelerometer, if they
         differ, and find its scale and bias.
         """
-        fit = fits.get("accelerometer")
-        plain = np.eye(3)
+        fit, field, plain = fits.get("accelerometer"), fits.get("magnetometer"), np.eye(3)
+        best, words = None, "those of the accelerometer"
+        near = np.flatnonzero(fit.shares <= BELIEVED * fit.shares.min()) if fit is not None else []
         if fit is not None and fit.margin > BELIEVED:
-            best, field = fit.best, fits.get("magnetometer")
-            right = np.allclose(best, plain)
-            if not right and field is not None and field.margin > BELIEVED:
+            best = fit.best
+            if not np.allclose(best, plain) and field is not None and field.margin > BELIEVED:
                 if np.allclose(field.best, plain):
                     self._odd_accelerometer(best)
-                    best, right = plain, True
-            left_over = {
-                "share left": round(float(fit.shares.min()), 3),
-                "next": round(float(fit.margin * fit.shares.min()), 3),
-            }
-            if right:
-                self.say("axes of the gyroscope", GREEN, "those of the accelerometer", left_over)
+                    best = plain
+        elif field is not None and field.margin > BELIEVED and field.shares.argmin() in near:
+            best = field.best
+            words += f"; gravity alone leaves {len(near)} assignments, and the field decides"
+        if best is not None:
+            if np.allclose(best, plain):
+                self.say("axes of the gyroscope", GREEN, words)
             else:
                 mirrored = "; one of the two is left-handed" if np.linalg.det(best) < 0 else ""
                 self.say(
                     "axes of the gyroscope",
                     RED,
                     f"along the accelerometer's axes it measures {written(best)}{mirrored}",
-                    left_over,
+                    {},
                     f"Take ({written(best)}) of the gyroscope for its x, y, z.",
                 )
             self.facts["axes of the gyroscope"] = best
             rates = rates @ best.T
         elif fit is not None:
-            ways = [written(one) for one in ASSIGNMENTS[np.argsort(fit.shares)[:3]]]
+            ways = [written(ASSIGNMENTS[k]) for k in near[np.argsort(fit.shares[near])]]
             self.say(
                 "axes of the gyroscope",
                 UNKNOWN,
-                f"several assignments fit nearly as well: {'; '.join(ways)}",
+                f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}",
                 {"margin": round(fit.margin, 2)},
                 "Turn the instrument slowly about all three axes.",
             )
@@ -486,9 +486,10 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
-                f"{len(poses)} poses, too few or too much alike to carry gravity through",
+                f"still poses: {len(poses)}, "
+                f"{'too few' if len(poses) < 4 else 'too much alike'} to carry gravity through",
                 {},
-                "Hold it still in four poses that lean well away from each other.",
+                "Hold it still in poses that lean well away from each other, four or more.",
             )
         if bias is None:
             self.say(
@@ -667,7 +668,7 @@ class _Bench:
             self.say(
                 "accelerometer",
                 UNKNOWN,
-                f"{len(means)} poses do not tell offset from scale",
+                f"still poses: {len(means)}, too few or too much alike to tell offset from scale",
                 {},
                 "Hold it still in nine poses that lean all ways.",
             )
@@ -864,15 +865,17 @@ class _Bench:
 
     def timing(self) -> None:
         """Delays between the sensors, and samples that are missing where time was counted on."""
+        steps = np.diff(self.time)
         if self.rates is None or self.content.counted or len(self.time) < 200:
             return
-        step = float(np.median(np.diff(self.time)))
+        step = float(np.median(steps))
         seen = {kind: self.raw[kind] for kind in self.raw if kind != "gyroscope"}
         leaps = np.full(len(self.time) - 1, len(seen) > 1)
         for values in seen.values():
             leaps &= _leaps(self.rates, values, step)
         # A few leaps are gaps; many are another fault, in the unit or the axes.
-        if 0 < leaps.mean() < 0.02:
+        # A clock whose steps are not all alike measures time, and does not count it on.
+        if 0 < leaps.mean() < 0.02 and np.ptp(steps) < 0.02 * step:
             self.say(
                 "missing samples",
                 RED,
@@ -882,6 +885,9 @@ class _Bench:
                 {"places": int(leaps.sum())},
                 "Record the instrument's own time with each sample. No filter knows what happened.",
             )
+            return
+        # What does not tell the axes tells no delay.
+        if "axes of the gyroscope" not in self.facts:
             return
         late = {kind: lag_of(self.rates, values, step) for kind, values in seen.items()}
         # A push that comes with each turn looks like a delay of the accelerometer, which
@@ -1076,6 +1082,17 @@ class _Bench:
                 else "First rule out lost samples, delays and a wrong clock; only then raise its "
                 "noise."
             )
+        doubtful = [
+            verdict.about
+            for verdict in self.verdicts
+            if verdict.light != GREEN
+            and re.search("(offset|shape|axes|delay) of the magn|field|signs", verdict.about)
+        ]
+        if self.judgements[0].heading and (doubtful or max(heading) > 20):
+            light = YELLOW if light == GREEN else light
+            advice += " Do not use its heading, which may be wrong by up to half a turn: " + (
+                f"first settle {', '.join(doubtful)}." if doubtful else "it is too uncertain."
+            )
         evidence = {
             "claimed (°)": round(claimed, 3),
             "found (°)": round(found, 3),
@@ -1085,7 +1102,7 @@ class _Bench:
                 name: round(off, 1) for name, off in self.judgements[0].held_out.items()
             },
         }
-        self.say("filter", light, words, evidence, advice)
+        self.say("filter", light, words, evidence, advice.strip())
 
     def examined(self) -> Examined:
         return Examined(

@@ -38,7 +38,7 @@ COUNTS = r"counter|packet|index|sample(?!.*time)|frame|count$|^id$|iteration|tic
 RATE = r"(?:rate|frequency)[\W_]*([\d.]+)\s*hz"
 TIME = r"time|stamp|second|^t$|^sec|^ms$|^us$|clock|counter|packet|sample|index|frame"
 #: What a bench can use.
-PLAYED = ("gyroscope", "accelerometer", "magnetometer", "quaternion", "angles")
+PLAYED = ("accelerometer", "magnetometer", "gyroscope", "quaternion", "angles")
 UNITS_OF_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
 #: Lengths of what points one way only, in the units that are in use:
 #: standard gravity, and the Earth's field.
@@ -489,7 +489,7 @@ def _roles(groups: Sequence[Group]) -> dict[str, Group]:
     turning, felt = chosen.get("gyroscope"), chosen.get("accelerometer")
     if turning and felt and points_one_way(turning.values) and not points_one_way(felt.values):
         chosen |= {"gyroscope": felt, "accelerometer": turning}
-    return chosen
+    return {kind: chosen[kind] for kind in PLAYED if kind in chosen}
 
 
 def unit_of_gravity(values: Array) -> tuple[str, float, float]:
