@@ -712,6 +712,17 @@ def test_an_author_is_told(tmp_path, old, new, says):
         read_source(path, 12)
 
 
+def test_a_variant_is_taken_out_and_the_others_need_not_be_counted(tmp_path):
+    """Where the count is that of all combinations, one that is ruled out left one too few."""
+    made = made_in(tmp_path)
+    where = "count=12, where=lambda drawn: drawn != {'force': 30, 'arm': 3}"
+    cells = [(kind, text.replace("count=6", where)) for kind, text, *_ in CELLS]
+    write_source(made.sources, *cells, name="levers")
+    release(made, run=False)
+    sealed = json.loads((made.sealed / "levers.json").read_text("utf8"))["questions"]
+    assert sealed["levers/see-saw"]["variants"] == 11
+
+
 def test_a_variant_with_a_fault_is_named_with_its_numbers(tmp_path):
     """Of 2 N at 2 m the sum is the product: one variant in which a
     mistake gives the right answer.

@@ -239,6 +239,62 @@ def test_a_mark_tells_its_life(course):
     assert "There are no marks of 'eve'" in course.run("why", "eve", "hw2", fails=True)
 
 
+def test_a_blind_worksheet_of_moodle_is_a_roster_and_is_filled(tmp_path):
+    """With names hidden it holds numbers of participants, and nothing else."""
+    course = Course(tmp_path, hw1={"sum": (5, 4)})
+    rows = [
+        {"Identifier": f"Participant {number}", "Status": "Submitted", "Grade": "",
+         "Maximum Grade": "4.00", "Grade can be changed": "Yes"}
+        for number in (17, 23, 31)
+    ]  # fmt: skip
+    book = course.write_table("worksheet.csv", rows)
+    course.run("term", "new", "marks", "--solutions", "solutions", "--roster", "worksheet.csv")
+    course.hands_in("Participant_17_assignsubmission_file_", "hw1")
+    course.hands_in("Participant_31_assignsubmission_file_", "hw1", sum=6)
+    said = course.grade()
+    assert (
+        "Participant 17 <- Participant_17" in said and "handed in nothing: Participant 23" in said
+    )
+    assert course.points() == {"Participant 17": 4, "Participant 31": 0}
+    said = course.export(book)
+    assert "2 filled in" in said
+    assert list(course.column(book, "Grade").values()) == ["4", "", "0"]
+
+
+def test_blackboards_own_gradebook_is_filled_without_a_word(tmp_path):
+    """It is UTF-16 with tabs, in quotation marks; an attempt carries the user's name."""
+    course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8)})
+    header = [
+        "Last Name", "First Name", "Username", "Student ID", "Last Access", "Availability",
+        "Weighted Total [Total Pts: 0 Percentage] |1", "Total [Total Pts: 20 Score] |2",
+        "Homework 1 [Total Pts: 10 Score] |311", "Homework 2 [Total Pts: 10 Score] |312",
+    ]  # fmt: skip
+    people = [["Lee", "Ada", "alee", "1001"], ["Moe", "Ben", "bmoe", "1002"]]
+    lines = [header, *([*person, "", "Yes", "", "", "", ""] for person in people)]
+    text = "\r\n".join("\t".join(f'"{cell}"' for cell in line) for line in lines) + "\r\n"
+    book = tmp_path / "gc.xls"
+    book.write_bytes(text.encode("utf-16"))
+    course.run("term", "new", "marks", "--solutions", "solutions", "--roster", "gc.xls")
+    for user, answer in (("alee", 5), ("bmoe", 6)):
+        name = f"Homework 1_{user}_attempt_2025-10-01-10-00-00_hw1.ipynb"
+        nbformat.write(course.answers("hw1", sum=answer), course.handed_in / name)
+    course.grade()
+    assert course.points() == {"1001": 4, "1002": 0}
+    # Two columns could be meant: the file of the term says which, and nothing else is asked.
+    said = course.export(book, fails=True)
+    assert (
+        "'Homework 1 [Total Pts: 10 Score] |311', 'Homework 2" in said and "column = '...'" in said
+    )
+    term = course.marks / "term.toml"
+    begun = "[assignments.hw1]\n"
+    term.write_text(term.read_text().replace(begun, f'{begun}column = "Homework 1"\n'))
+    said = course.export(book)
+    assert "Blackboard: column 'Homework 1" in said and "2 filled in" in said
+    data = book.read_bytes()
+    filled = [line.split("\t") for line in data.decode("utf-16").split("\r\n")]
+    assert [line[8] for line in filled[1:3]] == ['"10"', '"0"'] and data[:2] == b"\xff\xfe"
+
+
 def test_gradescopes_own_lists_are_understood(tmp_path):
     course = Course(tmp_path, hw1={"sum": (5, 4)})
     (tmp_path / "roster.csv").write_text(

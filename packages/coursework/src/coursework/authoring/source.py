@@ -205,7 +205,8 @@ def read_source(
         picture: Callable[..., Drawing] | None = None,
         **pools: Pool,
     ) -> Given:
-        rules[name] = Rule(name, count, pools, where, picture)
+        rules[name] = Rule(name, count, pools, where, picture).without_what_is_ruled_out()
+        count = rules[name].count
         given[name] = rules[name].parameters(variant if variant < count else 0, edition)
         return Given(shown(texts[name], written(given[name])), given[name])
 

@@ -14,11 +14,13 @@ shows the text of their own variant.
 
 import ast
 import hashlib
+import itertools
+import math
 import random
 import re
 import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from .author import AuthorError
@@ -30,6 +32,8 @@ VARIANTS = re.compile(
 COUNT = 16
 #: How often a variant is drawn anew because it is one that there was already, or does not fit.
 MOST_ATTEMPTS = 400
+#: How many combinations are looked at, to see how many will do.
+MOST_LISTED = 10_000
 
 
 #: The source of a parameter: a list to choose from, or a function of a random generator.
@@ -59,6 +63,18 @@ class Rule:
     pools: Mapping[str, Pool]
     where: Callable[..., object] | None = None
     picture: Callable[..., Any] | None = None
+
+    def without_what_is_ruled_out(self) -> "Rule":
+        """The same rule with as many variants as ``where`` leaves, if the lists alone give enough:
+        who takes a variant out need not count the others.
+        """
+        lists = [list(pool) for pool in self.pools.values() if not callable(pool)]
+        total = math.prod(map(len, lists))
+        if not self.where or len(lists) < len(self.pools) or not self.count <= total <= MOST_LISTED:
+            return self
+        choices = (dict(zip(self.pools, one)) for one in itertools.product(*lists))
+        left = sum(bool(self.where(one)) for one in choices)
+        return replace(self, count=min(self.count, left)) if left else self
 
     def parameters(self, number: int, edition: str = "") -> dict[str, Any]:
         """The parameters of a variant. Of the first edition, variant

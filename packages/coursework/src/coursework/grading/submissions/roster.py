@@ -239,8 +239,10 @@ def _called(line: Mapping[str, str]) -> dict[str, tuple[str, ...]]:
         if "," in row["name"]:
             row["name"] = turned(row["name"])
     elif "identifier" in row and ("full name" in row or "grade" in row):
-        # Moodle's worksheet: "Participant 17".
-        row["moodle"] = re.sub(r"\D", "", row.pop("identifier"))
+        # Moodle's worksheet: "Participant 17", which is all that a blind one says.
+        row["moodle"] = re.sub(r"\D", "", row["identifier"])
+        if any(row.get(name) for name in ("full name", *COLUMNS["email"], "id number", "username")):
+            del row["identifier"]
     elif "id" in row:
         row.setdefault("student id", row.pop("id"))  # nbgrader's list
     known = {
