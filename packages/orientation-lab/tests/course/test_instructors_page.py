@@ -2,18 +2,54 @@
 
 import io
 import re
+import textwrap
+from collections import Counter
 from pathlib import Path
 
 import pytest
 import sample_class
 
+from coursework.grading.commands import ARGUMENTS
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import grade, regrade
-from coursework.grading.judging import term
 from coursework.grading.judging.journal import Journal
 from coursework.grading.store import Store
 
 PAGE = Path(__file__).parents[4] / "appendix" / "instructors.md"
+
+
+def reference():
+    """All commands, as their help says it; what several take is said once."""
+    times = Counter(str(one) for _, arguments in ARGUMENTS.values() for one in arguments)
+    several = {
+        str(one): one
+        for _, arguments in ARGUMENTS.values()
+        for one in arguments
+        if times[str(one)] > 1
+    }
+    parts = [("several commands", "what they have in common", list(several.values()))]
+    for command, (does, arguments) in ARGUMENTS.items():
+        own = [one for one in arguments if str(one) not in several]
+        parts.append((f"coursework {command}", does, own))
+    lines = []
+    for command, does, arguments in parts:
+        lines += [f"**{command}**: {does}", ""]
+        for names, options in arguments:
+            name = names[0] if names[0].startswith("--") else options.get("metavar", names[0])
+            if name.startswith("--") and options.get("action") != "store_true":
+                name += f" {options.get('metavar', name.strip('-').upper())}"
+            said = options["help"].replace("%(default)s", str(options.get("default")))
+            text = f"- `{name}`: {said}"
+            lines += textwrap.wrap(text, 120, subsequent_indent="  ", break_on_hyphens=False)
+        lines += [""] if arguments else []
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def test_the_list_of_commands_is_made_from_their_help():
+    made = PAGE.read_text("utf8").partition("This list is made from the help of the commands.\n\n")[
+        2
+    ]
+    assert made == reference(), reference()
 
 
 def _toml():
@@ -55,7 +91,3 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     feedback = gradebooks.write_feedback(tmp_path / "feedback.zip", gradebooks.Marks(store), store)
     told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
     assert told.replace(f"{tmp_path}/", "") == printed
-    rules = tmp_path / "term.toml"
-    (tmp_path / "gradebook.csv").write_text("student\njdoe\nada\nben\n")
-    rules.write_text(_toml()[-1].replace('times = "worksheet.csv"\n', ""))
-    assert list(term.read_term(rules).assignments) == notebooks
