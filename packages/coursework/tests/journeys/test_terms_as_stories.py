@@ -19,6 +19,7 @@ from without_a_sandbox import run_without_a_sandbox
 
 from coursework.__main__ import main
 from coursework.authoring.variation import Rule
+from coursework.grading import review as reviewing
 from coursework.grading import running
 from coursework.grading.judging import secret
 from coursework.grading.judging.journal import FILE, Given, Journal
@@ -85,6 +86,11 @@ class Story:
         self.said = {}  # what the machine gave last, and on which answer
         self.given, self.graded = {}, {}  # the marks, and the attempt that they are of
         self.policies = {"never-lower": set(), "full-credit": set(), "void": set()}
+        self.which = self.dice.choice(["newest in time", "newest in time", "last", "best"])
+        if self.which == "best":
+            del self.policies["never-lower"]  # what an attempt that never counted had is not given
+        self.among = {}  # the attempts of which one counted
+        self.full = {}  # the question as it was graded last with all variants
         self.extended, self.cells, self.by_hand = {}, {}, set()
         self.tables, self.events = [], []
         self.heard = []  # all commands, and what they said
@@ -113,7 +119,8 @@ class Story:
         nbformat.write(source(name, self.asked[name]), self.place / "solutions" / f"{name}.ipynb")
 
     def write_term(self):
-        lines = ['time-zone = "UTC"', 'roster = "../roster.csv"', "[late]", "a-day = 0.1"]
+        lines = ['time-zone = "UTC"', 'roster = "../roster.csv"', f'attempts = "{self.which}"']
+        lines += ["[late]", "a-day = 0.1"]
         lines += ["most = 0.5", "nothing-after-days = 10"]
         for name in NAMES:
             lines += [f"[assignments.{name}]", f"due = {DUE[name].isoformat()}"]
@@ -141,10 +148,13 @@ class Story:
         number = 100 + STUDENTS.index(who)
         attempt.path = folder / f"{number}-7 - {who.capitalize()} Lee - {when}" / f"{name}.ipynb"
         attempt.path.parent.mkdir(exist_ok=True)
-        self.write_notebook(name, attempt)
+        self.write_notebook(worker, name, attempt)
+        if attempt.has_copy:
+            copy = notebook(*(f"check('{name}/{one}', {one})" for one in ("load", "why")))
+            nbformat.write(copy, attempt.path.with_name(f"{name}-Copy1.ipynb"))
 
     @staticmethod
-    def write_notebook(name, attempt):
+    def write_notebook(worker, name, attempt):
         cells = ["from coursework import check, student\nstudent('')"]
         for question in QUESTIONS:
             answer = getattr(attempt, question)
@@ -153,6 +163,9 @@ class Story:
         made = notebook(*attempt.comments, *cells)
         if attempt.is_blank:
             made = notebook(*(f"check('{name}/{one}', {one})" for one in ("load", "why")))
+        # What the archive showed that the student has.
+        text = f"A beam carries {own_weight(worker, name)} N twice. Give the whole load."
+        made.cells[-1].outputs = [nbformat.v4.new_output("display_data", {"text/markdown": text})]
         nbformat.write(made, attempt.path)
 
     # -- commands
@@ -202,10 +215,25 @@ class Story:
     # -- what must come of it
 
     def counting(self, worker, name):
-        def rank(attempt):
-            return (not attempt.is_blank, self.hours_late(worker, name, attempt) <= 0, attempt.when)
+        """The attempts of which one counts, the newest in time first."""
 
-        return max(self.attempts[worker, name], key=rank)
+        def rank(attempt):
+            in_time = self.which == "last" or self.hours_late(worker, name, attempt) <= 0
+            return (not attempt.is_blank, in_time, attempt.when)
+
+        first, *others = sorted(self.attempts[worker, name], key=rank, reverse=True)
+        return [first, *(one for one in others if self.which == "best" and not one.is_blank)]
+
+    def lost(self, worker, name, attempt):
+        late = self.hours_late(worker, name, attempt)
+        return 0 if late <= 0 else 1 if late > 240 else min(0.5, 0.1 * -(-late // 24))
+
+    def comes_to(self, worker, name, attempt, marks):
+        """What an attempt earns, or may yet, lateness included."""
+        first = MEMBERS[0] if worker == TEAM else worker
+        excused = self.extended.get((first, name)) == "excused"
+        points = sum(points + waits * worth for points, worth, waits in marks.values())
+        return round(points * (1 - (0 if excused else self.lost(worker, name, attempt))), 4)
 
     def hours_late(self, worker, name, attempt):
         members = MEMBERS if worker == TEAM else (worker,)
@@ -218,14 +246,16 @@ class Story:
         asked, key = self.asked[name], (worker, name)
         weight, times, worth = own_weight(*key), asked.times, asked.worth
         if weight not in asked.weights:  # who had what is gone is judged as before
-            times, worth = self.last_asked[key]
+            times, worth = self.last_asked.get(key) or self.full[name]
         load = worth * (answers["load"] == times * weight)
         before = self.said.get((*key, "load"))
         if name in self.policies["void"]:
             load = worth = 0
         elif weight not in asked.weights and name in self.policies["full-credit"]:
             load = worth
-        elif name in self.policies["never-lower"] and before and before[0] == answers["load"]:
+        elif (
+            name in self.policies.get("never-lower", ()) and before and before[0] == answers["load"]
+        ):
             load = max(load, before[1] / before[2] * worth if before[2] else 0)
         return {
             "load": (load, worth, False),
@@ -242,10 +272,12 @@ class Story:
             found[question] = (points, worth, waits)
         return found
 
-    def settle(self, key, attempt, machine, yes):
+    def settle(self, key, attempts, yes):
         """Give marks: what was given moves only with a yes."""
-        answers = attempt.answers
-        new, old = self.with_decisions(*key, answers, machine), self.given.get(key)
+        marks = [self.with_decisions(*key, one.answers, one.machine) for one in attempts]
+        value = lambda pair: (self.comes_to(*key, *pair), pair[0].when)  # noqa: E731
+        attempt, new = max(zip(attempts, marks, strict=True), key=value)
+        answers, machine, old = attempt.answers, attempt.machine, self.given.get(key)
         moves = old and any(
             not old[question][2] and (old[question][:2] != new[question][:2] or new[question][2])
             for question in QUESTIONS
@@ -255,7 +287,7 @@ class Story:
         asked = self.asked[key[1]]
         if old is None or own_weight(*key) in asked.weights:
             self.last_asked[key] = (asked.times, asked.worth)
-        self.given[key], self.graded[key] = new, attempt
+        self.given[key], self.graded[key], self.among[key] = new, attempt, attempts
         for question, (points, worth, _) in machine.items():
             self.said[(*key, question)] = (answers[question], points, worth)
 
@@ -263,31 +295,45 @@ class Story:
         words = ["grade", self.place / "handed-in" / name, "--out", self.place / "marks"]
         words += ["--solutions", self.place / "solutions", *yes]
         self.run(*words, crash=crash)
+        self.saw(name)
         for worker in WORKERS:
             if (worker, name) in self.attempts:
-                attempt = snapshot(self.counting(worker, name))
-                machine = self.machine(worker, name, attempt.answers)
-                self.settle((worker, name), attempt, machine, yes)
+                attempts = [self.snapshot(worker, name, one) for one in self.counting(worker, name)]
+                self.settle((worker, name), attempts, yes)
+
+    def saw(self, name):
+        """The class was graded by the question as it is now."""
+        asked = self.asked[name]
+        if asked.weights == WEIGHTS:
+            self.full[name] = asked.times, asked.worth
+
+    def snapshot(self, worker, name, attempt):
+        """An attempt as it is judged now."""
+        answers = {question: getattr(attempt, question) for question in QUESTIONS}
+        machine = self.machine(worker, name, answers)
+        return SimpleNamespace(answers=answers, when=attempt.when, machine=machine)
 
     def regrade(self, yes, crash=None):
         words = [self.place / "marks", "--solutions", self.place / "solutions", *yes]
         self.run("regrade", *words, crash=crash)
-        for key, attempt in self.graded.items():
-            self.settle(key, attempt, self.machine(*key, attempt.answers), yes)
+        for name in {name for _, name in self.graded}:
+            self.saw(name)
+        for key, attempts in list(self.among.items()):
+            again = [
+                SimpleNamespace(**vars(one) | {"machine": self.machine(*key, one.answers)})
+                for one in attempts
+            ]
+            self.settle(key, again, yes)
 
     def merge(self, file, who, yes, crash=None):
         words = ["merge", self.place / "marks", file, "--grader", who, *yes]
         text = self.run(*words, crash=crash)
-        for key, attempt in self.graded.items():
-            machine = {
-                question: (
-                    *self.said[(*key, question)][1:],
-                    question == "why" and answer is not None,
-                )
-                for question, answer in attempt.answers.items()
-            }
-            self.settle(key, attempt, machine, yes)
+        self.bring_in(yes)
         return text
+
+    def bring_in(self, yes):
+        for key, attempts in list(self.among.items()):
+            self.settle(key, attempts, yes)
 
     def check(self):
         """Every mark that was given is the one that the story says."""
@@ -319,8 +365,8 @@ class Story:
 
     def act_hand_in(self, crash, yes):
         key = worker, name = self.dice.choice(WORKERS), self.dice.choice(NAMES)
-        if self.asked[name].weights != WEIGHTS and key not in self.given:
-            return  # the archive that they have is another one by now
+        if self.asked[name].weights != WEIGHTS and not (key in self.given or name in self.full):
+            return  # nobody can know any more what the archive was that they have
         hours, number = self.dice.choice([-30, -2, 5, 30, 300]), len(self.attempts.get(key, ()))
         weight, load = own_weight(*key), self.dice.choice([2, 2, 3, 7])
         attempt = SimpleNamespace(
@@ -329,6 +375,7 @@ class Story:
             why=self.dice.choice(["By the arm.", f"So says {worker}, {number}.", None]),
             when=DUE[name] + datetime.timedelta(hours=hours, minutes=number),
             is_blank=self.dice.random() < 0.15,
+            has_copy=self.dice.random() < 0.15,
             comments=[],
         )
         if attempt.is_blank:
@@ -350,7 +397,7 @@ class Story:
         asked = self.asked[name]
         what = self.dice.choice(["times", "worth", "weights"])
         waits = any(key[1] == name and key not in self.given for key in self.attempts)
-        if what == "weights" and not waits:
+        if what == "weights" and (name in self.full or not waits):
             asked.weights = WEIGHTS[1:] if asked.weights == WEIGHTS else WEIGHTS
         elif what in ("times", "weights"):
             asked.times = 5 - asked.times
@@ -372,10 +419,10 @@ class Story:
         """A cell more, and nothing else, in a notebook that was handed in."""
         if self.attempts:
             key = self.somebody(self.attempts)
-            attempt = self.counting(*key)
+            attempt, *_ = self.counting(*key)
             attempt.comments.append("# what I thought")
             if not attempt.is_blank:
-                self.write_notebook(key[1], attempt)
+                self.write_notebook(*key, attempt)
 
     def act_table(self, crash, yes):
         """A tutor fills in the table of what waits, now or one that is old by now."""
@@ -454,6 +501,28 @@ class Story:
             answer = self.graded[key].answers[question]
             self.decided[(*key, question)] = SimpleNamespace(answer=answer, credit=1, who="Ben")
 
+    def act_page(self, crash, yes):
+        """A tutor decides on the page, and stops it."""
+        if not self.given:
+            return
+        key = self.somebody(self.given)
+        question, credit = self.dice.choice(QUESTIONS), self.dice.choice([0, 0.5, 1])
+        name = f"{key[1]}/{question}"
+
+        def serve(out, grader, **more):
+            journal, record = Journal(self.place / "marks"), Store(out).read(*key)
+            there = journal.current().get((*key, name))
+            after = there.id if there else ""
+            decision = journal.decision(record, name, credit, who=grader, after=after)
+            journal.append([decision], collisions=True)
+            raise KeyboardInterrupt
+
+        self.monkeypatch.setattr(reviewing, "review", serve)
+        answer = self.graded[key].answers[question]
+        self.decided[(*key, question)] = SimpleNamespace(answer=answer, credit=credit, who="Ann")
+        self.run("review", self.place / "marks", "--grader", "Ann", *yes, crash=crash)
+        self.bring_in(yes)
+
     def act_export(self, crash, yes):
         """The gradebook is filled, after somebody changed a mark in it by hand."""
         if not self.given:
@@ -495,15 +564,9 @@ class Story:
         marks = self.given[key].values()
         if any(waits for _, _, waits in marks):
             return None
-        late = self.hours_late(*key, self.graded[key])
-        lost = 0 if late <= 0 else 1 if late > 240 else min(0.5, 0.1 * -(-late // 24))
+        lost = self.lost(*key, self.graded[key])
         points, worth = (sum(mark[place] for mark in marks) for place in (0, 1))
         return points * (1 - lost) * OUT_OF / worth
-
-
-def snapshot(attempt):
-    answers = {question: getattr(attempt, question) for question in QUESTIONS}
-    return SimpleNamespace(answers=answers, when=attempt.when)
 
 
 def or_crash(steps, do):
@@ -520,7 +583,7 @@ def or_crash(steps, do):
 
 
 ACTS = ["hand_in"] * 8 + ["grade"] * 5 + ["regrade"] * 2 + ["mend"] * 2 + ["export"] * 3
-ACTS += ["choose", "comment", "table", "table", "tutor", "appeal"]
+ACTS += ["choose", "comment", "table", "table", "tutor", "appeal", "page"]
 
 
 @pytest.fixture(scope="module")

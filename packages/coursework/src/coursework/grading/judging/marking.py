@@ -14,13 +14,13 @@ import itertools
 import json
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from ...authoring.author import AuthoredQuestion, AuthorError
 from ...authoring.source import names_asked, read_source, texts_of_questions
 from ...checking.evaluate import MP
-from ...checking.fields import Json, many
+from ...checking.fields import Json, by_name, many
 from ...checking.kinds import PARTS, Blank, Fault, Undecidable
 from ...checking.plain import NotPlain, Plain, parts_of, read_plain
 from ...checking.plugins import packages
@@ -28,7 +28,6 @@ from ...checking.question import Locker
 from ...checking.questions import OTHER_NUMBERS, compare
 from ...checking.reading import canonical, fingerprint, read
 from ...checking.reply import HELP, Reply
-from ..reading import AsJson
 from ..record import MISSING, Answer, Case, Mark, Record, Remembered
 from ..store import write
 from ..versions import software
@@ -234,48 +233,35 @@ def load_questions(
     return questions
 
 
-#: Which variants the questions of this class had, each time that it was graded by others.
+#: Of each question with variants, all lists of them by which this class was graded.
 VARIANTS = "variants.json"
-
-
-@dataclass(frozen=True)
-class Edition(AsJson):
-    """The variants that questions had: what came of working them out, and their names."""
-
-    file: str
-    variants: Mapping[str, tuple[str, ...]]
 
 
 def earlier_variants(
     questions: Mapping[str, Sequence[Contract]], results: Path
 ) -> dict[str, list[Sequence[Contract]]]:
     """The variants of questions as they were when this class was graded at other times, where these
-    were others; those of today are remembered.
+    were others, the last first; those of today are remembered.
     """
-    path, editions = results / VARIANTS, list[Edition]()
+    path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
     if path.exists():
-        said = json.loads(path.read_text("utf8"))
-        editions += many(Edition.from_json)(said, str(path))
-    today = {name: tuple(variants_of(those)) for name, those in questions.items()}
-    known = {(name, names) for one in editions for name, names in one.variants.items()}
-    new = {
-        name: names
-        for name, names in today.items()
-        if len(names) > 1 and (name, names) not in known
-    }
-    if new:
-        # A list of contracts is as long as the questions that it holds: most never change.
-        file = hashlib.sha256(json.dumps(new).encode()).hexdigest()[:16]
-        place = results / "questions" / f"variants-{file}.json"
-        keep_questions(place, {name: questions[name] for name in new})
-        editions.append(Edition(place.name, new))
-        write(path, json.dumps([one.as_json() for one in editions]))
+        read_lists = by_name(many(many(Contract.from_json)))
+        lists |= read_lists(json.loads(path.read_text("utf8")), str(path))
     earlier: dict[str, list[Sequence[Contract]]] = {}
-    for one in reversed(editions):
-        others = [name for name, then in one.variants.items() if today.get(name, then) != then]
-        kept = questions_in(results / "questions" / one.file) if others else {}
-        for name in others:
-            earlier.setdefault(name, []).append(kept[name])
+    before = dict(lists)
+    for name, variants in questions.items():
+        names = list(variants_of(variants))
+        others = [those for those in lists.get(name, ()) if list(variants_of(those)) != names]
+        if others or len(names) > 1:
+            # Of the same variants the contracts are those of the last time.
+            lists[name] = (*others, tuple(variants))
+            earlier[name] = list[Sequence[Contract]](others[::-1])
+    if lists != before:
+        as_json = {
+            name: [[one.as_json() for one in those] for those in several]
+            for name, several in lists.items()
+        }
+        write(path, json.dumps(as_json, ensure_ascii=False), private=True)
     return earlier
 
 
