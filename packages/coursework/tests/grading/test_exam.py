@@ -128,3 +128,54 @@ def test_the_grader_marks_what_the_check_only_took_down(exam, tmp_path):
         ("wrong", 1),
         ("wrong", 0),
     ]
+
+
+#: A function that looks through the frames of all who call it.
+LOOKING = """
+import sys
+seen = []
+def twice(x):
+    frame = sys._getframe(1)
+    while frame:
+        seen.append(repr([(name, value, getattr(value, 'job', '')) for name, value in
+                          frame.f_locals.items()]))
+        frame = frame.f_back
+    return 2*x
+"""
+
+
+def test_a_function_finds_in_its_callers_frames_only_what_the_exam_gave_it(tmp_path):
+    """The calls of the check are in the sealed file that every student has; others there are none
+    in the notebook's process, as long as it can still hand in an answer.
+    """
+    folder = tmp_path / "course"
+    folder.mkdir()
+    hidden = "### BEGIN HIDDEN TESTS\nquestion('trial/{}', {}, exam=True)\n### END HIDDEN TESTS"
+    calls = "kind='function', calls=[[1.25], [-2.75]], result='expression', worth=2"
+    text = "kind='free text'"
+    solution = "### BEGIN SOLUTION\n{}\n### END SOLUTION"
+    write_source(
+        folder / "sources",
+        ("code", SETUP),
+        ("code", solution.format("def twice(x):\n    return 2*x")),
+        ("code", f"check('trial/twice', twice)\n{hidden.format('twice', calls)}"),
+        ("code", solution.format("what = 'Nothing.'")),
+        ("code", f"check('trial/what', what)\n{hidden.format('what', text)}"),
+    )
+    course = made_in(folder)
+    release.release(course, run=False)
+    (sealed,) = course.sealed.glob("*.json")
+    assert "1.25" in sealed.read_text("utf8") and "-2.75" in sealed.read_text("utf8")
+    cells = [SETUP, LOOKING, "check('trial/twice', twice)"]
+    numbers = r"sorted(set(re.findall(r'-?\d+\.\d+', ' '.join(seen))))"
+    cells.append(f"import re\nwhat = ' '.join({numbers})[:2000]\ncheck('trial/what', what)")
+    put(tmp_path / "handed-in", "ada", notebook(cells), "trial.ipynb")
+    grade(tmp_path / "handed-in", tmp_path / "out", solutions=course.sources, show=io.StringIO())
+    record = Store(tmp_path / "out").read("ada", "trial")
+    found = record.answer("trial/what").plain["value"][1]
+    assert record.marks["trial/twice"].outcome == "correct"
+    (questions_of,) = (tmp_path / "out" / "questions").glob("trial-*.json")
+    (about,) = json.loads(questions_of.read_text("utf8"))["trial/twice"]
+    assert "1.25" in found and about["secret"]["calls"]
+    for ((argument,),) in zip(about["secret"]["calls"], strict=True):
+        assert str(argument) not in found
