@@ -1,12 +1,10 @@
 """Compare the speed of grading by coursework, nbgrader and plain nbclient.
 
-Run it with ``python -m benchmarks.grading`` in the folder ``packages/coursework``. We grade the
-whole sample class, with its mistakes, broken cells and attacks, with ``coursework grade``, from an
-empty folder to the report. The others grade only the first honest notebooks, one after another,
-since they cannot do otherwise; nbclient runs the cells and grades nothing. The cost of one more
-notebook leaves out the start. The preparation of an assignment is timed apart: nbgrader's own
-version of it, and the right answers to all variants of our questions. Processor times count all
-processes, and hardly depend on the load of the machine; times by the clock do.
+Run it with ``python packages/coursework/benchmarks/grading.py``. We grade the whole sample class,
+with its mistakes, broken cells and attacks, with ``coursework grade``, from an empty folder to the
+report. The others grade only the first honest notebooks, one after another, since they cannot do
+otherwise; nbclient runs the cells and grades nothing. Processor times count all processes, and
+hardly depend on the load of the machine; times by the clock do.
 """
 
 import argparse
@@ -57,10 +55,7 @@ def main():
             if not any(did.startswith(("hostile", "refused")) for did in about[student]["did"])
         ]
         honest = _only(good, submissions, place / "honest")
-        prepared = of_questions(place)
-        start = of_grading(
-            _only(good[: options.workers], submissions, place / "few"), place, options.workers
-        )
+        of_questions(place)
         ours = of_grading(honest, place, options.workers)
         paths = [next((honest / student).glob("*.ipynb")) for student in good]
         alone = of_cells(paths)
@@ -77,18 +72,8 @@ def main():
             ("coursework grade: the honest ones", *ours),
             ("their cells alone, each in a copy of one warm process", *alone),
             ("nbclient, which grades nothing", *of_nbclient(sample)),
-            ("nbgrader autograde", *(theirs := of_nbgrader(sample, place))[:3]),
+            ("nbgrader autograde", *of_nbgrader(sample, place)[:3]),
         )
-        first = of_nbgrader(sample[:1], place / "one")
-        few = _only(good[:2], submissions, place / "two")
-        margins = {
-            what: _margin(of(few, place), of(honest, place))
-            for what, of in (
-                ("one worker", lambda *places: of_grading(*places, 1)),
-                ("two workers", lambda *places: of_grading(*places, 2)),
-                ("a Dask cluster of two workers, here", of_cluster),
-            )
-        }
         print(
             f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n"
         )
@@ -104,42 +89,6 @@ def main():
                 f"{1000 * processor / count:.0f} ms | {clock / count / own[0]:.2g} | "
                 f"{processor / count / own[1]:.2g} |"
             )
-        print()
-        for what, number in ("by the clock", 1), ("of processor time", 2):
-            mine = (ours[number] - start[number]) / (ours[0] - start[0])
-            other = (theirs[number] - first[number]) / (theirs[0] - 1)
-            all_theirs, all_ours = (
-                first[number] + 39 * other,
-                start[number] + (40 - start[0]) * mine,
-            )
-            before = first[number + 2], prepared[number - 1]
-            print(
-                f"{what.capitalize()}, nbgrader takes {other / mine:.0f} times as long for one "
-                f"notebook more ({1000 * other:.0f} and {1000 * mine:.0f} ms), and "
-                f"{all_theirs / all_ours:.0f} times as long for 40 from a cold start; with what is "
-                f"made before ({before[0]:.1f} and {before[1]:.1f} s), "
-                f"{(all_theirs + before[0]) / (all_ours + before[1]):.0f} times."
-            )
-        each = (ours[2] - start[2]) / (ours[0] - start[0]) - alone[2] / alone[0]
-        print(
-            f"\nThe start takes {start[1]:.1f} s by the clock and {start[2]:.1f} s of processor "
-            "time. "
-            f"Beyond it and beyond the cells a notebook costs {1000 * each:.0f} ms of processor "
-            "time."
-        )
-        print("\n| one notebook more | by the clock | processor time |\n|---|---|---|")
-        for what, (clock, processor) in margins.items():
-            print(f"| {what} | {1000 * clock:.0f} ms | {1000 * processor:.0f} ms |")
-        alone_clock, together, clustered = (clock for clock, _ in margins.values())
-        print(
-            f"\nTwo workers are {alone_clock / together:.2f} times as fast as one; the cluster "
-            f"costs {1000 * (clustered - together):.0f} ms more for each notebook, by the clock."
-        )
-
-
-def _margin(few, many):
-    """The seconds by the clock and of processor time for one notebook more."""
-    return tuple((many[number] - few[number]) / (many[0] - few[0]) for number in (1, 2))
 
 
 def _only(students, submissions, place):
@@ -167,14 +116,12 @@ def measured():
 
 
 def of_questions(place):
-    """Work out the questions, which :func:`of_grading` is given: the seconds that it takes."""
-    with measured() as seconds:
-        about = Assignment(notebooks=tuple(NOTEBOOKS))
-        Course(term=Term(assignments={ASSIGNMENT: about})).questions([ASSIGNMENT], place)
-    return seconds
+    """Work out the questions, which :func:`of_grading` is given."""
+    about = Assignment(notebooks=tuple(NOTEBOOKS))
+    Course(term=Term(assignments={ASSIGNMENT: about})).questions([ASSIGNMENT], place)
 
 
-def of_grading(submissions, place, workers, scheduler=None):
+def of_grading(submissions, place, workers):
     out = Path(tempfile.mkdtemp(dir=place))
     shutil.copytree(place / "questions", out / "questions")
     (out / "term.toml").write_text(
@@ -184,33 +131,10 @@ def of_grading(submissions, place, workers, scheduler=None):
         done = grade(
             submissions,
             out,
-            running=Running(workers=workers, scheduler=scheduler),
+            running=Running(workers=workers),
             show=io.StringIO(),
         )
     return done["graded"], *seconds
-
-
-def of_cluster(submissions, place):
-    """Grading on a scheduler and two workers in processes of their
-    own; their start and end count, too.
-    """
-    folder = Path(tempfile.mkdtemp(dir=place))
-    file = folder / "scheduler.json"
-    options = ["--scheduler-file", str(file), "--host", "127.0.0.1", "--no-dashboard"]
-    worker = ["worker", *options, "--nthreads", "1", "--local-directory", str(folder)]
-    with measured() as seconds:
-        processes = [
-            subprocess.Popen([sys.executable, "-m", "dask", *command], stderr=subprocess.DEVNULL)
-            for command in (["scheduler", *options, "--port", "0"], worker, worker)
-        ]
-        while not file.exists() or not file.read_text().endswith("}"):
-            time.sleep(0.05)
-        graded, *_ = of_grading(submissions, place, 2, json.loads(file.read_text())["address"])
-        for process in processes:
-            process.terminate()
-        for process in processes:
-            process.wait()
-    return graded, *seconds
 
 
 def of_cells(paths):

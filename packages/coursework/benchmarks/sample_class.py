@@ -1,12 +1,12 @@
 """Makes a class to try grading on: right, mistaken, unfinished, broken and hostile notebooks.
 
+Run it with ``python packages/coursework/benchmarks/sample_class.py FOLDER STUDENTS NOTEBOOK ...``.
 What went into each notebook is written down beside them in ``expected.json``, so that what comes
 out of grading can be held against it. Nobody in it is real, and the same seed makes the same class.
 """
 
 from __future__ import annotations
 
-import argparse
 import ast
 import contextlib
 import copy
@@ -15,6 +15,7 @@ import json
 import os
 import random
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -555,23 +556,6 @@ def _gradebook(students: Sequence[str], worth: float) -> str:
     return "\r\n".join([*lines, ""])
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--out", required=True, help="folder for the class")
-    parser.add_argument("--students", type=int, default=200, help="number of students")
-    parser.add_argument("--seed", type=int, default=1, help="random seed of the class")
-    parser.add_argument(
-        "--notebooks",
-        default="",
-        help="names of the exercises, separated by commas, which each student hands in as one "
-        "notebook",
-    )
-    parser.add_argument("--solutions", help="folder of the notebooks with solutions")
-    options = parser.parse_args()
-    notebooks = [name for name in options.notebooks.split(",") if name]
-    made = make_class(options.out, options.students, options.seed, notebooks, options.solutions)
-    print(f"{options.students} students in {made}")
-
-
 if __name__ == "__main__":
-    main()
+    out, number, *named = sys.argv[1:]
+    print(f"{number} students in {make_class(out, int(number), notebooks=named)}")

@@ -757,32 +757,9 @@ def test_what_is_no_archive_is_said(tmp_path):
 # ---- what is read
 
 
-def test_a_mark_of_byte_order_and_older_notebooks_are_read():
+def test_a_mark_of_byte_order_is_read():
     cells, _ = intake.read_notebook(codecs.BOM_UTF8 + GOOD)
     assert cells == intake.read_notebook(GOOD)[0]
-    older = {
-        "nbformat": 3,
-        "nbformat_minor": 0,
-        "metadata": {},
-        "worksheets": [
-            {
-                "cells": [
-                    {
-                        "cell_type": "code",
-                        "input": ["a = 1\n", "b = 2"],
-                        "prompt_number": 7,
-                        "outputs": [],
-                        "language": "python",
-                    },
-                    {"cell_type": "heading", "source": "A title", "level": 1},
-                ]
-            }
-        ],
-    }
-    assert intake.read_notebook(json.dumps(older).encode()) == (
-        [{"source": "a = 1\nb = 2", "execution_count": 7}],
-        [],
-    )
 
 
 def test_of_a_large_archive_little_is_held(box):

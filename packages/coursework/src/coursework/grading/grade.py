@@ -129,9 +129,14 @@ class Desk:
             mark = self.term.regrading.applied(
                 name, verdicts[name], before and before.judged, case, taken_out
             )
-            # What the lines of a rubric are worth, where its author said so.
-            rubric = asked.contract.rubric if isinstance(asked.contract.rubric, dict) else None
-            marks[name] = replace(mark, title=asked.contract.title, rubric=rubric)
+            marks[name] = replace(
+                mark,
+                title=asked.contract.title,
+                # What its lines are worth, where its author said so.
+                rubric={
+                    line: one for line, one in asked.contract.rubric.items() if one is not None
+                },
+            )
             judged = replace(case.own, judged=asked.contract.version)
             cases[name] = replace(case, own=judged)
         return with_decisions(replace(record, cases=cases, marks=marks), self.standing)
@@ -274,7 +279,7 @@ def grade(
         if not as_listed:
             demand_own_numbers(handed_in.work, desk.questions, foreign, desk.term.roster)
         desk.tell(*put_renamed_aside(desk.store, handed_in.work, desk.journal, dry_run))
-        keys = _keys(desk, handed_in.work, running)
+        keys = [(one, key_of(one, desk.asked(one)[0], running)) for one in handed_in.work]
         waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)
         desk.tell(f"{len(keys)} to grade, {kept} of them graded before, {refused} files refused.")
@@ -303,11 +308,6 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
     if people:
         desk.term.demand_people(desk.store.folder / FILE, people.people)
     return handed_in
-
-
-def _keys(desk: Desk, work: Sequence[Work], running: Running) -> list[tuple[Work, str]]:
-    """The work, each with the key that a record of it has."""
-    return [(one, key_of(one, desk.asked(one)[0], running)) for one in work]
 
 
 def _is_done(store: Store, one: Work, key: str) -> bool:
@@ -361,18 +361,16 @@ def _candidates(
         if len(wanted) > 1:
             attempts = store.attempts(*of)
             yield desk.best([desk.marked(attempts[key]) for key in wanted])
-        elif staged and staged.key == wanted[0] and (of in run_now or not _has(old, wanted)):
-            yield staged if of in run_now else desk.marked(with_marks_of(old, staged))
-        elif old and _has(old, wanted):
+        elif of in run_now and staged:
+            yield staged
+        elif old and old.key in wanted:
             yield desk.marked(old)
+        elif staged and staged.key in wanted:
+            yield desk.marked(with_marks_of(old, staged))
     here = {one.key for one, _ in keys}
     for record in store.all():
         if (record.student, record.assignment) not in here and record.assignment in desk.questions:
             yield desk.candidate(record, desk.marked)
-
-
-def _has(record: Record | None, keys: Sequence[str]) -> bool:
-    return record is not None and record.key in keys
 
 
 def _keep_refused(store: Store, place: Path, refused: Iterable[Refused]) -> None:

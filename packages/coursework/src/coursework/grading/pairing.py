@@ -410,7 +410,9 @@ def put_renamed_aside(
                 continue
             place = store.put_aside(student, assignment)
             said += f"the record of {assignment} was moved to {place}."
-            decisions = journal.of(student, assignment)
+            decisions = [
+                key for key in journal.standing().decisions if key[:2] == (student, assignment)
+            ]
             if decisions and len(names) == 1:
                 journal.hand_on(student, assignment, names[0])
                 said += f" So were {len(decisions)} of the decisions, to the new name."

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
-from types import NoneType, UnionType
-from typing import Any, Protocol, Self, TypeVar, Union, get_args, get_origin, get_type_hints
+from types import NoneType
+from typing import Any, Self, get_args, get_origin, get_type_hints
 
 from ..checking.fields import (
     Fields,
@@ -27,7 +27,6 @@ from ..checking.fields import (
     whole,
 )
 
-Some = TypeVar("Some")
 PLAIN: dict[object, Reader[Any]] = {str: text, float: number, int: whole, bool: truth}
 
 
@@ -84,21 +83,10 @@ def _reader(kind: Any) -> Reader[Any]:
         return many(_reader(arguments[0]))
     if origin is Mapping:
         return by_name(_reader(arguments[1]))
-    if origin in (Union, UnionType) and kind != Json:
-        of_some = {_shape(one): _reader(one) for one in arguments if one is not NoneType}
-        some, *_ = of_some.values()
-        return lambda value, where: (
-            None
-            if value is None and NoneType in arguments
-            else of_some.get(type(value), some)(value, where)
-        )
+    if NoneType in arguments and len(arguments) == 2:
+        inner = _reader(next(one for one in arguments if one is not NoneType))
+        return lambda value, where: None if value is None else inner(value, where)
     return anything
-
-
-def _shape(kind: Any) -> type:
-    """What JSON has in place of a value of a type."""
-    origin = get_origin(kind) or kind
-    return {tuple: list, Mapping: dict}.get(origin, dict if is_dataclass(kind) else origin)
 
 
 def written(value: Any) -> Json:
@@ -112,22 +100,13 @@ def written(value: Any) -> Json:
     return value  # type: ignore[no-any-return, union-attr]
 
 
-class Leaves(Protocol):
-    """A file that people write: it reads single values, and says what is wrong and where."""
+def from_table(file: Any, kind: Any, where: str, value: object, most: float = math.inf) -> Any:
+    """A value that stands at a place of a file that people write, by its type: a table for a
+    dataclass, whose keys are the names of its fields with hyphens.
 
-    def leaf(self, kind: object, where: str, value: object, most: float) -> object:
-        """A value of a type that is no table and no list."""
-
-    def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
-        """A value that is of a type of JSON, called so."""
-
-    def unknown(self, where: str, name: str, known: Iterable[str]) -> Exception:
-        """What is wrong with a key that there is not."""
-
-
-def from_table(file: Leaves, kind: Any, where: str, value: object, most: float = math.inf) -> Any:
-    """A value that stands at a place, by its type: a table for a dataclass, whose keys are the
-    names of its fields with hyphens.
+    The file reads single values with ``leaf(kind, where, value, most)``, demands a type of JSON by
+    ``of(kind, what, where, value)``, and words by ``unknown(where, name, known)`` what is wrong
+    with a key that there is not.
     """
     origin, arguments = get_origin(kind), get_args(kind)
     if is_dataclass(kind):

@@ -146,7 +146,7 @@ class Mark(AsJson):
         Of the question.
     policy : str or None
         What its author chose for all who were asked a question that was mended.
-    rubric : mapping or None
+    rubric : mapping
         What its lines are worth, where the author said so.
     before : Judged or None
         What the machine said, where a person decided.
@@ -167,7 +167,7 @@ class Mark(AsJson):
     tries: int | None = None
     title: str = ""
     policy: str | None = None
-    rubric: Mapping[str, float] | None = None
+    rubric: Mapping[str, float] = field(default_factory=dict)
     before: Judged | None = None
     decided: Mapping[str, str] | None = None
     appeals: tuple[Mapping[str, str], ...] = ()

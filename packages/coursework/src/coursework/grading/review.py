@@ -279,7 +279,7 @@ class Class:
         """The lines of the rubric of a question: what each is worth now, what
         the source says, how many used it.
         """
-        source = record.marks[cluster.question].rubric or {}
+        source = record.marks[cluster.question].rubric
         found = dict.fromkeys(
             self.questions[cluster.question].rubric if cluster.question in self.questions else ()
         )
@@ -639,7 +639,7 @@ class _Answer(_Page):
             if self.get_argument("new_points", "").strip():
                 now = lines[new] = self.points_said(self.get_argument("new_points"), worth)
                 change = {new: (now, self.worth_in_force(cluster, new))}
-                source = self.source_of(cluster)
+                source = cluster.mark.rubric
                 made += graded.journal.worths(cluster.question, change, source, who)
         points = [lines.get(line) for line in rubric] if said == "rubric" else None
         if points is None:
@@ -708,7 +708,7 @@ class _Answer(_Page):
                     changes[line] = points, step.removeprefix(NONE)
         if changes:
             made = self.graded.journal.worths(
-                cluster.question, changes, self.source_of(cluster), self.settings["grader"]
+                cluster.question, changes, cluster.mark.rubric, self.settings["grader"]
             )
             self.graded.journal.append(made, collisions=True)
         return True
@@ -726,14 +726,6 @@ class _Answer(_Page):
     def worth_in_force(self, cluster: Cluster, line: str) -> str:
         found = self.graded.standing.worths.get((cluster.question, line))
         return found.id if found else ""
-
-    @staticmethod
-    def source_of(cluster: Cluster) -> dict[str, float]:
-        return {
-            line: points
-            for line, points in (cluster.mark.rubric or {}).items()
-            if points is not None
-        }
 
 
 def _history(

@@ -26,7 +26,7 @@ from ..record import Identity, Record
 from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
-from ..submissions.roster import local_parts
+from ..submissions.roster import local_parts, turned
 from ..tables import in_a_line, number, readable, table
 
 NBGRADER = (
@@ -390,22 +390,20 @@ def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
 
 
 #: What a person is told about students, in this order.
-NOTHING = "In the gradebook, and nothing was handed in"
-DAMAGED = "In the gradebook, and what they handed in cannot be graded"
-STRANGERS = "Handed in, and not in the gradebook"
-MISSING = "Nothing was handed in, and it was due: 0"
-SEVERAL = "Of a name that is there more than once, or that two go by, so not filled in"
-WAITING = "Not filled in, because a person has still to decide"
-APPEALS = "An appeal is open: what is filled in may change"
-CLOSED = "Not filled in, because the system allows no change"
-EXCUSES = "Excused by the term, so not filled in"
-REPLACED = "A mark by hand, written over as you said"
-BY_HAND = "Not filled in, because something else stands there than was written from here"
-CHANGED = "Changed since it was written from here last"
-HEADINGS = (
-    CHANGED, NOTHING, DAMAGED, STRANGERS, MISSING, SEVERAL, WAITING, APPEALS, CLOSED, EXCUSES,
-    REPLACED, BY_HAND,
-)  # fmt: skip
+HEADINGS = {
+    "changed": "Changed since it was written from here last",
+    "nothing": "In the gradebook, and nothing was handed in",
+    "damaged": "In the gradebook, and what they handed in cannot be graded",
+    "strangers": "Handed in, and not in the gradebook",
+    "missing": "Nothing was handed in, and it was due: 0",
+    "several": "Of a name that is there more than once, or that two go by, so not filled in",
+    "waiting": "Not filled in, because a person has still to decide",
+    "appeals": "An appeal is open: what is filled in may change",
+    "closed": "Not filled in, because the system allows no change",
+    "excused": "Excused by the term, so not filled in",
+    "replaced": "A mark by hand, written over as you said",
+    "by hand": "Not filled in, because something else stands there than was written from here",
+}
 
 
 def fill(
@@ -466,22 +464,22 @@ def fill(
             f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
         )
     ours = _written_before(marks, assignment, header)
-    listed = {heading: list[str]() for heading in HEADINGS}
+    listed = {name: list[str]() for name in HEADINGS}
     now_written: dict[str, str] = {}
     for line, student in sorted(students.items()):
-        if heading := _why_not(book, system, marks, line, student):
-            listed[heading].append(student)
+        if why_not := _why_not(book, system, marks, line, student):
+            listed[why_not].append(student)
             continue
         points = "0" if student in marks.missing else number(_scaled(marks, student, out_of))
         there = book.says(line, place)
         known = there in ("", "-") or any(_is_same(there, one) for one in ours.get(student, ()))
         if not known and not _is_same(there, points):
             if student not in overwrite or not _is_number(there):
-                listed[BY_HAND].append(f"{student}: {there}, and graded {points}")
+                listed["by hand"].append(f"{student}: {there}, and graded {points}")
                 continue
-            listed[REPLACED].append(f"{student}: {there} -> {points}")
+            listed["replaced"].append(f"{student}: {there} -> {points}")
         elif there not in ("", "-") and not _is_same(there, points):
-            listed[CHANGED].append(f"{student}: {there} -> {points}")
+            listed["changed"].append(f"{student}: {there} -> {points}")
         now_written[student] = points
         book.put(line, place, points.replace(".", ",") if comma else points)
     if dry_run:
@@ -507,20 +505,20 @@ def fill(
         for line in range(first, len(book.lines))
         if line not in students and any(field.says for field in book.lines[line][0])
     ]
-    more, listed[NOTHING] = _with_damaged(marks.store, without)
-    listed[DAMAGED] += more
-    listed[STRANGERS] = sorted(set(marks.students) - set(students.values()) - set(several))
-    listed[MISSING] = sorted(set(marks.missing) & set(students.values()))
-    listed[SEVERAL] = several
-    listed[APPEALS] = [
+    more, listed["nothing"] = _with_damaged(marks.store, without)
+    listed["damaged"] += more
+    listed["strangers"] = sorted(set(marks.students) - set(students.values()) - set(several))
+    listed["missing"] = sorted(set(marks.missing) & set(students.values()))
+    listed["several"] = several
+    listed["appeals"] = [
         f"{student}: {', '.join(open_ones)}"
         for student in marks.students
         if (open_ones := marks.appeals(student))
     ]
-    for heading, those in listed.items():
+    for name, those in listed.items():
         if those:
-            said.append(f"{heading} ({len(those)}):")
-            said += [f"  {in_a_line(name, 200)}" for name in those]
+            said.append(f"{HEADINGS[name]} ({len(those)}):")
+            said += [f"  {in_a_line(one, 200)}" for one in those]
     return said
 
 
@@ -535,15 +533,15 @@ def _written_before(marks: Marks, assignment: str, header: str) -> dict[str, lis
 
 
 def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: str) -> str:
-    """Why nothing is filled in for a student: a heading, or nothing."""
+    """Why nothing is filled in for a student: the name of a heading, or nothing."""
     if student in marks.damaged:
-        return DAMAGED
+        return "damaged"
     if marks.excused(student):
-        return EXCUSES
+        return "excused"
     if student not in marks.missing and marks.mark(student).undecided:
-        return WAITING
+        return "waiting"
     may = book.says(line, book.column("grade can be changed")).casefold()
-    return CLOSED if system.name == "Moodle" and may == book.no else ""
+    return "closed" if system.name == "Moodle" and may == book.no else ""
 
 
 def _scaled(marks: Marks, student: str, out_of: float | None) -> float:
@@ -566,17 +564,12 @@ def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[s
     """Of those without a record: who handed in only what was refused, and who nothing."""
     refused = refused_of(store)
     known = {_signs(one.student) for one in refused if one.student}
-    damaged = [name for name in names if _signs(name) in known or _signs(_turned(name)) in known]
+    damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
 
 def _signs(name: str) -> str:
     return "".join(sign for sign in name.casefold() if sign.isalnum())
-
-
-def _turned(name: str) -> str:
-    last, _, first = name.partition(",")
-    return f"{first} {last}"
 
 
 def _system(book: Gradebook) -> System:

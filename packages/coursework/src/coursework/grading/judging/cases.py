@@ -7,7 +7,7 @@ Contracts lie in the folder of results, one file each.
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -102,12 +102,6 @@ def questions_in(path: Path) -> dict[str, tuple[Contract, ...]]:
     Misread
     """
     return by_name(many(Contract.from_json))(json.loads(path.read_text("utf8")), str(path))
-
-
-def keep_questions(path: Path, questions: Mapping[str, Sequence[Contract]]) -> None:
-    """Write what :func:`questions_in` reads; it holds right answers."""
-    as_json = {name: [one.as_json() for one in those] for name, those in questions.items()}
-    write(path, json.dumps(as_json, ensure_ascii=False), private=True)
 
 
 def judged_alike(one: Contract | None, other: Contract | None) -> bool:

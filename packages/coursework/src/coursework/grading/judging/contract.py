@@ -74,7 +74,7 @@ class Contract(AsJson):
     secret : Elsewhere or None
     partial : str or None
         The right answer in words, whose parts earn their share.
-    rubric : tuple of str, or mapping of float
+    rubric : mapping of float or None
         What a person looks for, with points where its author says so.
     text : str
         In the source; beside that of a variant, its figures.
@@ -92,7 +92,7 @@ class Contract(AsJson):
     plain: Plain | None = None
     secret: Elsewhere | None = None
     partial: str | None = None
-    rubric: tuple[str, ...] | Mapping[str, float] = ()
+    rubric: Mapping[str, float | None] = field(default_factory=dict)
     text: str = ""
     version: str = ""
 
@@ -124,7 +124,7 @@ class Contract(AsJson):
             title="",
             text="",
             secret=None,
-            rubric=tuple(self.rubric),
+            rubric=dict.fromkeys(self.rubric),
             question=replace(self.question, variant=variant),
         )
 

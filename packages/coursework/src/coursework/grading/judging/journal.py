@@ -355,7 +355,7 @@ class Standing:
         worth = float(mark.worth)
         if decision.points is None:
             return round(worth * (decision.credit or 0), 4)
-        source, found = (mark.rubric or {}), 0.0
+        source, found = mark.rubric, 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
             now = self.worth(decision.question, line, source.get(line))
             # A line that nobody knows any more stays what it was.
@@ -469,14 +469,6 @@ class Journal:
         student, assignment and question.
         """
         return self.standing(until).decisions
-
-    def of(self, student: str, assignment: str) -> list[Decision]:
-        """The decisions that count on one student's answers."""
-        return [
-            one
-            for one in self.current().values()
-            if (one.student, one.assignment) == (student, assignment)
-        ]
 
     # -- what is entered
 

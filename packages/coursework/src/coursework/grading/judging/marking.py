@@ -38,7 +38,6 @@ from .cases import (
     asked_of,
     case_by_rule,
     case_of,
-    keep_questions,
     questions_in,
     variants_of,
 )
@@ -178,7 +177,9 @@ def contract_of(question: AuthoredQuestion, secret: bytes, text: str = "") -> Co
         plain=question.plain if question.public.kind != "function" else None,
         secret=in_secret.secret_of(question, secret),
         partial=read(question.public, question.plain).text if question.partial else None,
-        rubric=question.rubric,
+        rubric=dict(question.rubric)
+        if isinstance(question.rubric, dict)
+        else dict.fromkeys(question.rubric),
         text="\n\n".join(PICTURE.findall(text)) if question.public.variant else text,
     )
     # As JSON holds it: of what its author wrote as a tuple it makes a list.
@@ -210,7 +211,8 @@ def load_questions(
 
     def work_out(path: Path) -> None:
         found = questions_of(path, secret, edition)
-        keep_questions(places[path], found)
+        as_json = {name: [one.as_json() for one in those] for name, those in found.items()}
+        write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
     if len(missing) == 1:

@@ -339,15 +339,14 @@ def as_time(text: str) -> str | None:
     bare = text.strip()
     zone = next((zone for zone in (" UTC", " GMT") if bare.endswith(zone)), "")
     bare = bare.removesuffix(zone)
-    for read in (datetime.datetime.fromisoformat, *(_in_format(one) for one in FORMATS)):
+    for read in (
+        datetime.datetime.fromisoformat,
+        *(lambda text, form=form: datetime.datetime.strptime(text, form) for form in FORMATS),
+    ):
         with contextlib.suppress(ValueError):
             found = read(bare)
             return (found.replace(tzinfo=datetime.UTC) if zone else found).isoformat()
     return None
-
-
-def _in_format(form: str) -> Callable[[str], datetime.datetime]:
-    return lambda text: datetime.datetime.strptime(text, form)
 
 
 def _take(
@@ -880,25 +879,12 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
         These bytes are no notebook; the message says what is the matter.
     """
     notebook = _json(data)
-    version = notebook.get("nbformat", 4)
-    if version not in (3, 4):
+    if (version := notebook.get("nbformat", 4)) != 4:
         raise Unfit(
-            f"It is a notebook of version {str(version)[:20]}; versions 3 and 4 can be read."
+            f"It is a notebook of version {str(version)[:20]}, and version 4 can be read: open it "
+            "in Jupyter, and save it."
         )
-    if version == 3:
-        sheets = notebook.get("worksheets", [])
-        cells = (
-            [
-                cell
-                for sheet in sheets
-                if isinstance(sheet, dict)
-                for cell in _list(sheet.get("cells"))
-            ]
-            if isinstance(sheets, list)
-            else []
-        )
-    else:
-        cells = _list(notebook.get("cells"))
+    cells = _list(notebook.get("cells"))
     if len(cells) > MOST_CELLS:
         raise Unfit(f"It has {len(cells)} cells; at most {MOST_CELLS} are read.")
     code: list[CodeCell] = []
@@ -911,10 +897,10 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
         if isinstance(about, dict) and isinstance(about.get("grade_id"), str):
             grade_ids.append(about["grade_id"][:200])
         if cell.get("cell_type") == "code":
-            count = cell.get("prompt_number" if version == 3 else "execution_count")
+            count = cell.get("execution_count")
             code.append(
                 {
-                    "source": _source(cell.get("input" if version == 3 else "source", "")),
+                    "source": _source(cell.get("source", "")),
                     "execution_count": count if type(count) is int and 0 < count < 10**9 else None,
                 }
             )
@@ -1020,7 +1006,7 @@ def _json(data: bytes) -> dict[str, object]:
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
         raise Unfit(f"This is no notebook: it is not well-formed JSON{where}.") from None
-    if not isinstance(notebook, dict) or not ("cells" in notebook or "worksheets" in notebook):
+    if not isinstance(notebook, dict) or not {"cells", "worksheets"} & set(notebook):
         raise Unfit("This is no notebook: it has no cells.")
     return notebook
 
