@@ -57,7 +57,7 @@ def pages_to_read_again(app, env, added, changed, removed):
     """
     if env.mystnb_config.execution_mode != "cache":
         return []
-    names = {env.doc2path(name): name for name in env.found_docs if not name.startswith(STORED)}
+    names = {str(env.doc2path(name)): name for name in env.found_docs if not name.startswith(STORED)}
     notebooks = [path for path in names if path.endswith(".ipynb")]
     return [
         names[path]
@@ -94,7 +94,7 @@ def run_side_by_side(app, env, docnames):
         return
     cache = get_cache(env.mystnb_config.execution_cache_path)
     records = []
-    for path in (env.doc2path(name) for name in docnames if not name.startswith(STORED)):
+    for path in (str(env.doc2path(name)) for name in docnames if not name.startswith(STORED)):
         if path.endswith(".ipynb"):
             record = cache.add_nb_to_project(path)
             if cache.get_cached_project_nb(record.uri) is None:
