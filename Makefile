@@ -134,6 +134,7 @@ renew-pins: setup
 	@$(RUN) -m notebook_pages.pins
 
 benchmark: $(VENV)/ready-test setup
+	@$(PIP) --requirement tools/benchmarks/peers.txt
 	@$(RUN) -m tools.benchmarks
 
 clean:

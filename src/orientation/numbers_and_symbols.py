@@ -370,7 +370,6 @@ def _evaluate_batch(
     batch, flat = columns_of(arguments)
     count, width = math.prod(batch), math.prod(shape)
     result = numpy.empty((count, width))
-    functions = array_functions()
     for start in range(0, count, BLOCK):
         components = [
             column
@@ -382,7 +381,7 @@ def _evaluate_batch(
         block = result[start : start + BLOCK]
         columns = [
             values if isinstance(values, numpy.ndarray) else numpy.full(len(block), values)
-            for values in formula(functions, *components)
+            for values in formula(array_functions(), *components)
         ]
         # Adding zero turns -0 into 0, which would look like a wrong sign.
         numpy.add(numpy.concatenate(columns).reshape(width, -1).T, 0.0, out=block)

@@ -147,7 +147,8 @@ def quaternion_components_from_dcm(
 ) -> tuple[Number, Number, Number, Number]:
     """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
     # Each row is the quaternion times four of its own components; the longest loses no digits.
-    scores = [1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz]
+    above, below = 1 + xx, 1 - xx
+    scores = [above + yy + zz, above - yy - zz, below + yy - zz, below - yy + zz]
     si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy
     scalar, x, y, z = f.pick(
         scores,

@@ -1,44 +1,53 @@
-"""One table of ratios, all measured in this run: ``python -m tools.benchmarks``.
+"""Two tables, all measured in this run: ``python -m tools.benchmarks``.
 
 The other modules here are programs of their own, each described at its head; most measure the built
 book. Checking and grading are measured in ``packages/coursework/benchmarks``.
 """
 
-import itertools
 import platform
 from importlib.metadata import version
 
-from . import conversions, imports, symbols
+from . import conversions, symbols
 
-PEERS = ("SciPy", "pytransform3d", "SymPy")
+SYMBOLIC = ("SciPy", "pytransform3d", "SymPy")
+#: How much slower than the fastest a row may be before it is said why.
+ALLOWED = 1.5
+#: Why, up to which size.
+REASONS = {
+    1: "the input may be of any kind and is checked; the other takes floats as they are",
+    1000: "dozens of calls of NumPy, half a microsecond each, and checks, against compiled code",
+    1_000_000: "each operation of the formula and of the checks reads and writes memory once",
+}
 
 
 def main():
-    packages = ", ".join(
-        f"{name} {version(name)}" for name in ("numpy", "scipy", "pytransform3d", "sympy")
-    )
+    packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "sympy"))
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
     print(
-        "The time of orientation, and how many times as long the others take (medians of processor "
-        "time; below 1 they are faster)."
+        "Times are the least processor time of one item; behind each stands the largest error, in "
+        "units of the last place of 1. Below a ratio of 1 the module is the fastest.\n"
     )
-    print("benchmarks/conversions.py, symbols.py and imports.py say what exactly is compared.\n")
-    print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in PEERS)} |")
-    print(f"|---|---|---|{'---|' * len(PEERS)}")
-    for what, size, seconds in itertools.chain(conversions.rows(), symbols.rows(), imports.rows()):
-        print(
-            _line(what, f"{size:,}", _in_words(seconds["orientation"] / size), seconds), flush=True
+    others = list(conversions.PEERS)
+    print(f"| conversion | N | orientation | {' | '.join(others)} | to the fastest | why |")
+    print(f"|---|---|---|{'---|' * len(others)}---|---|")
+    for what, size, seconds, errors in conversions.rows():
+        cells = (
+            f"{_in_words(seconds[name] / size)}, {errors[name]:.1f}" if name in seconds else ""
+            for name in ("orientation", *others)
         )
-    for what, operations in symbols.sizes():
-        print(_line(what, "1", f"{operations['orientation']:,}", operations))
-
-
-def _line(what, size, ours, measured):
-    ratios = (
-        f"{measured[peer] / measured['orientation']:.3g} x" if measured.get(peer) else ""
-        for peer in PEERS
-    )
-    return f"| {what} | {size} | {ours} | {' | '.join(ratios)} |"
+        ratio = seconds["orientation"] / min(seconds[name] for name in seconds if name in others)
+        why = next(why for most, why in REASONS.items() if size <= most) if ratio > ALLOWED else ""
+        print(f"| {what} | {size:,} | {' | '.join(cells)} | {ratio:.2g} | {why} |", flush=True)
+    print("\nWhat no such library can be faster than, at N = 1,000,000:")
+    for what, seconds in conversions.limits():
+        print(f"{what}: {_in_words(seconds / 1_000_000)} an item")
+    print("\nHow many times as long the others take (below 1 they are faster):\n")
+    print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in SYMBOLIC)} |")
+    print(f"|---|---|---|{'---|' * len(SYMBOLIC)}")
+    for what, size, seconds in symbols.rows():
+        ours = seconds["orientation"]
+        ratios = (f"{seconds[peer] / ours:.3g} x" if peer in seconds else "" for peer in SYMBOLIC)
+        print(f"| {what} | {size} | {_in_words(ours)} | {' | '.join(ratios)} |", flush=True)
 
 
 def _in_words(seconds):

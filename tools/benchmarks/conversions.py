@@ -1,221 +1,275 @@
-"""Conversions of numbers, against SciPy and pytransform3d.
+"""Conversions of numbers, against nine other libraries, with the errors of all of them.
 
-Each library is given the same orientations as float arrays in the form that it documents, and must
-return the same ones in that form, which is checked before anything is timed. So matrices are
-transposed for SciPy and pytransform3d beforehand, outside of the time. SciPy always goes through a
-``Rotation``; it has no axis with an angle, so a rotation vector is made of the two, and split
-again, within the time. At N = 1 one item is converted by one call, with the functions for one item.
-Where pytransform3d has no function for batches there is no time.
+Each library is given the same orientations as arrays in the form that it works with, made
+beforehand, and is called in the fastest way that it documents: without checks of its input where
+they can be left out. At N = 1 one item is converted, with the function for one item if there is
+one. Errors are the largest differences from our formulas in extended precision, in units of the
+last place of 1. Peers that are not installed are left out: ``peers.txt`` lists them.
 """
 
+import math
+from contextlib import suppress
+from importlib import import_module
+from types import SimpleNamespace
+
 import numpy as np
-import pytransform3d.batch_rotations as batch
-import pytransform3d.rotations as single
-from scipy.spatial.transform import Rotation
 
 import orientation
+from orientation.numbers_and_symbols import Variable, array_functions
 
 from .timing import seconds_per_call
 
-SIZES = {1: 25, 1000: 15, 1_000_000: 5}  # and how many rounds
+#: Sizes, and how many rounds of each.
+SIZES = {1: 25, 10: 25, 100: 25, 1000: 15, 10_000: 9, 1_000_000: 3}
+PEERS = {
+    "SciPy": ("scipy.spatial.transform",),
+    "numpy-quaternion": ("quaternion",),
+    "quaternionic": ("quaternionic",),
+    "rowan": ("rowan",),
+    "pytransform3d": ("pytransform3d.rotations", "pytransform3d.batch_rotations"),
+    "transforms3d": ("transforms3d",),
+    "spatialmath": ("spatialmath.base",),
+    "ahrs": ("ahrs",),
+    "pyquaternion": ("pyquaternion",),
+}
+
+
+class _Exact(Variable):
+    """Numbers that a conversion computes with in extended precision."""
+
+    def __init__(self, value):
+        self.value = value
+
+    def slopes_of(self, formula, shape, arguments, guard):
+        components = []
+        for _, value, item in arguments:
+            components += list(
+                np.asarray(value.value, np.longdouble).reshape(-1, math.prod(item)).T
+            )
+        columns = np.broadcast_arrays(*formula(array_functions(), *components))
+        return np.stack(columns, axis=-1).reshape(-1, *shape)
 
 
 def rows():
-    """Yield ``(what, N, seconds by contestant)``."""
+    """Yield ``(what, N, seconds by contestant, errors by contestant)``."""
     for size, rounds in SIZES.items():
-        for what, contestants in _conversions(size).items():
-            _demand_same_results(what, contestants)
-            functions = {name: pair and pair[0] for name, pair in contestants.items()}
-            yield what, size, seconds_per_call(functions, rounds)
+        for what, (convert, given, contestants) in _conversions(size).items():
+            functions, errors = {"orientation": lambda: convert(*given)}, {}
+            exact = convert(*map(_Exact, given))
+            for name, call in {"orientation": functions["orientation"], **contestants}.items():
+                # A library that is not here, or has nothing for it, takes no part.
+                with suppress(AttributeError):
+                    errors[name] = _error(call(), exact, what, name)
+                    functions[name] = call
+            yield what, size, seconds_per_call(functions, rounds), errors
 
 
-def _demand_same_results(what, contestants):
-    results = {}
-    for name, pair in contestants.items():
-        if pair:
-            function, dcm_of = pair
-            results[name] = dcm_of(function())
-            if abs(results[name] - results["orientation"]).max() > 1e-6:
-                raise AssertionError(f"{what}: {name} does not return what orientation returns")
+def limits():
+    """Yield ``(what, seconds for a million items)`` that no such library can be faster than."""
+    quaternions, angles = np.ones((1_000_000, 4)), np.linspace(0, 3, 1_000_000)
+    for what, function in {
+        "reading a quaternion and writing a matrix": lambda: np.repeat(quaternions, 3, axis=1),
+        "sine and cosine of one angle, by NumPy": lambda: (np.sin(angles), np.cos(angles)),
+    }.items():
+        yield what, seconds_per_call({"": function}, 3)[""]
+
+
+def _error(result, exact, what, name):
+    result = np.asarray(getattr(result, "ndarray", result))
+    if result.dtype.kind == "V":  # of numpy-quaternion
+        result = np.atleast_1d(result).view(float)
+    result = result.reshape(exact.shape)
+    if what.endswith("to matrix") and name != "orientation":
+        result = result.swapaxes(-1, -2)
+    if what.endswith(("quaternion", "quaternions")):
+        result = np.roll(result, 1, axis=-1) if name == "SciPy" else result
+        result = result * np.sign((result * exact).sum(axis=-1, keepdims=True))
+    if what.endswith("to rotation vector"):
+        # The other way round is the same orientation.
+        length = np.linalg.norm(result, axis=-1, keepdims=True)
+        result = np.where(length > np.pi, result * (1 - 2 * np.pi / length), result)
+    error = float(abs(result - exact).max() / np.finfo(float).eps)
+    if error > 1e9:
+        raise AssertionError(f"{what}: {name} does not return what orientation returns")
+    return error
+
+
+def _peers():
+    for modules in PEERS.values():
+        attributes = {}
+        with suppress(ImportError):
+            for module in modules:
+                attributes |= vars(import_module(module))
+        yield SimpleNamespace(**attributes)
 
 
 def _conversions(size):
-    source = np.random.default_rng(1)
-    angles = source.uniform(-1.5, 1.5, (size, 3))
-    axis = source.normal(size=(size, 3))
-    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
-    angle = source.uniform(0.1, 3, size)
-    if size == 1:
-        angles, axis, angle = angles[0], axis[0], float(angle[0])
+    one = size == 1
+    angles = np.random.default_rng(1).uniform(-1.5, 1.5, 3 if one else (size, 3))
+    dcm = orientation.dcm_from_body_fixed(angles, "zxy")
+    matrix = np.ascontiguousarray(dcm.swapaxes(-1, -2))
+    axis, angle = orientation.axis_angle_from_dcm(dcm)
     vector = axis * np.expand_dims(angle, -1)
     both = np.concatenate([axis, np.expand_dims(angle, -1)], axis=-1)
-    quaternion = orientation.quaternion_from_axis_angle(axis, angle)
-    other = orientation.quaternion_from_axis_angle(np.roll(axis, 1, axis=-1), angle)
-    dcm = orientation.dcm_from_axis_angle(axis, angle)
-    matrix = np.ascontiguousarray(dcm.swapaxes(-1, -2))
-    one = size == 1
-
-    def itself(result):
-        return result
-
-    def transposed(result):
-        return result.swapaxes(-1, -2)
-
-    def from_angles(result):
-        return orientation.dcm_from_body_fixed(result, "zxy")
-
-    def from_pair(result):
-        return orientation.dcm_from_axis_angle(*result)
-
-    def from_both(result):
-        return orientation.dcm_from_axis_angle(result[..., :3], result[..., 3])
-
-    def split(rotation_vector):
-        length = np.linalg.norm(rotation_vector, axis=-1)
-        return rotation_vector / np.expand_dims(length, -1), length
-
+    quaternion = orientation.quaternion_from_dcm(dcm)
+    other = np.roll(quaternion, 1, axis=-1)
+    last, other_last = np.roll(quaternion, -1, axis=-1), np.roll(other, -1, axis=-1)
+    scipy, numpy_q, quaternionic, rowan, pt3d, transforms3d, sm, ahrs, pyq = _peers()
+    native, other_native, ours, others = (
+        getattr(library, function, np.asarray)(given)
+        for library, function in ((numpy_q, "as_quat_array"), (quaternionic, "array"))
+        for given in (quaternion, other)
+    )
+    # For one item only: AttributeError, as for what a library has not, where there are more.
+    single = SimpleNamespace(transforms3d=transforms3d, sm=sm, pyq=pyq) if one else None
     return {
-        "Euler angles zxy to matrix": {
-            "orientation": (lambda: orientation.dcm_from_body_fixed(angles, "zxy"), itself),
-            "SciPy": (lambda: Rotation.from_euler("ZXY", angles).as_matrix(), transposed),
-            "pytransform3d": (
-                (lambda: single.active_matrix_from_intrinsic_euler_zxy(angles), transposed)
-                if one
-                else (
-                    lambda: batch.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles),
-                    transposed,
-                )
-            ),
-        },
-        "matrix to Euler angles zxy": {
-            "orientation": (lambda: orientation.body_fixed_from_dcm(dcm, "zxy"), from_angles),
-            "SciPy": (lambda: Rotation.from_matrix(matrix).as_euler("ZXY"), from_angles),
-            "pytransform3d": (
-                (lambda: single.intrinsic_euler_zxy_from_active_matrix(matrix), from_angles)
-                if one
-                else None
-            ),
-        },
-        "axis and angle to matrix": {
-            "orientation": (lambda: orientation.dcm_from_axis_angle(axis, angle), itself),
-            "SciPy": (
-                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_matrix(),
-                transposed,
-            ),
-            "pytransform3d": (
-                (lambda: single.matrix_from_axis_angle(both), transposed)
-                if one
-                else (
-                    lambda: batch.matrices_from_compact_axis_angles(axes=axis, angles=angle),
-                    transposed,
-                )
-            ),
-        },
-        "matrix to axis and angle": {
-            "orientation": (lambda: orientation.axis_angle_from_dcm(dcm), from_pair),
-            "SciPy": (lambda: split(Rotation.from_matrix(matrix).as_rotvec()), from_pair),
-            "pytransform3d": (
-                (lambda: single.axis_angle_from_matrix(matrix), from_both)
-                if one
-                else (lambda: batch.axis_angles_from_matrices(matrix), from_both)
-            ),
-        },
-        "rotation vector to matrix": {
-            "orientation": (lambda: orientation.dcm_from_rotation_vector(vector), itself),
-            "SciPy": (lambda: Rotation.from_rotvec(vector).as_matrix(), transposed),
-            "pytransform3d": (
-                (lambda: single.matrix_from_compact_axis_angle(vector), transposed)
-                if one
-                else (lambda: batch.matrices_from_compact_axis_angles(vector), transposed)
-            ),
-        },
-        "matrix to rotation vector": {
-            "orientation": (
-                lambda: orientation.rotation_vector_from_dcm(dcm),
-                orientation.dcm_from_rotation_vector,
-            ),
-            "SciPy": (
-                lambda: Rotation.from_matrix(matrix).as_rotvec(),
-                orientation.dcm_from_rotation_vector,
-            ),
-            "pytransform3d": (
-                (
-                    lambda: single.compact_axis_angle_from_matrix(matrix),
-                    orientation.dcm_from_rotation_vector,
-                )
-                if one
-                else None
-            ),
-        },
-        "quaternion to matrix": {
-            "orientation": (lambda: orientation.dcm_from_quaternion(quaternion), itself),
-            "SciPy": (
-                lambda: Rotation.from_quat(quaternion, scalar_first=True).as_matrix(),
-                transposed,
-            ),
-            "pytransform3d": (
-                (lambda: single.matrix_from_quaternion(quaternion), transposed)
-                if one
-                else (lambda: batch.matrices_from_quaternions(quaternion), transposed)
-            ),
-        },
-        "matrix to quaternion": {
-            "orientation": (
-                lambda: orientation.quaternion_from_dcm(dcm),
-                orientation.dcm_from_quaternion,
-            ),
-            "SciPy": (
-                lambda: Rotation.from_matrix(matrix).as_quat(scalar_first=True),
-                orientation.dcm_from_quaternion,
-            ),
-            "pytransform3d": (
-                (lambda: single.quaternion_from_matrix(matrix), orientation.dcm_from_quaternion)
-                if one
-                else (
-                    lambda: batch.quaternions_from_matrices(matrix),
-                    orientation.dcm_from_quaternion,
-                )
-            ),
-        },
-        "axis and angle to quaternion": {
-            "orientation": (
-                lambda: orientation.quaternion_from_axis_angle(axis, angle),
-                orientation.dcm_from_quaternion,
-            ),
-            "SciPy": (
-                lambda: Rotation.from_rotvec(axis * np.expand_dims(angle, -1)).as_quat(
-                    scalar_first=True
+        "Euler angles zxy to matrix": (
+            lambda angles: orientation.dcm_from_body_fixed(angles, "zxy"),
+            (angles,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_euler("ZXY", angles).as_matrix(),
+                "rowan": lambda: rowan.to_matrix(
+                    rowan.from_euler(*angles.T, "zxy", "intrinsic"), require_unit=False
                 ),
-                orientation.dcm_from_quaternion,
-            ),
-            "pytransform3d": (
-                (lambda: single.quaternion_from_axis_angle(both), orientation.dcm_from_quaternion)
-                if one
-                else None
-            ),
-        },
-        "product of quaternions": {
-            "orientation": (
-                lambda: orientation.multiply_quaternions(quaternion, other),
-                orientation.dcm_from_quaternion,
-            ),
-            "SciPy": (
-                lambda: (
-                    Rotation.from_quat(quaternion, scalar_first=True)
-                    * Rotation.from_quat(other, scalar_first=True)
-                ).as_quat(scalar_first=True),
-                orientation.dcm_from_quaternion,
-            ),
-            "pytransform3d": (
-                (
-                    lambda: single.concatenate_quaternions(quaternion, other),
-                    orientation.dcm_from_quaternion,
-                )
-                if one
-                else (
-                    lambda: batch.batch_concatenate_quaternions(quaternion, other),
-                    orientation.dcm_from_quaternion,
-                )
-            ),
-        },
+                "pytransform3d": lambda: (
+                    pt3d.active_matrix_from_intrinsic_euler_zxy(angles)
+                    if one
+                    else pt3d.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles)
+                ),
+                "transforms3d": lambda: single.transforms3d.euler.euler2mat(*angles, "rzxy"),
+            },
+        ),
+        "matrix to Euler angles zxy": (
+            lambda dcm: orientation.body_fixed_from_dcm(dcm, "zxy"),
+            (dcm,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_matrix(matrix, assume_valid=True).as_euler(
+                    "ZXY"
+                ),
+                "transforms3d": lambda: single.transforms3d.euler.mat2euler(matrix, "rzxy"),
+            },
+        ),
+        "axis and angle to matrix": (
+            orientation.dcm_from_axis_angle,
+            (axis, angle),
+            {
+                "SciPy": lambda: scipy.Rotation.from_rotvec(
+                    axis * np.expand_dims(angle, -1)
+                ).as_matrix(),
+                "numpy-quaternion": lambda: numpy_q.as_rotation_matrix(
+                    numpy_q.from_rotation_vector(axis * np.expand_dims(angle, -1))
+                ),
+                "rowan": lambda: rowan.to_matrix(
+                    rowan.from_axis_angle(axis, angle), require_unit=False
+                ),
+                "pytransform3d": lambda: (
+                    pt3d.matrix_from_axis_angle(both)
+                    if one
+                    else pt3d.matrices_from_compact_axis_angles(axes=axis, angles=angle)
+                ),
+                "transforms3d": lambda: single.transforms3d.axangles.axangle2mat(
+                    axis, angle, is_normalized=True
+                ),
+                "spatialmath": lambda: single.sm.angvec2r(angle, axis),
+                "pyquaternion": lambda: (
+                    single.pyq.Quaternion(axis=axis, angle=angle).rotation_matrix
+                ),
+            },
+        ),
+        "rotation vector to matrix": (
+            orientation.dcm_from_rotation_vector,
+            (vector,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_rotvec(vector).as_matrix(),
+                "numpy-quaternion": lambda: numpy_q.as_rotation_matrix(
+                    numpy_q.from_rotation_vector(vector)
+                ),
+                "quaternionic": lambda: (
+                    quaternionic.array.from_rotation_vector(vector).to_rotation_matrix
+                ),
+                "pytransform3d": lambda: (
+                    pt3d.matrix_from_compact_axis_angle(vector)
+                    if one
+                    else pt3d.matrices_from_compact_axis_angles(vector)
+                ),
+            },
+        ),
+        "matrix to rotation vector": (
+            orientation.rotation_vector_from_dcm,
+            (dcm,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_matrix(matrix, assume_valid=True).as_rotvec(),
+                "numpy-quaternion": lambda: numpy_q.as_rotation_vector(
+                    numpy_q.from_rotation_matrix(matrix, nonorthogonal=False)
+                ),
+                "pytransform3d": lambda: (
+                    pt3d.compact_axis_angle_from_matrix(matrix, check=False)
+                    if one
+                    else pt3d.missing
+                ),
+            },
+        ),
+        "quaternion to matrix": (
+            orientation.dcm_from_quaternion,
+            (quaternion,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_quat(last).as_matrix(),
+                "numpy-quaternion": lambda: numpy_q.as_rotation_matrix(native),
+                "quaternionic": lambda: ours.to_rotation_matrix,
+                "rowan": lambda: rowan.to_matrix(quaternion, require_unit=False),
+                "pytransform3d": lambda: (
+                    pt3d.matrix_from_quaternion(quaternion)
+                    if one
+                    else pt3d.matrices_from_quaternions(quaternion, normalize_quaternions=False)
+                ),
+                "transforms3d": lambda: single.transforms3d.quaternions.quat2mat(quaternion),
+                "spatialmath": lambda: single.sm.q2r(quaternion),
+                "ahrs": lambda: ahrs.QuaternionArray(np.atleast_2d(quaternion)).to_DCM(),
+                "pyquaternion": lambda: single.pyq.Quaternion(quaternion).rotation_matrix,
+            },
+        ),
+        "matrix to quaternion": (
+            orientation.quaternion_from_dcm,
+            (dcm,),
+            {
+                "SciPy": lambda: scipy.Rotation.from_matrix(matrix, assume_valid=True).as_quat(),
+                "numpy-quaternion": lambda: numpy_q.from_rotation_matrix(
+                    matrix, nonorthogonal=False
+                ),
+                "quaternionic": lambda: quaternionic.array.from_rotation_matrix(
+                    matrix, nonorthogonal=False
+                ),
+                "rowan": lambda: rowan.from_matrix(matrix, require_orthogonal=False),
+                "pytransform3d": lambda: (
+                    pt3d.quaternion_from_matrix(matrix)
+                    if one
+                    else pt3d.quaternions_from_matrices(matrix)
+                ),
+                "transforms3d": lambda: single.transforms3d.quaternions.mat2quat(matrix),
+                "spatialmath": lambda: single.sm.r2q(matrix),
+                "pyquaternion": lambda: single.pyq.Quaternion(matrix=matrix).elements,
+            },
+        ),
+        "product of quaternions": (
+            orientation.multiply_quaternions,
+            (quaternion, other),
+            {
+                "SciPy": lambda: (
+                    scipy.Rotation.from_quat(last) * scipy.Rotation.from_quat(other_last)
+                ).as_quat(),
+                "numpy-quaternion": lambda: numpy_q.quaternion and native * other_native,
+                "quaternionic": lambda: quaternionic.array and ours * others,
+                "rowan": lambda: rowan.multiply(quaternion, other),
+                "pytransform3d": lambda: (
+                    pt3d.concatenate_quaternions(quaternion, other)
+                    if one
+                    else pt3d.batch_concatenate_quaternions(quaternion, other)
+                ),
+                "transforms3d": lambda: single.transforms3d.quaternions.qmult(quaternion, other),
+                "spatialmath": lambda: single.sm.qqmul(quaternion, other),
+                "pyquaternion": lambda: (
+                    (single.pyq.Quaternion(quaternion) * single.pyq.Quaternion(other)).elements
+                ),
+            },
+        ),
     }

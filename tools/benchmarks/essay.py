@@ -17,14 +17,12 @@ import os
 import platform
 import statistics
 import sys
-import threading
 
 from playwright.sync_api import sync_playwright
 
 from notebook_pages.browser import FLAGS, find
-from notebook_pages.serve import server
 
-from .first_view import SITE, Compressing
+from .first_view import Compressing, serve
 
 PAGES = ("rotations", "index")
 SLOWED, ROUNDS, PICTURES = (1, 4, 6), 3, 40
@@ -112,12 +110,7 @@ def measure(browser, address, slowed):
 
 
 def main():
-    if find() is None:
-        sys.exit("There is no Chromium on this machine to open the pages with.")
-    if not (SITE / "rotations.html").is_file():
-        sys.exit("The book is not built: run `make book` first.")
-    book = server(folder=SITE, handler=Compressing)
-    threading.Thread(target=book.serve_forever, daemon=True).start()
+    book = serve(Compressing)
     print(f"{platform.machine()}, medians of {ROUNDS} visits.")
     head = None
     with sync_playwright() as playwright:
@@ -126,9 +119,7 @@ def main():
                 visits = []
                 for _ in range(ROUNDS):
                     browser = playwright.chromium.launch(executable_path=find(), args=list(FLAGS))
-                    visits.append(
-                        measure(browser, f"http://127.0.0.1:{book.server_port}/{page}.html", slowed)
-                    )
+                    visits.append(measure(browser, f"{book}/{page}.html", slowed))
                     browser.close()
                 if head is None:
                     head = list(visits[0])

@@ -30,6 +30,7 @@ from pathlib import Path
 from notebook_pages.browser import find, open_browser
 from notebook_pages.paths import NODE
 from notebook_pages.serve import Handler, server
+from notebook_pages.set_up import npm
 
 SITE, SCRATCH = Path("_build/html"), Path("_build/benchmark/lighthouse")
 LIGHTHOUSE = "lighthouse@12.8.2"
@@ -73,24 +74,23 @@ class Compressing(Handler):
         self.wfile.write(content)
 
 
+def serve(handler):
+    """Serve the built site, and return its address."""
+    if find() is None:
+        sys.exit("There is no Chromium on this machine to open the pages with.")
+    if not (SITE / "index.html").is_file():
+        sys.exit("The book is not built: run `make book` first.")
+    book = server(folder=SITE, handler=handler)
+    threading.Thread(target=book.serve_forever, daemon=True).start()
+    return f"http://127.0.0.1:{book.server_port}"
+
+
 def program():
     """Lighthouse's own program, fetched when it is not there yet."""
     found = SCRATCH / "node_modules" / "lighthouse" / "cli" / "index.js"
     if not found.is_file():
-        npm = Path(sys.executable).with_name("npm")
-        command = [
-            npm,
-            "install",
-            "--silent",
-            "--ignore-scripts",
-            "--no-audit",
-            "--no-fund",
-            "--prefix",
-            SCRATCH,
-        ]
-        environment = os.environ | {"PATH": f"{npm.parent}{os.pathsep}{os.environ['PATH']}"}
         SCRATCH.mkdir(parents=True, exist_ok=True)
-        subprocess.run([*command, LIGHTHOUSE], check=True, env=environment)
+        npm("install", "--ignore-scripts", "--no-audit", "--no-fund", LIGHTHOUSE, cwd=SCRATCH)
     return found
 
 
@@ -175,10 +175,6 @@ def seen_on_a_slow_line(browser, address):
 
 
 def main():
-    if find() is None:
-        sys.exit("There is no Chromium on this machine to open the pages with.")
-    if not (SITE / "index.html").is_file():
-        sys.exit("The book is not built: run `make book` first.")
     lighthouse = program()
     print(
         "| page | server |",
@@ -187,11 +183,10 @@ def main():
     )
     print("|---" * (len(CATEGORIES) + len(MEASURES) + 4) + "|")
     for kind, handler in (("compressing", Compressing), ("plain", Handler)):
-        book = server(folder=SITE, handler=handler)
-        threading.Thread(target=book.serve_forever, daemon=True).start()
+        book = serve(handler)
         for page in sys.argv[1:] or PAGES:
             load = os.getloadavg()[0]
-            address = f"http://127.0.0.1:{book.server_port}/{page}.html"
+            address = f"{book}/{page}.html"
             with open_browser() as browser:
                 seen = statistics.median(seen_on_a_slow_line(browser, address) for _ in range(3))
             found = judge(lighthouse, address)

@@ -1,4 +1,5 @@
-"""Symbolic matrices and their comparison, against SymPy's reference frames and ``simplify``.
+"""Symbolic matrices and their comparison, against SymPy's reference frames and ``simplify``; and
+the time to import each library beyond NumPy's, in a fresh interpreter each time.
 
 SymPy remembers what it has computed. Its cache is emptied before every call, for all contestants,
 and emptying it does not count.
@@ -6,6 +7,8 @@ and emptying it does not count.
 
 import itertools
 import statistics
+import subprocess
+import sys
 import time
 
 import sympy as sm
@@ -17,58 +20,63 @@ import orientation
 
 ANGLES = sm.symbols("psi, theta, varphi")
 TWELVE = sm.symbols("a:12")
+PACKAGES = {
+    "orientation": "orientation",
+    "SciPy": "scipy.spatial.transform",
+    "pytransform3d": "pytransform3d.rotations",
+    "SymPy": "sympy.physics.mechanics",
+}
 
 
 def rows():
     """Yield ``(what, N, seconds by contestant)``."""
     expected = orientation.dcm_from_body_fixed(ANGLES, "zxy")
     sums = expected.applyfunc(TR8)  # products of cosines and sines written as sums
-    mistaken = orientation.dcm_from_space_fixed(ANGLES, "zxy")
-    yield (
-        "symbolic matrix of Euler angles zxy",
-        1,
-        _seconds(lambda: orientation.dcm_from_body_fixed(ANGLES, "zxy"), _body_fixed, rounds=25),
-    )
-    yield (
-        "symbolic chain of 12 turns about z",
-        1,
-        _seconds(lambda: _our_chain("z"), lambda: _their_chain("z"), rounds=5),
-    )
-    yield (
-        "symbolic chain of 12 turns about x, y, z in turn",
-        1,
-        _seconds(lambda: _our_chain("xyz"), lambda: _their_chain("xyz"), rounds=5),
-    )
-    yield (
-        "two forms of one zxy matrix are the same (SymPy: simplify)",
-        1,
-        _seconds(
+    for what, ours, theirs, rounds in (
+        (
+            "symbolic matrix of Euler angles zxy",
+            lambda: orientation.dcm_from_body_fixed(ANGLES, "zxy"),
+            _body_fixed,
+            25,
+        ),
+        (
+            "symbolic chain of 12 turns about z",
+            lambda: _our_chain("z"),
+            lambda: _their_chain("z"),
+            5,
+        ),
+        (
+            "symbolic chain of 12 turns about x, y, z in turn",
+            lambda: _our_chain("xyz"),
+            lambda: _their_chain("xyz"),
+            5,
+        ),
+        (
+            "two forms of one zxy matrix are the same (SymPy: simplify)",
             lambda: orientation.same_orientation(sums, expected),
             lambda: sm.simplify(sums - expected) == sm.zeros(3),
-            rounds=3,
+            3,
         ),
-    )
-    yield (
-        "space fixed for body fixed is recognised (SymPy: simplify for each mix-up)",
-        1,
-        _seconds(
-            lambda: orientation.diagnose(mistaken, expected).causes,
-            lambda: _diagnosis(mistaken, expected),
-            rounds=3,
-        ),
-    )
+    ):
+        yield what, 1, _seconds(ours, theirs, rounds)
+
+    yield "import, beyond NumPy", 1, {name: _import(package) for name, package in PACKAGES.items()}
 
 
-def sizes():
-    """Yield ``(what, operations by contestant)``."""
-    for axes, what in (("z", "about z"), ("xyz", "about x, y, z in turn")):
-        yield (
-            f"operations in a symbolic chain of 12 turns {what}",
-            {
-                "orientation": sm.count_ops(_our_chain(axes)),
-                "SymPy": sm.count_ops(_their_chain(axes)),
-            },
+def _import(package):
+    return min(
+        float(
+            subprocess.check_output(
+                [
+                    sys.executable,
+                    "-c",
+                    f"import numpy, time; start = time.process_time(); "
+                    f"import {package}; print(time.process_time() - start)",
+                ]
+            )
         )
+        for _ in range(9)
+    )
 
 
 def _seconds(ours, theirs, rounds):
@@ -102,14 +110,3 @@ def _their_chain(axes):
     for k, (angle, axis) in enumerate(zip(TWELVE, itertools.cycle(axes))):
         frames[k + 1].orient_axis(frames[k], getattr(frames[k], axis), angle)
     return frames[12].dcm(frames[0])
-
-
-def _diagnosis(given, expected):
-    """The usual way: undo each mix-up and let SymPy simplify the difference."""
-    mixups = [expected.T]
-    mixups += [expected.subs(angle, -angle) for angle in ANGLES]
-    mixups += [
-        expected.subs({a: b, b: a}, simultaneous=True) for a, b in itertools.combinations(ANGLES, 2)
-    ]
-    mixups.append(orientation.dcm_from_space_fixed(ANGLES, "zxy"))
-    return any(sm.simplify(given - mixup) == sm.zeros(3) for mixup in mixups)
