@@ -1,4 +1,4 @@
-# The commands of the book. They need only Python 3.11 or newer. Each command
+# The commands of the book. They need only Python, from 3.11 to 3.15. Each command
 # installs what it needs into .venv and node_modules, from exact pins.
 
 PYTHON ?= python3
@@ -41,10 +41,12 @@ help:
 # browser nor the tests.
 PROJECTS_book := . ./packages/coursework ./packages/notebook-pages ./packages/orientation-lab
 PROJECTS_print := . ./packages/coursework ./packages/notebook-pages[print] ./packages/orientation-lab
+PROJECTS_pins := . ./packages/coursework ./packages/notebook-pages[pins] ./packages/orientation-lab
 PROJECTS_release := . ./packages/coursework[tools] ./packages/notebook-pages ./packages/orientation-lab
 PROJECTS_test := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test]
 PROJECTS_mutants := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test,mutants]
 # The other installations that each of these covers.
+COVERS_pins := book
 COVERS_print := book
 COVERS_release := book
 COVERS_test := book print release
@@ -55,7 +57,7 @@ COVERS_mutants := book print release test
 setup: $(VENV)/ready-book node_modules/ready $(VENV)/runtime/ready $(KERNEL_SETTINGS)
 
 $(VENV)/bin/python:
-	@$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'The book needs Python 3.11 or newer; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.12')"
+	@$(PYTHON) -c "import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 16) and 'The book needs Python 3.11 to 3.15; this is ' + sys.version.split()[0] + '. Name one: make PYTHON=python3.13')"
 	@$(PYTHON) -m venv $(VENV)
 
 $(VENV)/ready-%: constraints.txt $(wildcard pyproject.toml packages/*/pyproject.toml) | $(VENV)/bin/python
@@ -130,7 +132,7 @@ mutants: $(VENV)/ready-mutants setup
 programs: setup
 	@$(RUN) -m tools.programs
 
-renew-pins: setup
+renew-pins: $(VENV)/ready-pins setup
 	@$(RUN) -m notebook_pages.pins
 
 benchmark: $(VENV)/ready-test setup

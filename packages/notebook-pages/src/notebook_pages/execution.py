@@ -57,7 +57,9 @@ def pages_to_read_again(app, env, added, changed, removed):
     """
     if env.mystnb_config.execution_mode != "cache":
         return []
-    names = {str(env.doc2path(name)): name for name in env.found_docs if not name.startswith(STORED)}
+    names = {
+        str(env.doc2path(name)): name for name in env.found_docs if not name.startswith(STORED)
+    }
     notebooks = [path for path in names if path.endswith(".ipynb")]
     return [
         names[path]

@@ -1,8 +1,8 @@
 """``python -m notebook_pages.pins``: renew every exact version that the
 set-up installs, all of them or none.
 
-- ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, found
-  by pip;
+- ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, for
+  every Python that the book supports and for every system, found by uv;
 - the wheels for browsers, ``live/wheels.txt`` and ``lite/wheels.txt``: the same versions, with
   their hashes;
 - ``package.json`` and ``package-lock.json``: the newest of each major version, found by npm. The
@@ -14,7 +14,6 @@ decision: the first is made by hand there, the second is told here.
 """
 
 import json
-import re
 import subprocess
 import sys
 import tempfile
@@ -42,20 +41,19 @@ def comments(text):
     return [line for line in text.splitlines() if line.startswith("#")]
 
 
-def pins(text):
-    """The versions in a list of pins, by name."""
-    lines = (
-        line.split()[0].split("==")
+def pins(text, python=None):
+    """The versions in a list of pins, by name: on this Python, or on another such as ``"3.15"``."""
+    environment = {"python_version": python, "python_full_version": f"{python}.0"} if python else {}
+    stated = (
+        Requirement(line.partition(" --hash")[0])
         for line in text.splitlines()
         if line.strip() and not line.startswith("#")
     )
-    return {canonicalize_name(name): version for name, version in lines}
-
-
-def oldest_python():
-    """The oldest Python that the book supports, such as ``(3, 11)``."""
-    stated = re.fullmatch(r">=(\d+)\.(\d+)", PROJECTS[-1].about["requires-python"])
-    return int(stated[1]), int(stated[2])
+    return {
+        canonicalize_name(one.name): str(one.specifier).removeprefix("==")
+        for one in stated
+        if one.marker is None or one.marker.evaluate(environment)
+    }
 
 
 def resolve(*arguments):
@@ -103,9 +101,17 @@ def asked_for():
 
 def constraints():
     """The new text of ``constraints.txt``."""
-    found = [one["metadata"] for one in resolve(*asked_for())]
-    lines = sorted(f"{canonicalize_name(one['name'])}=={one['version']}" for one in found)
-    return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), *lines]) + "\n"
+    oldest = PROJECTS[-1].about["requires-python"].removeprefix(">=")
+    quiet = ("--quiet", "--no-header", "--no-annotate", "--only-binary=:all:")
+    command = [sys.executable, "-m", "uv", "pip", "compile", "--universal", *quiet]
+    found = subprocess.run(
+        [*command, "--python-version", oldest, "-"],
+        check=True,
+        input="\n".join(asked_for()),
+        stdout=subprocess.PIPE,
+        text=True,
+    ).stdout
+    return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), found])
 
 
 def wheels(old, versions):
@@ -178,14 +184,6 @@ def scripts():
 
 
 def main():
-    oldest = oldest_python()
-    if sys.version_info[:2] != oldest:
-        wanted, this = (".".join(map(str, version[:2])) for version in (oldest, sys.version_info))
-        sys.exit(
-            f"Renew the pins with the oldest Python that the book supports, {wanted}, since they "
-            f"must work there; this is {this}. Remove .venv, then: make PYTHON=python{wanted} "
-            "renew-pins"
-        )
     new, reports = {CONSTRAINTS: constraints()}, []
     for path in WHEELS:
         new[path], found = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
