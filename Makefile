@@ -15,7 +15,7 @@ export MPLCONFIGDIR := $(CURDIR)/_build/matplotlib
 unexport PYTHONDONTWRITEBYTECODE
 KERNEL_SETTINGS := _build/ipython/profile_default/ipython_kernel_config.py
 
-.PHONY: help setup book serve new-chapter new-question check test test-rest take-away numpy notebooks release renew-pins benchmark anywhere mutants programs clean
+.PHONY: help setup book serve new-chapter new-question check test test-rest take-away numpy notebooks release renew-pins benchmark anywhere oldest mutants programs clean
 
 help:
 	@echo "make book       build the site into _build/html"
@@ -30,6 +30,7 @@ help:
 	@echo "make notebooks  run every notebook and store its outputs"
 	@echo "make release    build the exercises from the notebooks with solutions, and test them (ONLY=belt-trick builds one)"
 	@echo "make anywhere   compare all numbers with those of other processors and of WebAssembly"
+	@echo "make oldest     test the module with the oldest versions that it allows of what it needs"
 	@echo "make mutants    make thousands of small changes to the mathematics and the checks, and list those that no test notices (takes hours)"
 	@echo "make programs   run the newest versions of the programs on the convention card, and compare their answers (downloads gigabytes)"
 	@echo "make benchmark  compare the speed with that of other libraries"
@@ -122,6 +123,11 @@ release: $(VENV)/ready-release setup
 # Run cells, releases and doctests as other processors would (ONLY=unit-quaternions runs one notebook).
 anywhere: $(VENV)/ready-test setup
 	@$(RUN) -m tools.anywhere $(ONLY)
+
+oldest: $(VENV)/ready-pins
+	@$(RUN) -m uv venv --quiet --clear --python $(RUN) _build/oldest
+	@$(RUN) -m uv pip install --quiet --python _build/oldest --resolution lowest-direct --editable ".[test]"
+	@_build/oldest/bin/python -m pytest -q -c tests/orientation/pytest.ini tests/orientation
 
 # Each change that survives is printed at once. Either a test is missing, or it changes nothing (ONLY="quaternions metrics").
 mutants: $(VENV)/ready-mutants setup
