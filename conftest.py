@@ -6,17 +6,24 @@ import threading
 from collections import defaultdict
 from importlib import metadata
 
-import nbval.kernel
-import nbval.plugin
 import pytest
-import stored_outputs
-import times
-from places import BROWSER_REQUIRED, HTML, PATIENCE
-from seed import spread
-from xdist.scheduler import LoadFileScheduling
 
-from notebook_pages import warm_kernels
-from notebook_pages.browser import FLAGS, MISSING, find
+try:
+    import nbval.kernel
+    import nbval.plugin
+    import stored_outputs
+    import times
+    from places import BROWSER_REQUIRED, HTML, PATIENCE
+    from seed import spread
+    from xdist.scheduler import LoadFileScheduling
+
+    from notebook_pages import warm_kernels
+    from notebook_pages.browser import FLAGS, MISSING, find
+except ModuleNotFoundError as missing:
+    pytest.exit(
+        f"The Python package {missing.name} is not there. `make test` sets up everything and runs "
+        "all tests; after that, `.venv/bin/python -m pytest` runs those that you name."
+    )
 
 # Tests that take long, each by itself, and share nothing with the others of their file.
 APART = (

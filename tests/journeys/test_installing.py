@@ -1,6 +1,7 @@
 """An engineer or a packager installs what the repository offers, from an sdist and a wheel."""
 
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -64,6 +65,30 @@ def test_a_wheel_from_the_sdist_is_whole_and_says_what_it_is(project):
     assert modules and modules <= in_sdist
     if name == ".":
         assert {entry.split("/")[0] for entry in modules} == {"orientation"}
+
+
+def test_the_licence_names_every_folder_and_none_that_is_not_there():
+    words = re.sub(r"https?://\S+", "", (REPOSITORY / "LICENSE").read_text("utf8"))
+    named = set(re.findall(r"(?<!\S)\(?(?:everything in )?([\w./-]+)/(?=[\s,)])", words))
+    tracked = subprocess.check_output(["git", "ls-files"], cwd=REPOSITORY, text=True).split()
+    assert {name.split("/")[0] for name in tracked if "/" in name} <= named
+    assert all((REPOSITORY / name).is_dir() for name in named)
+
+
+def test_pytest_in_a_fresh_clone_says_what_to_run(tmp_path):
+    """It ended in a traceback of conftest.py."""
+    for name in ("conftest.py", "pyproject.toml"):
+        os.link(REPOSITORY / name, tmp_path / name)
+    (tmp_path / "nbval.py").write_text("raise ModuleNotFoundError(name='nbval')")
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-p", "no:nbval", "--nbval", "chapters"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+    )
+    assert "package nbval is not there. `make test` sets up everything" in done.stdout + done.stderr
+    assert "Traceback" not in done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("project", ["."], indirect=True)
