@@ -12,6 +12,9 @@ from importlib.util import find_spec
 
 #: The packages with commands that a student's package leaves out.
 ROOMS = ("authoring", "grading")
+_STUDENTS_USAGE = """%(prog)s [-h] COMMAND ...
+For the commands of authors and instructors, such as new and grade, install coursework-tools
+beside coursework-checks."""
 
 
 @contextmanager
@@ -35,20 +38,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         for room in ROOMS
         if find_spec(f"coursework.{room}") is not None
     ]
-    epilog = (
-        "Run coursework COMMAND --help for the options of a command."
-        if rooms
-        else "Authors and instructors have more commands, such as coursework new and coursework "
-        "grade: install coursework-tools beside coursework-checks."
-    )
     parser = argparse.ArgumentParser(
         prog="coursework",
+        usage=None if rooms else _STUDENTS_USAGE,  # which every error about a command shows
         description="Make, grade and update exercises that check themselves.",
-        epilog=epilog,
+        epilog="Run coursework COMMAND --help for the options of a command.",
     )
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    if not rooms and given[:1] not in ([], ["update"], ["-h"], ["--help"]):
-        parser.error(f"{given[0]} is no command of a student's coursework. {epilog}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     update = commands.add_parser(
         "update", help="update your exercises from a newer archive, and keep all your work"
@@ -61,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     for room in rooms:
         room.add_commands(commands)
-    options = vars(parser.parse_args(given))
+    options = vars(parser.parse_args(arguments))
     runs = {
         "update": _update,
         **{name: run for room in rooms for name, run in room.COMMANDS.items()},
