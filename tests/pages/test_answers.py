@@ -27,7 +27,7 @@ KEPT = (
     "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => / (answer|earlier) "
     "/.test(key)))"
 )
-pytestmark = pytest.mark.sampled(2)
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture
@@ -183,24 +183,6 @@ def test_books_code_asks_and_can_be_undone(context, site):
     tab.page.locator(".live-earlier summary").first.wait_for()
     assert tab.page.locator(".live-earlier").count() == 2
     assert "mine = 1" in tab.shown() and "mine = 2" in tab.shown()
-
-
-def test_edits_of_the_first_edition_come_along(context, site):
-    """They were one list for a page, under a name without the site's path."""
-    tab = Tab(context, site)
-    old = [
-        {"number": ANSWER, "original": fingerprint_of_code(BLANK), "code": "old = 1"},
-        {"number": OTHER, "original": "of code that is gone", "code": "old = 2"},
-    ]
-    tab.page.evaluate(
-        "([key, text]) => localStorage.setItem(key, text)", [f"code of {EXERCISE}", json.dumps(old)]
-    )
-    tab.reload()
-    tab.wait(ANSWER, "old = 1")
-    tab.page.locator(".live-choice", has_text="has changed since you edited it").wait_for()
-    assert "old = 2" in tab.shown()
-    tab.page.get_by_role("button", name="Use mine").click()
-    tab.wait(OTHER, "old = 2")
 
 
 def test_fingerprints_are_those_of_the_page(context, site):

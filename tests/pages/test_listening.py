@@ -17,7 +17,7 @@ NAMED = {
     "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio",
     "combobox", "img", "image", "listbox", "figure", "navigation", "DisclosureTriangle",
 }  # fmt: skip
-pytestmark = pytest.mark.sampled(1)
+pytestmark = pytest.mark.long
 
 
 def told(page):

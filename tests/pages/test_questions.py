@@ -12,7 +12,7 @@ CHAPTER = "chapters/reference-frames"
 COVERING = '.question[data-covers]:not([data-covers="0"])'
 KEPT = "() => ({ pages: bookStore.record() })"
 
-pytestmark = pytest.mark.sampled(4)
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture

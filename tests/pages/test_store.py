@@ -23,7 +23,7 @@ ALL = (
     "/^(book|progress|code) /.test(key)))"
 )
 HERE = "() => bookStore.record()"
-pytestmark = pytest.mark.sampled(3)
+pytestmark = pytest.mark.long
 
 
 def kept_before(page, site, kept):

@@ -1,0 +1,105 @@
+"""Run is pressed where all is well, where Python is not there, and where it cannot be."""
+
+import threading
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+from places import HTML
+from playwright.sync_api import expect
+
+CHAPTER = "chapters/simple-orientations.html"
+EXERCISE = "exercises/simple-orientations.html"
+# Words of browsers and of their programs, which say nothing to a reader.
+OF_PROGRAMS = ("Failed to fetch", "NetworkError", "dynamically imported module", "SecurityError")
+
+
+@pytest.fixture
+def page(browser):
+    context = browser.new_context(viewport={"width": 1300, "height": 900}, bypass_csp=False)
+    yield context.new_page()
+    context.close()
+
+
+def said(page, words):
+    """The words of the bar, once they hold ``words``."""
+    bar = page.locator("#live-words")
+    expect(bar).to_contain_text(words)
+    text = bar.inner_text()
+    assert not [part for part in OF_PROGRAMS if part in text]
+    return text
+
+
+def test_what_is_written_awaits_and_what_is_not_there_is_named(page, site):
+    page.goto(site + CHAPTER)
+    cell = page.locator("div.cell:has(button.run-cell)").first
+    for code, result in [
+        ("import asyncio\nprint(await asyncio.sleep(0, 'waited'))\nawait asyncio.sleep(0, 7)", "7"),
+        ("import scipy", "scipy is not part of this page's Python"),
+        ("from scipi.spatial import Rotation", "scipi is not part of this page's Python"),
+    ]:
+        cell.locator(".cell_input").click()
+        page.keyboard.press("Control+a")
+        page.keyboard.type(code)
+        page.keyboard.press("Shift+Enter")
+        expect(cell.locator(".cell_output")).to_contain_text(result)
+
+
+def test_a_book_kept_without_python_says_so_offline(page, site):
+    page.goto(site + CHAPTER)
+    page.locator("details.take-away summary").click()
+    page.locator("button.keep-book").click()
+    page.locator(".live-choices button").first.click()
+    said(page, "is kept in this browser")
+    page.context.set_offline(True)
+    page.reload()
+    page.locator("button.run-cell").first.click()
+    assert "network" in said(page, "without Python")
+
+
+def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
+    page.goto(f"{site}search.html")
+    frame = f'<iframe sandbox="allow-scripts" src="{site}{CHAPTER}" width=900 height=700></iframe>'
+    page.set_content(frame)
+    inside = page.frame_locator("iframe")
+    inside.locator("button.run-cell").first.click()
+    expect(inside.locator("#live-words")).to_contain_text("sandbox")
+
+
+class AsText(SimpleHTTPRequestHandler):
+    """A server that sends scripts as text, and forbids browsers to take them for anything else."""
+
+    extensions_map = {**SimpleHTTPRequestHandler.extensions_map, ".js": "text/plain"}
+
+    def end_headers(self):
+        self.send_header("X-Content-Type-Options", "nosniff")
+        super().end_headers()
+
+    def log_message(self, *arguments):
+        pass
+
+
+def test_a_server_that_sends_scripts_as_text_is_named_at_once(page):
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(AsText, directory=HTML))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    page.goto(f"http://127.0.0.1:{server.server_port}/{CHAPTER}")
+    notice = page.get_by_role("alert").filter(has_text="JavaScript")
+    expect(notice).to_be_visible(timeout=20_000)
+    server.shutdown()
+    server.server_close()
+
+
+def test_contents_of_an_exercise_notebook_list_its_questions(page, site):
+    page.goto(site + EXERCISE)
+    faults = []
+    page.context.on("console", lambda message: faults.append(message.text))
+    with page.context.expect_page() as opened:
+        page.locator("a.open-notebook").click()
+    notebook = opened.value
+    notebook.get_by_role("menuitem", name="View").click()
+    notebook.get_by_text("Left Sidebar").hover()
+    notebook.get_by_text("Show Table of Contents").click()
+    headings = notebook.locator(".jp-tocItem")
+    expect(headings.first).to_be_visible()
+    assert headings.count() >= 3
+    assert not [fault for fault in faults if "is not a function" in fault]
