@@ -99,6 +99,71 @@ def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
     assert code == 2 and "has length 0.999881: it was taken for one of length 1" in answer
 
 
+Q, P = "0.7304 0.3604 0.2402 0.5284", "0.7404 0.3504 0.2302 0.5254"
+MATRIX = "-0.9999 0.0042 -0.0133 -0.0140 -0.2997 0.9539 0.0000 0.9540 0.2997"
+#: Files as they are written, pasted whole, and the orientations that stand in them.
+FILES = {
+    "COLMAP's images.txt": (
+        "# Image list with two lines of data per image:\n"
+        "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+        "#   POINTS2D[] as (X, Y, POINT3D_ID)\n"
+        f"1 {Q} -0.737434 1.02973 3.74354 1 P1180141.JPG\n"
+        "2362.39 248.498 58396 1784.7 268.254 59027 1784.7 268.254 -1\n"
+        f"2 {P} -0.741434 1.01973 3.71354 1 P1180142.JPG\n\n",
+        f"{Q}\n{P}",
+    ),
+    "a joint of URDF": (
+        '<joint name="camera_joint" type="fixed">\n  <parent link="base_link"/>\n'
+        '  <origin xyz="0.12 -0.03 0.4" rpy="0.1 -0.35 1.57"/>\n</joint>',
+        "0.68863 0.15742 -0.08847 0.70224",
+    ),
+    "a node of glTF": (
+        '{"nodes":[{"name":"Camera","rotation":[0.3604,0.2402,0.5284,0.7304],'
+        '"translation":[0.1,0.2,0.3]}]}',
+        "0.3604 0.2402 0.5284 0.7304",
+    ),
+    "a table of PX4": (
+        "timestamp,timestamp_sample,q[0],q[1],q[2],q[3],delta_q_reset[0],quat_reset_counter\n"
+        f"10412000,10411000,{Q.replace(' ', ',')},1,1\n"
+        f"10422000,10421000,{P.replace(' ', ',')},1,1",
+        f"{Q}\n{P}",
+    ),
+    "a table of OptiTrack": (
+        ",,RigidBody,RigidBody,RigidBody,RigidBody,RigidBody,RigidBody,RigidBody\n"
+        ",,Rotation,Rotation,Rotation,Rotation,Position,Position,Position\n"
+        "Frame,Time (Seconds),X,Y,Z,W,X,Y,Z\n"
+        "0,0.000000,0.3604,0.2402,0.5284,0.7304,0.123,0.456,0.789\n"
+        "1,0.008333,0.3504,0.2302,0.5254,0.7404,0.124,0.457,0.788",
+        "0.3604 0.2402 0.5284 0.7304\n0.3504 0.2302 0.5254 0.7404",
+    ),
+    "transforms.json": (
+        '{"camera_angle_x": 0.69, "frames": [{"file_path": "./r_0", "rotation": 0.0125, '
+        '"transform_matrix": [[-0.9999, 0.0042, -0.0133, -0.0538], [-0.0140, -0.2997, 0.9539, '
+        "3.8455], [0.0, 0.9540, 0.2997, 1.2081], [0.0, 0.0, 0.0, 1.0]]}]}",
+        MATRIX,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_file_is_pasted_whole(name):
+    code, answer = explained(*FILES[name])
+    assert code == 0 and "the same orientation" in answer, answer
+
+
+def test_of_a_whole_file_of_bvh_one_is_told_what_to_cut_out():
+    motion = (
+        "HIERARCHY\nROOT Hips\n{\n  OFFSET 0.00 0.00 0.00\n"
+        "  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n}\n"
+        "MOTION\nFrames: 1\nFrame Time: 0.033333\n8.03 35.01 88.36 -3.41 14.78 -164.35"
+    )
+    code, answer = explained(motion, Q)
+    assert code == 3 and "cut the three angles of one joint out" in answer and "CHANNELS" in answer
+    # What was told is done: the joint's angles, with their sequence.
+    code, answer = explained("--first-is", "zxy", "-3.41 14.78 -164.35", Q)
+    assert code == 2 and "Nothing that was tried explains" in answer
+
+
 def bench(*arguments):
     done = subprocess.run(
         [sys.executable, "-m", "orientation_workbench", "recording", *map(str, arguments)],

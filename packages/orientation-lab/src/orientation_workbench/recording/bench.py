@@ -110,7 +110,6 @@ class _Bench:
             for kind in ("gyroscope", "accelerometer", "magnetometer")
             if kind in groups
         }
-        self.rate = 0.0 if content.counted else float(1 / max(np.median(np.diff(self.time)), 1e-9))
         self.counts = False  # whether the gyroscope's numbers are those of its chip
         self.rates: Array | None = None
         self.forces: Array | None = None
@@ -229,6 +228,8 @@ class _Bench:
             return
         group, raw = self.content.groups["gyroscope"], self.raw["gyroscope"]
         self._saturation("gyroscope")
+        if self.content.counted:  # of which the clock has asked already
+            return
         said = _said_unit(group.names)
         fits, vectors = {}, {}
         for kind in ("accelerometer", "magnetometer"):
@@ -245,8 +246,6 @@ class _Bench:
         if whole:  # as a chip has them
             chips = np.radians(np.geomspace(0.002, 0.2, 24))
             grid = chips if counts else np.concatenate([grid, chips])
-        if self.content.counted:
-            grid = np.geomspace(1e-6, 0.3, 60)
         still = self._quiet(raw)
         usual = raw[still].mean(axis=0) if still is not None else np.zeros(3)
         for kind, vector in vectors.items():
@@ -261,9 +260,6 @@ class _Bench:
         gravity = fits.get("accelerometer")
         if gravity is not None and gravity.margin > 1.2:
             fit = gravity
-        if self.content.counted:
-            self._rate(fit, said)
-            return
         names = {scale: unit for unit, scale in DEGREES.items()}
         if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
             unit = min(DEGREES.values(), key=lambda one: abs(np.log(fit.scale / one)))
@@ -337,11 +333,7 @@ class _Bench:
 
     def _quiet(self, raw: Array) -> slice | None:
         """Samples in which the numbers of a gyroscope vary least, whatever their unit."""
-        size = (
-            max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6)))
-            if not self.content.counted
-            else 50
-        )
+        size = max(12, round(0.5 / max(np.median(np.diff(self.time)), 1e-6)))
         count = len(raw) // size
         if count < 4:
             return None
@@ -350,23 +342,6 @@ class _Bench:
             return None
         best = int(spread.argmin())
         return slice(best * size, (best + 1) * size)
-
-    def _rate(self, fit: Fit | None, said: str) -> None:
-        if fit is None or fit.margin < BELIEVED or not said:
-            self.say("rate", UNKNOWN, "the turns do not tell it", {}, "Name it: --rate 100.")
-            return
-        rate = DEGREES[said] / fit.scale
-        words = (
-            f"some {rate:.0f} samples a second, if the gyroscope is in {said} as its heading says"
-        )
-        self.say(
-            "rate",
-            YELLOW,
-            words,
-            {"rate": round(float(rate), 1)},
-            f"Run it again with --rate {rate:.0f}.",
-        )
-        self.facts["rate"] = float(rate)
 
     def _axes(self, fits: Mapping[str, Fit], rates: Array) -> None:
         """Bring the gyroscope into the axes of the accelerometer, if they

@@ -18,7 +18,6 @@ LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot te
 Facts = TypedDict(
     "Facts",
     {
-        "rate": float,
         "unit of the gyroscope": float,
         "axes of the gyroscope": "Array",
         "scale of the gyroscope": float,

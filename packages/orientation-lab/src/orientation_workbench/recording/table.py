@@ -15,6 +15,7 @@ import re
 import zipfile
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
 from math import inf
 from pathlib import Path
@@ -476,23 +477,14 @@ def _from_json(text: str, name: str) -> list[Table]:
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict):
                 kinds.setdefault(str(entry.get("sensor", key)), []).append(_flat(entry))
-    return _from_entries(kinds, f"{name} is JSON without a list of measurements in it")
-
-
-def _from_entries(
-    kinds: Mapping[str, Sequence[Mapping[str, object]]], otherwise: str
-) -> list[Table]:
-    """Tables out of dictionaries, by what they hold."""
     tables = []
     for kind, entries in kinds.items():
         columns = list(dict.fromkeys(key for entry in entries for key in entry))
         rows = [[str(entry.get(column, "")) for column in columns] for entry in entries]
-        try:
+        with suppress(RecordingError):
             tables.append(_table(rows, kind, False, None, columns))
-        except RecordingError:
-            continue
     if not tables:
-        raise RecordingError(otherwise)
+        raise RecordingError(f"{name} is JSON without a list of measurements in it")
     return tables
 
 
