@@ -5,7 +5,7 @@ that the page hands over the file.
 import base64
 import re
 
-from simulated_recordings import as_text, faulty, simulate
+from simulated_recordings import as_text, simulate
 
 from orientation_workbench.recording.page import judged
 
@@ -15,7 +15,9 @@ def test_what_is_dropped_is_judged_and_can_be_kept(tmp_path, monkeypatch):
     assert repr(judged()) == "no recording yet"
     (tmp_path / "dropped").mkdir()
     assert "no recording yet" in judged()._repr_html_()
-    (tmp_path / "dropped" / "walk <1>.csv").write_text(faulty("hard iron", 3)[0], "utf8")
+    given = simulate(3)
+    given["magnetometer"] = given["magnetometer"] + [20.0, -10, 15]
+    (tmp_path / "dropped" / "walk <1>.csv").write_text(as_text(given, quaternion=True), "utf8")
     found = judged()
     shown = found._repr_html_()
     kept = base64.b64decode(
