@@ -285,8 +285,10 @@ class Story:
         if moves and not yes:
             return
         asked = self.asked[key[1]]
-        if old is None or own_weight(*key) in asked.weights:
+        if own_weight(*key) in asked.weights:
             self.last_asked[key] = (asked.times, asked.worth)
+        elif old is None:
+            self.last_asked[key] = self.full[key[1]]
         self.given[key], self.graded[key], self.among[key] = new, attempt, attempts
         for question, (points, worth, _) in machine.items():
             self.said[(*key, question)] = (answers[question], points, worth)

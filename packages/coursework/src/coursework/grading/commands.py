@@ -440,7 +440,7 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
                 _merge_journal(journal, store, path, dry_run)
             else:
                 entered, unused = journal.take_in_table(Path(path), store.all(), grader)
-                print(f"{entered} lines of {path}{' would be' if dry_run else ''} taken in.")
+                print(f"From {path}, {'would be ' * dry_run}taken in: {entered}.")
                 for line in unused:
                     print(f"  not used: {line}")
         if not dry_run:

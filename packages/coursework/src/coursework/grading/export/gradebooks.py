@@ -467,11 +467,13 @@ def fill(
     listed = {name: list[str]() for name in HEADINGS}
     now_written: dict[str, str] = {}
     for line, student in sorted(students.items()):
+        there = book.says(line, place)
         if why_not := _why_not(book, system, marks, line, student):
-            listed[why_not].append(student)
+            listed[why_not].append(
+                f"{student}: {there} stays there" if there.strip("-") else student
+            )
             continue
         points = "0" if student in marks.missing else number(_scaled(marks, student, out_of))
-        there = book.says(line, place)
         known = there in ("", "-") or any(_is_same(there, one) for one in ours.get(student, ()))
         if not known and not _is_same(there, points):
             if student not in overwrite or not _is_number(there):

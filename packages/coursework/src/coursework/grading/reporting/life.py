@@ -19,12 +19,13 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
     whose = term.group_of(student)
     key = whose, assignment
-    record, given = store.read(*key), journal.standing().given.get(key)
+    record, given = store.read(*key), (keys := journal.standing().given).get(key)
     if record is None or given is None:
-        known = sorted({one for one, _ in journal.standing().given})
+        own = sorted(name for one, name in keys if one == whose)
         raise ValueError(
             f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
-            f"marks of {', '.join(known[:40])}."
+            f"marks {'for' if own else 'of'} "
+            f"{', '.join(own or sorted({one for one, _ in keys})[:40]) or 'nobody yet'}."
         )
     group = f" (in {whose})" if whose != student else ""
     said = [f"{student}{group}, {assignment}: {_of(given)}."]
@@ -37,7 +38,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         student, assignment, record, term, {}, datetime.datetime.now(datetime.UTC)
     )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
-    late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else "in time"
+    in_time = "in time" if result.handed_in else "nothing says when it came"
+    late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time
     said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items():
         case = record.cases.get(name)
