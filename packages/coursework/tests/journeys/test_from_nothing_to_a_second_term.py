@@ -1,0 +1,121 @@
+"""An instructor goes from nothing to a second term, by the commands of the manual, with the
+mistakes that people make on the way.
+"""
+
+import contextlib
+import io
+import json
+
+import pytest
+
+from coursework.__main__ import main
+
+pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
+RIGHT = {
+    "area": "area = b*h/2",
+    "slope": "slope = 2*x*sm.sin(x) + x**2*sm.cos(x)",
+    "mean": "mean = lambda numbers: sum(numbers)/len(numbers)",
+}
+BOOK = """Student,ID,SIS User ID,SIS Login ID,Section,First steps (9)
+    Points Possible,,,,,6
+"Lee, Ada",1,,ada,x,
+"Moe, Ben",2,,ben,x,
+"Oz, Cem",3,,cem,x,
+"Ek, Dan",4,,dan,x,
+"""
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch):
+    """Runs a command in the folder of the course; nobody is there to say yes."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.stdin", io.StringIO())
+
+    def run(command, fails=False):
+        said, ended = io.StringIO(), None
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            try:
+                main(command.split())
+            except SystemExit as end:
+                ended = end.code
+                print(ended or "", file=said)
+        assert bool(ended) == fails, said.getvalue()
+        return said.getvalue()
+
+    run("new my-course")
+    monkeypatch.chdir(tmp_path / "my-course")
+    return run
+
+
+def hand_in(folder, place, **answers):
+    """Open the notebook that students get, answer, and save it in the folder of a student."""
+    made = json.loads((folder / "exercises" / "first-steps.ipynb").read_text("utf8"))
+    for cell in made["cells"]:
+        for name, right in RIGHT.items():
+            if "".join(cell["source"]).startswith((f"{name} = ...", f"def {name}(")):
+                cell["source"] = answers.get(name, right)
+    (folder / place).parent.mkdir(parents=True, exist_ok=True)
+    (folder / place).write_text(json.dumps(made), "utf8")
+
+
+def edited(path, before, after):
+    text = path.read_text("utf8")
+    assert before in text
+    path.write_text(text.replace(before, after), "utf8")
+
+
+def test_from_nothing_to_a_second_term(run, tmp_path):
+    folder = tmp_path / "my-course"
+    (folder / "roster.csv").write_text(
+        "student,name\nada,Ada Lee\nben,Ben Moe\ncem,C Oz\ndan,D Ek\n"
+    )
+    (folder / "book.csv").write_text(BOOK)
+    assert "Every question passed." in run("selftest")
+    # Before anything is graded, each command says so.
+    assert "There are no records" in run("regrade marks", fails=True)
+    assert "There are marks of nobody yet." in run("why ada first-steps", fails=True)
+    assert "read it, and choose" in run("term new marks --roster roster.csv")
+    term = folder / "marks" / "term.toml"
+    begun = "[assignments.first-steps]\n"
+    edited(term, begun, f'{begun}due = 2025-10-05T23:59:00\ncolumn = "First steps"\n')
+    hand_in(folder, "handed-in/ada/first-steps.ipynb")
+    hand_in(folder, "handed-in/ben/first-steps.ipynb", area="area = b*h")
+    hand_in(folder, "handed-in/cem/first-steps.ipynb", area="area = ...", slope="slope = ...")
+    assert "name the folder that was handed in" in run("grade . --out marks", fails=True)
+    assert "handed in nothing: dan" in run("grade handed-in --out marks")
+    assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
+    said = run("why ada first", fails=True)
+    assert "There are marks for first-steps." in said
+    said = run("export marks --lms book.csv --feedback feedback.zip")
+    assert "4 filled in" in said and "3 pages of feedback" in said
+    # A mended question moves marks once somebody agrees, and the next export says what changed.
+    edited(
+        folder / "solutions" / "first-steps.ipynb", "symbols='x', worth=2", "symbols='x', worth=4"
+    )
+    assert "'ben', first-steps: 5 of 6 -> 7 of 8" in run("regrade marks", fails=True)
+    assert "3 moved." in run("regrade marks --yes")
+    term.write_text(term.read_text() + '\n[extensions.cemm]\nfirst-steps = "excused"\n')
+    assert "nobody in the course is called so" in run("export marks --lms book.csv", fails=True)
+    edited(term, "extensions.cemm", "extensions.cem")
+    said = run("export marks --lms book-filled.csv --filled book-filled.csv")
+    assert "  ben: 5 -> 5.25" in said and "  cem: 3 stays there" in said
+    # A second attempt, an appeal, and the totals.
+    hand_in(folder, "handed-in/ben/first-steps-2.ipynb")
+    assert "'ben', first-steps: 7 -> 8" in run("grade handed-in --out marks", fails=True)
+    run("grade handed-in --out marks --yes")
+    (folder / "appeals.csv").write_text("student,question,words\ncem,first-steps/area,Why?\n")
+    assert "taken in: 1." in run("merge marks appeals.csv --grader Ann")
+    assert "taken in: 0." in run("merge marks appeals.csv --grader Ann")
+    run("term marks")
+    assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
+    # The next term: other people, other numbers, and the counts of the first beside them.
+    edited(folder / "course.toml", 'title = "My course"', 'title = "My course"\nedition = "2027"')
+    run("release first-steps")
+    (folder / "next.csv").write_text("student\neva\nfay\n")
+    run("term new marks-2027 --roster next.csv")
+    assert "is there already" in run("term new marks-2027 --roster next.csv", fails=True)
+    hand_in(folder, "next/eva/first-steps.ipynb")
+    run("grade next --out marks-2027")
+    run("term marks-2027 --earlier marks/course/counts.json")
+    assert "my-course" in (folder / "marks-2027" / "course" / "statistics.html").read_text()
+    assert "6 points" not in run("why eva first-steps --marks marks-2027")
