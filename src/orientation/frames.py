@@ -346,7 +346,7 @@ class Frames:
         Raises
         ------
         ValueError
-            As :meth:`dcm`.
+            As :meth:`Frames.dcm`.
         """
         dcm = self.dcm(target, source)
         if is_symbolic(vector) or is_symbolic(dcm):

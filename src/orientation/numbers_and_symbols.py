@@ -48,7 +48,7 @@ ROUNDINGS = 32
 
 #: Items of a batch that are worked on together, so that their components stay in the cache, and
 #: what is set free after them is too little to be handed back to the system and fetched again.
-BLOCK = 2048
+BLOCK = 4096
 
 
 class SymbolsNotPossible(TypeError):
