@@ -40,6 +40,11 @@ def reader(previous: str) -> Callable[[str], bytes | None]:
             if error.code in (404, 410):
                 return None
             raise
+        except urllib.error.URLError as error:
+            sys.exit(
+                f"{previous} cannot be reached: {error.reason}. If nothing is published there yet, "
+                "leave this command out."
+            )
 
     return read
 
