@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import time
 
 import pytest
@@ -66,6 +67,24 @@ def test_nothing_is_installed_beside_something_else(make):
     lines = make("-j4", "test")
     assert len(lines) > 8
     assert [line.split()[0] for line in lines] == ["begin", "end"] * (len(lines) // 2)
+
+
+@pytest.mark.parametrize("version", ["(3, 10, 13)", "(3, 16, 0)"])
+def test_a_python_that_is_too_old_or_too_new_hears_it_in_one_sentence(tmp_path, version):
+    for name in ("Makefile", "constraints.txt", "pyproject.toml"):
+        shutil.copy(REPOSITORY / name, tmp_path)
+    other = tmp_path / "python"
+    other.write_text(
+        f"#!/bin/sh\nexec {sys.executable} -c "
+        f"'import sys; sys.version_info = {version}; exec(sys.argv[1])' \"$2\"\n"
+    )
+    other.chmod(0o755)
+    done = subprocess.run(
+        ["make", "book", f"PYTHON={other}"], cwd=tmp_path, capture_output=True, text=True
+    )
+    first, *others = done.stderr.splitlines()
+    assert first.startswith("The book needs Python 3.11 to 3.15; this is ")
+    assert len(others) == 1 and others[0].startswith("make: ***")
 
 
 def test_what_the_tests_installed_is_not_installed_again(make):
