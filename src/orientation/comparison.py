@@ -244,10 +244,9 @@ def diagnose(
         _sequence_mixups(turned, sequence, given=turns is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
-    # A matrix that is no orientation comes from no turn: then its fault is told. Symbols that obey
-    # a condition, as a quaternion's four do, miss it at random values: then nothing can be told.
-    # Entries that are off by the tolerance make lengths and products that are off by up to some
-    # four times as much.
+    # Report the fault of a matrix that is not orthogonal. Symbols that obey a condition, as the
+    # four of a quaternion do, miss it at random values, so nothing is reported of them. Entries
+    # that are off by the tolerance make lengths and products that are off by some four times it.
     fault = None if causes else _fault(answers, 4 * tolerance)
     if fault and not _fault(truths, 4 * tolerance):
         causes = [fault]

@@ -70,6 +70,33 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
     assert "stopped before its end" in kernel(CHECK)
 
 
+@pytest.mark.parametrize(
+    ("answer", "shown"),
+    [
+        ("sm.eye(3).row(0)", r'We read: <span class="math">$\begin{bmatrix} 1 &amp; 0 &amp; 0'),
+        ("[[1, 0, 0], [0, 1, 0], [0, 0, sm.cos(beta)/2]]", r"\frac{1}{2} \, \cos(\beta)"),
+        ("'A'", "We read: <code>&#x27;A&#x27;</code>"),
+        ("B", r"{}^{B}\mathbf{C}^{N} = \begin{bmatrix} 1"),
+    ],
+)
+def test_a_reply_shows_the_answer_as_it_was_read(kernel, answer, shown):
+    kernel("import sympy.physics.mechanics as me\nB, N = map(me.ReferenceFrame, 'BN')")
+    kernel("B.orient_axis(N, N.x, beta)")
+    assert shown in kernel(f"check('simple-orientations/boom', {answer})")
+
+
+def test_an_orientation_is_shown_as_a_triad(kernel):
+    kernel("matrix = sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])")
+    reply = kernel("check('simple-orientations/crank', matrix)")
+    # Its x axis lies along the y axis of N: to the right.
+    assert 'aria-label="The triad of A, as it was read, in the triad of N."' in reply
+    assert "We read: [[0, 1, 0], [0, 0, 1], [1, 0, 0]]" in kernel(
+        "print(repr(check('simple-orientations/crank', matrix)))"
+    )
+    # What is no orientation has none.
+    assert "<svg" not in kernel("check('simple-orientations/crank', 2*matrix)")
+
+
 PAGE = "exercises/simple-orientations.html"
 IDLE = "() => !document.querySelector('.cell.running, .cell.waiting, html.live-busy')"
 

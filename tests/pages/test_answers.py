@@ -14,6 +14,7 @@ from places import HTML, REPOSITORY
 from test_live import ELSEWHERE, solution
 
 from coursework.__main__ import main as coursework
+from coursework.authoring.release import LEFT_OPEN
 from notebook_pages.lite import fingerprint_of_code
 from notebook_pages.live.cells import kinds_of_cells
 from notebook_pages.take_away import notebook_address
@@ -206,7 +207,7 @@ def test_fingerprints_are_those_of_the_page(context, site):
 def test_page_is_handed_in_and_graded(context, site, tmp_path):
     tab = Tab(context, site).edit()
     right = re.sub("### (BEGIN|END) SOLUTION\n?", "", solution("simple-orientations/crank")).strip()
-    who = tab.text(1).replace("student('')", "student('ada')")
+    who = tab.text(1).replace(LEFT_OPEN, "student('ada')")
     tab.write(1, who)  # the numbers are her own
     tab.write(ANSWER, right)
     download = tab.take()
@@ -241,7 +242,7 @@ def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
     tab.take().save_as(tmp_path / "mine.ipynb")
     cells = nbformat.read(tmp_path / "mine.ipynb", as_version=4).cells
     codes = [cell.source for cell in cells if cell.cell_type == "code"]
-    assert 'student("Ada O\'Hara")' in codes[0] and "student('')" in before
+    assert 'student("Ada O\'Hara")' in codes[0] and LEFT_OPEN in before
     assert codes[ANSWER - 1] == "mine = 1" and "1 cell of this page" in tab.words()
     tab.bring(tmp_path / "mine.ipynb")
     assert "Nothing is different" in tab.words() and tab.text(1) == before and tab.errors == []

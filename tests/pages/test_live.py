@@ -16,6 +16,7 @@ from places import HTML, REPOSITORY, html_pages
 from playwright.sync_api import expect
 from test_site import Visit, violations
 
+from coursework.authoring.release import LEFT_OPEN
 from coursework.checking.questions import notebook_questions
 from coursework.checking.variants import variant_of
 from notebook_pages.browser import FLAGS, find
@@ -712,7 +713,13 @@ def test_exercise_is_checked_in_the_page(context, site):
 
 
 @pytest.mark.long
-def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(context, site):
+def signed(code, who):
+    """The first cell as a student writes it who has an ID."""
+    assert LEFT_OPEN in code
+    return code.replace(LEFT_OPEN, f"student('{who}')")
+
+
+def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, site):
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
     students = {
@@ -732,11 +739,14 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
         return page.below(shown)
 
     everybodys = run(page)
-    assert sealed == [] and "that everybody sees" in page.cell(1).inner_text()
+    # Who learns alone meets nothing of it.
+    assert sealed == [] and page.page.locator(".live-who").count() == 0
+    assert "default" not in page.page.inner_text("main")
     own = max(students)
-    page.page.fill(".live-who input", f" {students[own].upper()} ")
-    page.page.click(".live-who button")
-    assert f"those of {students[own].upper()}" in page.cell(1).inner_text()
+    page.write(1, signed(codes[0], f" {students[own].upper()} "))
+    page.page.click("button.run-cell >> nth=0")
+    page.wait()
+    assert f"You are {students[own]}." in page.below(1)
     mine = run(page)
     assert mine != everybodys and page.errors == []
     # One small file for each question above with variants, and no more than that.
@@ -744,7 +754,6 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
         address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed
     )
     assert len(sealed) <= 3 and sum(size for _, size in sealed) < 30_000, sealed
-    # Another page of the book does not ask any more, and what is said in the code counts as well.
     opened.remove(page.page)
     page.page.close()
     again = Page(context, site, name)
@@ -755,10 +764,9 @@ def test_page_asks_once_whose_numbers_it_shows_and_fetches_one_small_file(contex
     )
     assert again.below(shown) == mine
     assert run(again) == mine
-    assert f"those of {students[own].upper()}" in again.cell(1).locator(".live-who").inner_text()
-    again.write(1, codes[0].replace("student('')", f"student('{students[0]}')"))
-    assert everybodys.startswith(run(again))  # but for what is said to whoever has no name
-    again.page.wait_for_selector(f".live-who:has-text('those of {students[0]}')")
+    again.write(1, signed(codes[0], students[0]))
+    assert run(again) == everybodys
+    assert f"You are {students[0]}; until now you were {students[own]}." in again.below(1)
 
 
 @pytest.mark.long
@@ -802,7 +810,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     ) and "Not attempted" not in page.below(check)
     assert "the numbers of ada" in page.below(shown)
     assert (
-        page.cell(shown).locator("details:has-text('that everybody sees')").get_attribute("open")
+        page.cell(shown).locator("details:has-text('The default numbers')").get_attribute("open")
         is None
     )
 
@@ -828,14 +836,15 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
         return page.below(check)
 
     def call_oneself(who):
-        page.page.fill(".live-who input", who)
-        page.page.click(".live-who button")
+        page.write(1, signed(codes[0], who))
+        page.page.click("button.run-cell >> nth=0")
+        page.wait()
         return page.below(check)
 
     def reopened():
         page.page.reload()
         # It asks for its scripts, since there are edits to bring back.
-        page.page.wait_for_selector(".live-who")
+        page.page.wait_for_selector(".cm-content")
         return page.below(check)
 
     run()  # the editors come with Python
@@ -844,28 +853,21 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
     assert "✓ Correct" in reopened() and reply.count() == 0
     for who in (students[3], students[5]):  # the first one mistyped
         said = call_oneself(who)
-        assert (
-            "✓ Right with the numbers that everybody sees" in said
-            and f"are those of {who} now" in said
-        )
+        assert "✓ Right with the default numbers" in said and f"are those of {who} now" in said
     run()
     # The answer follows the numbers.
     assert reply.get_attribute("data-outcome") == "correct", page.below(check)
-    assert "everybody" not in page.below(check)
+    assert "default" not in page.below(check)
     assert "✓ Right with" not in reopened() and "✓ Correct" in page.below(check)
     run()
-    page.write(1, codes[0].replace("student('')", f"student('{students[3]}')"))  # said in the code
-    page.page.click("button.run-cell >> nth=0")
-    page.wait()
-    assert "✓ Right with" in page.below(check) and reply.count() == 0
+    assert "✓ Right with" in call_oneself(students[3]) and reply.count() == 0
     assert (
         page.cell(check)
         .locator("details:has-text('The reply to other numbers')")
         .get_attribute("open")
         is None
     )
-    page.write(1, codes[0])
-    said = call_oneself("")
+    said = call_oneself(students[5])
     assert "✓ Correct" in said and "Right with" not in said
     page.page.goto(site + "appendix/my-progress.html")
     counted = page.page.locator(

@@ -11,16 +11,19 @@ from copy import deepcopy
 from functools import cache
 from importlib.metadata import distribution
 from pathlib import Path
+from types import SimpleNamespace
 
 import jupytext
 import nbformat
 import pytest
+from docutils import nodes
 from jupyter_client import AsyncKernelManager
 from nbclient import NotebookClient
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from places import HTML, REPOSITORY
 
+from notebook_pages.markdown import MarkdownWriter
 from notebook_pages.notebooks import all_notebooks
 from notebook_pages.paths import PACKAGES
 
@@ -301,3 +304,21 @@ def test_no_solution_is_inside(name):
     for cell in nbformat.read(SOLUTIONS, as_version=4).cells:
         if cell.cell_type == "code" and "import" not in cell.source:
             assert cell.source not in code
+
+
+@pytest.mark.parametrize(
+    ("address", "written"),
+    [
+        ("", "More on this: The way back."),
+        (
+            "https://book.example/b",
+            "More on this: [The way back](https://book.example/b/chapters/frames.html#way-back).",
+        ),
+    ],
+)
+def test_a_link_to_another_page_leads_to_the_book_where_it_has_an_address(address, written):
+    config = SimpleNamespace(numfig_format={}, html_baseurl=address)
+    env = SimpleNamespace(toc_fignumbers={}, toc_secnumbers={}, config=config)
+    link = nodes.reference("", "The way back", refuri="../chapters/frames.html#way-back")
+    paragraph = nodes.paragraph("", "", nodes.Text("More on this: "), link, nodes.Text("."))
+    assert MarkdownWriter(env, "appendix/essay").inline(paragraph) == written

@@ -340,7 +340,10 @@ class _Student:
         self.cells = copy.deepcopy(exercise.cells)
         for cell in self.cells:
             cell.source = re.sub(
-                r"student\(''\)", lambda found: f"student({identity!r})", cell.source
+                r"^(# )?student\('(your ID)?'\)",
+                lambda found: f"student({identity!r})",
+                cell.source,
+                flags=re.M,
             )
         self.expected = {name: ["not attempted", ""] for name in exercise.questions}
         self.did: list[str] = []

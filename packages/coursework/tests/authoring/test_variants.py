@@ -22,8 +22,9 @@ from trial_course import made_in, write_source
 
 import coursework
 from coursework.authoring.author import AuthorError, solution_code
+from coursework.authoring.course import find_course
 from coursework.authoring.packing import archive
-from coursework.authoring.release import release
+from coursework.authoring.release import LEFT_OPEN, release
 from coursework.authoring.source import read_source
 from coursework.authoring.variation import Rule, drawn_in, written
 from coursework.checking import check as check_module
@@ -52,7 +53,8 @@ DRAWN = (
 CHECKED = (
     "check('levers/see-saw', moment)\n"
     "### BEGIN HIDDEN TESTS\n"
-    "question('levers/see-saw', kind='expression', mistakes={'Force and arm are multiplied, not "
+    "question('levers/see-saw', kind='expression', ladder=['Draw it.'],\n"
+    "mistakes={'Force and arm are multiplied, not "
     "added.': lever.force + lever.arm}, solution=f'It is ${lever.force} \\\\cdot {lever.arm}$.')\n"
     "### END HIDDEN TESTS"
 )
@@ -118,20 +120,8 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
     lever = coursework.variant("levers/see-saw")
     text = f"## See-saw\n\nA force of {lever.force} N acts {lever.arm} m from the hinge. "
     text += "Give its moment as moment, in N m."
-    # Whoever has not said who they are reads it at the question, before anything is answered.
-    assert repr(lever) == text + (
-        f"\n\n{re.sub('[*`]', '', identity.FORGOTTEN)}" if number == 0 else ""
-    )
-    # Whoever has not said who they are hears it in each reply to an answer.
-    replies = [
-        coursework.check("levers/see-saw", answer)
-        for answer in (lever.force * lever.arm, 0, "a text", ...)
-    ]
-    assert [identity.FORGOTTEN in reply.messages for reply in replies] == [number == 0] * 3 + [
-        False
-    ]
-    # Without variants
-    assert identity.FORGOTTEN not in coursework.check("levers/plain", 7).messages
+    # Whoever has not said who they are hears it where they would say it, and nowhere else.
+    assert repr(lever) == text
     assert coursework.check("levers/see-saw", lever.force * lever.arm).outcome == "correct"
     assert "not added" in coursework.check("levers/see-saw", lever.force + lever.arm).messages[0]
     assert coursework.check("levers/plain", 7).outcome == "correct"  # a question without variants
@@ -146,6 +136,29 @@ def test_each_variant_has_its_own_text_numbers_and_answer(beside, course, number
         assert (outcome == "correct") == right
 
 
+@pytest.mark.parametrize("roster", [False, True])
+def test_a_notebook_asks_for_an_id_where_the_course_has_a_roster(tmp_path, roster):
+    """It says once what forgetting it means; who learns alone meets nothing of it."""
+    made = made_in(tmp_path)._replace(roster=roster)
+    write_source(made.sources, *CELLS, name="levers")
+    release(made, variants=[])
+    text = (made.exercises / "levers.ipynb").read_text("utf8")
+    first = next(cell for cell in json.loads(text)["cells"] if cell["cell_type"] == "code")
+    asked = "student('')" if roster else LEFT_OPEN
+    assert first["source"][-1] == asked
+    assert text.count("default numbers") == roster
+
+
+@pytest.mark.parametrize(("value", "roster"), [("true", True), ("false", False), ("'yes'", None)])
+def test_whether_there_is_a_roster_is_true_or_false(tmp_path, value, roster):
+    (tmp_path / "course.toml").write_text(f"roster = {value}\n")
+    if roster is None:
+        with pytest.raises(AuthorError, match="set roster = true or leave it out; it is 'yes'"):
+            find_course(tmp_path)
+    else:
+        assert find_course(tmp_path).roster is roster
+
+
 def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
     """Pasted with the classmate's numbers, or worked out with everybody's: it is no
     help, no try, and earns no hint.
@@ -155,7 +168,7 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
         given = read_source(course.sources / "levers.ipynb", other).questions[NAME].public.given
         reply = coursework.check(NAME, given["force"] * given["arm"])
         assert (reply.outcome, reply.note) == ("wrong", "other numbers")
-        assert ("another student" if other else "that everybody sees") in reply.messages[0]
+        assert reply.messages == [questions.FOR_OTHERS]
         assert reply.tries == 0 and not reply.tried
     assert coursework.check(NAME, 1234567).note == ""
     right = coursework.check(NAME, lever.force * lever.arm)
@@ -177,21 +190,18 @@ def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(
     lever = coursework.variant(NAME)
     assert coursework.check(NAME, lever.force * lever.arm).outcome == "correct"
     coursework.student(student_with(2))
-    said = capsys.readouterr().out
-    assert "that everybody sees" in said and NAME in said and student_with(2) in said
+    assert f"You are {student_with(2)}." in capsys.readouterr().out
     assert f"not with yours yet: {NAME}" in repr(coursework.progress())
     reply = coursework.check(NAME, lever.force * lever.arm)
     assert (reply.outcome, reply.tries) == (
         "wrong",
         0,
-    ) and "right for the numbers that everybody" in reply.messages[0]
+    ) and "right for other numbers" in reply.messages[0]
     own = coursework.variant(NAME)
     assert coursework.check(NAME, own.force * own.arm).outcome == "correct"
     assert "not with yours" not in repr(coursework.progress()) and "is right" in repr(
         coursework.progress()
     )
-    coursework.student(student_with(2))
-    assert NAME not in capsys.readouterr().out
 
 
 EDITIONS = [{0: (20, 2), 1: (30, 3), 2: (45, 7)}, {0: (20, 2), 1: (45, 7), 2: (65, 9)}]
@@ -376,7 +386,7 @@ def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
         coursework.student("")
         assert (
             identity._identity == "ada@uni.example"
-            and "those of ada@uni.example" in capsys.readouterr().out
+            and "You are ada@uni.example, as you said before." in capsys.readouterr().out
         )
         coursework.student("ben")  # another one says it anew
         coursework.student("")
@@ -407,7 +417,7 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     assert coursework.check(NAME, lever.force + lever.arm).outcome == "wrong"
     right = coursework.check(NAME, lever.force * lever.arm)
     assert right.outcome == "correct" and right.help == "mistake"
-    assert "a mistake was named" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(
+    assert "we named your mistake" in right.messages[0] and f"variant('{NAME}/sibling')" in repr(
         right
     )
     assert (

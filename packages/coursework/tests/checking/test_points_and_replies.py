@@ -131,7 +131,7 @@ def test_a_reply_as_text():
     assert repr(shown()) == "Not yet: levers/<one>\nSay so: x_1 < 2.\nAnd on."
     solved = Reply("levers/one", "correct", solution="<p>So.</p>")
     assert repr(solved) == "\n".join(
-        ["Correct: levers/one", "The worked solution is shown where HTML can be."]
+        ["Correct: levers/one", "Open the notebook in Jupyter to see the worked solution."]
     )
     for outcome, (_, word, _) in OUTCOMES.items():
         assert repr(Reply("a/b", outcome)) == f"{word}: a/b"
@@ -180,11 +180,11 @@ def test_a_new_reply_knows_nothing_that_it_was_not_told():
     assert vars(one) == {
         "question": "a", "outcome": "correct", "note": "", "messages": [], "solution": "",
         "answer": "", "tries": 0, "tried": [], "help": "", "sibling": "", "details": {},
-        "opened": None, "known": None,
+        "shown": None, "opened": None, "known": None,
     }  # fmt: skip
     two = Reply("a", "wrong", "n", ("m",), "s", "opened", "known", {"d": 1})
     assert [*vars(two).values()] == [
-        "a", "wrong", "n", ["m"], "s", "", 0, [], "", "", {"d": 1}, "opened", "known",
+        "a", "wrong", "n", ["m"], "s", "", 0, [], "", "", {"d": 1}, None, "opened", "known",
     ]  # fmt: skip
     assert set(HELP) == {"mistake", "hint", "solution"}
 

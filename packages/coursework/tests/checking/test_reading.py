@@ -87,10 +87,10 @@ def test_the_numbers_of_an_answer(question, answer, numbers):
 
 WANTED = {
     "expression": "a single expression",
-    "vector": "a list of 3 components",
+    "vector": "a list of 3 numbers",
     "matrix": "a matrix of 2 × 3",
     "measurement": "a number and its unit, such as `(3.2, 'N m')`",
-    "truth values": "a list of 3 truth values, `True` or `False`",
+    "truth values": "a list of 3 Booleans, `True` or `False`",
     "order": "a list with each of `a`, `b`, `c` once",
     "free text": "a text",
     "choice": "one of `-i`, `1`, `+x`, `none`, `- 2 -`, `B`, in quotation marks",
@@ -109,9 +109,9 @@ ROWS = "a list of rows, one of which has"
         (EXPRESSION, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
         (EXPRESSION, [[1, 2], 3], "a list with 2 entries"),
         (EXPRESSION, [[1, 2], [3]], "a list with 2 entries"),
-        (EXPRESSION, (1, "m"), "a number with a unit, or with a text"),
-        (EXPRESSION, "7", "a text: write it without quotation marks"),
-        (EXPRESSION, True, "a truth value"),
+        (EXPRESSION, (1, "m"), "a number with a unit, or with a string"),
+        (EXPRESSION, "7", "a string: write it without quotation marks"),
+        (EXPRESSION, True, "a Boolean"),
         (EXPRESSION, B, "a reference frame"),
         (EXPRESSION, A.x, "a vector"),
         (EXPRESSION, plain(["function", [], True]), "a function"),
@@ -121,16 +121,20 @@ ROWS = "a list of rows, one of which has"
         (EXPRESSION, plain(["list", [["list", []]]]), "a list with 0 entries"),
         (VECTOR, 7, "a single expression"),
         (VECTOR, [7], "a list with 1 entry"),
-        (VECTOR, "7", "a text: write it without quotation marks"),
+        (VECTOR, "7", "a string: write it without quotation marks"),
         (VECTOR, [[1, 2]], "a list with 2 entries"),
-        (VECTOR, [1, 2, "3"], "a list that holds a text: numbers stand without quotation marks"),
+        (
+            VECTOR,
+            [1, 2, "3"],
+            "a list in which one entry is a string; write numbers without quotation marks",
+        ),
         (VECTOR, [1, ..., 3], "a list that is still blank in part"),
         (VECTOR, [1, [..., ...], 3], "a list that is still blank in part"),
-        (VECTOR, [1, True, 3], "a list with 3 entries, one of which is a truth value"),
+        (VECTOR, [1, True, 3], "a list with 3 entries, one of which is a Boolean"),
         (VECTOR, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
         (VECTOR, A.x, "a vector"),
         (MATRIX, sm.eye(2), "a matrix of 2 × 2"),
-        (MATRIX, [[1, 2, 3]], "a list of 1 rows with 3 entries each"),
+        (MATRIX, [[1, 2, 3]], "a list of one row with 3 entries"),
         (MATRIX, [[1, 2], [3, 4]], "a list of 2 rows with 2 entries each"),
         (MATRIX, [[1, 2, 3], [4, 5]], f"{ROWS} 2 entries"),
         (MATRIX, [[1, 2, 3], [..., ...]], f"{ROWS} 2 entries"),
@@ -139,27 +143,27 @@ ROWS = "a list of rows, one of which has"
         (
             MATRIX,
             [[1, 2, 3], [4, "5", 6]],
-            "a list that holds a text: numbers stand without quotation marks",
+            "a list in which one entry is a string; write numbers without quotation marks",
         ),
         (MATRIX, [[1, 2, 3], 4], "a list with 2 entries, one of which is a single expression"),
-        (MATRIX, [[1, 2, 3], "4"], "a list that holds a text"),
+        (MATRIX, [[1, 2, 3], "4"], "a list in which one entry is a string"),
         (
             MATRIX,
             [[1, 2, 3], sm.eye(2)],
             "a list with 2 entries, one of which is a matrix of 2 × 2",
         ),
-        (MATRIX, "7", "a text: write it without quotation marks"),
+        (MATRIX, "7", "a string: write it without quotation marks"),
         (MEASUREMENT, 7, "a single expression"),
-        (MEASUREMENT, "7 N", "a text"),
-        (MEASUREMENT, ("7", "N"), "a text: write it without quotation marks"),
+        (MEASUREMENT, "7 N", "a string"),
+        (MEASUREMENT, ("7", "N"), "a string: write it without quotation marks"),
         (MEASUREMENT, [7, 8], "a list with 2 entries"),
         (MEASUREMENT, [7, "N", "m"], "a list with 3 entries"),
-        (TRUTHS, True, "a truth value"),
+        (TRUTHS, True, "a Boolean"),
         (TRUTHS, [True, False], "a list with 2 entries"),
         (TRUTHS, [True, False, 2], "a list with 3 entries, one of which is a single expression"),
-        (TRUTHS, [True, False, "yes"], "a list that holds a text"),
+        (TRUTHS, [True, False, "yes"], "a list in which one entry is a string"),
         (TRUTHS, [True, False, ...], "a list that is still blank in part"),
-        (ORDER, "abc", "a text"),
+        (ORDER, "abc", "a string"),
         (ORDER, ["a", "b"], "a list with 2 entries"),
         (ORDER, ["b", "a", "b"], "one in which `b` stands 2 times"),
         (TEXT, 3, "a single expression"),
@@ -171,7 +175,7 @@ ROWS = "a list of rows, one of which has"
         (CHOICE, plain(STRAY, MINUS, NAME, ["Add", 0, 1]), "a single expression"),
         (CHOICE, plain(STRAY, TWO, NAME, ["Mul", 0, 1]), "a single expression"),
         (CHOICE, plain(STRAY, MINUS, NAME, ["Mul", 0, 1, 1]), "a single expression"),
-        (CHOICE, True, "a truth value"),
+        (CHOICE, True, "a Boolean"),
         (CHOICE, ["1", 2], "a list with 2 entries"),
     ],
 )
@@ -181,7 +185,7 @@ def test_what_is_said_of_another_form(question, answer, told):
         read(question, answer)
     wanted, said = WANTED[question.kind], found.value.message
     assert found.value.note == "shape" and str(found.value) == said
-    assert said == f"The question wants {wanted}; this is {told}."
+    assert said == f"Give {wanted}; this is {told}."
 
 
 OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
@@ -191,12 +195,12 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
     ("question", "answer", "note", "said"),
     [
         (WORDS, ["1"], "shape", f"a list of 2 words, each one of {OPTIONS}; this is a list with 1"),
-        (WORDS, "1", "shape", f"a list of 2 words, each one of {OPTIONS}; this is a text."),
+        (WORDS, "1", "shape", f"a list of 2 words, each one of {OPTIONS}; this is a string."),
         (WORDS, ["1", ...], "shape", "still blank in part: `'none'` is a text, too."),
         (LOUD, ["yes", ...], "shape", "a list that is still blank in part."),
         (WORDS, ["1", "k"], "shape", f"The answer is one of {OPTIONS}; this is `k`."),
         (CHOICE, 50 * "k", "shape", f"The answer is one of {OPTIONS}; this is `{40 * 'k'}`."),
-        (IN_A, [1, 2], "shape", "The question wants a list of 3 components; this is a list with 2"),
+        (IN_A, [1, 2], "shape", "Give a list of 3 components; this is a list with 2"),
         (IN_A, B.x, "frame", "This vector is not connected with the frame `A` that the question"),
         (EXPRESSION, x, "stray symbol", "The answer holds `x`; this question has no symbols."),
         (
@@ -226,14 +230,14 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             FUNCTION,
             returned(FIRST, ["truth", True]),
             "shape",
-            "In call 2 of 2 the function did not return what the question wants. "
-            "The question wants a single expression; this is a truth value.",
+            "In call 2 of 2 the function did not return what the question asks for. "
+            "Give a single expression; this is a Boolean.",
         ),
         (
             Question("function", result="expression", calls=([1], [2]), symbols={"w": (1, 2)}),
             returned(FIRST, STRAY),
             "stray symbol",
-            "wants. The answer holds `w`; this question has no symbols.",
+            "asks for. The answer holds `w`; this question has no symbols.",
         ),
     ],
 )

@@ -175,7 +175,7 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
     assert given.arm == given["arm"] == 2 and not hasattr(given, "_leg")
     with pytest.raises(AttributeError, match="^_leg$"):
         given.__getattr__("_leg")
-    with pytest.raises(AttributeError, match="gives arm, _leg, and no force"):
+    with pytest.raises(AttributeError, match="gives `arm`, `_leg`; `force` is not among them"):
         given.__getattr__("force")
 
 

@@ -1,6 +1,7 @@
 """A newer archive beside a student's work: what becomes of each file, and what is said of it."""
 
 import json
+import os
 import sys
 import zipfile
 from importlib.metadata import version
@@ -242,3 +243,16 @@ def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):
     archive = zipped(tmp_path / "exercises.zip", files)
     update(archive, work)
     assert "one.ipynb" in contents(work) and "._one.ipynb" not in contents(work)
+
+
+def test_a_newer_download_beside_an_older_one_is_named(work, tmp_path):
+    """A browser numbers the second one, and its reader types the name that the README has."""
+    old = zipped(tmp_path / "exercises.zip", {"one.ipynb": notebook("one")})
+    new = zipped(tmp_path / "exercises (1).zip", {"one.ipynb": notebook("two"), ".DS_Store": b"0"})
+    os.utime(old, (1, 1))
+    before = contents(work)
+    with pytest.raises(ArchiveRefused, match=r'lies "exercises \(1\)\.zip", which is newer'):
+        update(old, work)
+    assert contents(work) == before
+    update(new, work)
+    assert contents(work)["one.ipynb"] == notebook("two") and ".DS_Store" not in contents(work)

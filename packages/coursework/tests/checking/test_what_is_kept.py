@@ -10,7 +10,7 @@ import pytest
 from coursework.checking import fields, identity
 from coursework.checking.fields import Fields, Misread
 from coursework.checking.progress import KEPT, Entry, Progress
-from coursework.checking.question import Place, Question, Variant
+from coursework.checking.question import Place
 
 OTHER = {"outcome": "correct", "variant": 1, "numbers": "other", "whose": ""}
 WHOLE = {
@@ -146,71 +146,42 @@ def test_a_folder_that_cannot_be_written_to_costs_the_record_only(folder):
     assert progress.entry("a/one") == ENTRY and Progress.read().entries == {}
 
 
-def test_what_is_right_with_other_numbers_is_told_by_whose_they_were():
-    right, wrong = (
-        {"outcome": outcome, "variant": 1, "numbers": outcome} for outcome in ("correct", "wrong")
-    )
-    progress = Progress(
-        {
-            "d": {**right, "whose": "ann"},
-            "c": {**wrong, "whose": "bob", "other variants": {"1": {**right, "whose": "ann"}}},
-            "b": {**right, "whose": "bob", "other variants": {"1": {**right, "whose": "ann"}}},
-            "a": right,
-            "e": {
-                **wrong,
-                "whose": "ann",
-                "other variants": {"1": {**right, "whose": ""}, "2": {**right, "whose": "eve"}},
-            },
-        }
-    )
-    assert progress.right_for_others("bob") == {"ann": ["c", "d"], "": ["e"]}
-    assert progress.right_for_others("ann") == {"": ["e"]}
-
-
 # --- who works here -----------------------------------------------------------------------------
 
 
 def test_who_works_here_is_said_once(folder, capsys):
-    Progress({}).put({"b": Entry("correct", variant=1, numbers="x", whose="")})
-    Progress.read().put({"a": Entry("correct", variant=1, numbers="x", whose="bob")})
-    Progress.read().put({"c": Entry("correct", variant=1, numbers="x", whose="ann ä")})
-    identity.student("")
-    assert capsys.readouterr().out == ""
+    for nobody in ("", "your ID"):
+        identity.student(nobody)
+        assert capsys.readouterr().out == identity.FORGOTTEN + "\n"
     identity.student("  Ann   Ä\t")
     assert identity.identity() == "ann ä" == identity.KEPT.read_text("utf8")
-    said = capsys.readouterr().out
-    assert said.splitlines() == [
-        "With the numbers of bob you have solved a. "
-        "That stays written down; for the numbers of ann ä, run the cells again.",
-        "With the numbers that everybody sees you have solved b. That stays written down; for the "
-        "numbers of ann ä, run the cells again.",
-    ]
+    assert capsys.readouterr().out == "You are ann ä. The numbers below are yours.\n"
     monkey = identity._identity
     identity.student()
     assert identity.identity() == monkey
     assert capsys.readouterr().out.startswith(
-        "The numbers below are those of ann ä, as you have said before.\n"
+        "You are ann ä, as you said before. The numbers below are yours.\n"
     )
     # The same name, stored in other characters, changes nothing; another name is told.
     identity.student("Ann A\u0308\u200b")
     assert "until now" not in capsys.readouterr().out and identity.identity() == monkey
     identity.student("Anne Ä")
     assert "You are anne ä; until now you were ann ä." in capsys.readouterr().out
-    for count, student, told in ((1, "", ""), (2, "ann", ""), (2, "", identity.FORGOTTEN)):
-        asked = Question("expression", variant=Variant(count=count))
-        assert identity.forgotten(student, asked) == told
+    # Another notebook of the folder that asks nobody works with the same numbers.
+    identity._identity = None
+    assert identity.identity() == "anne ä"
 
 
-def test_an_identity_that_cannot_be_kept_or_read_is_said_anew(folder, capsys):
+def test_an_identity_that_cannot_be_kept_or_read_is_said_anew(folder):
     identity.student("")
-    assert identity.identity() == "" == capsys.readouterr().out
+    assert identity.identity() == ""
     KEPT.parent.mkdir()
     identity.KEPT.write_bytes(b"\xff")
     identity.student("")
-    assert identity.identity() == "" == capsys.readouterr().out
+    assert identity.identity() == ""
     identity.KEPT.write_text(" ")
     identity.student("")
-    assert identity.identity() == "" == capsys.readouterr().out
+    assert identity.identity() == ""
     identity.KEPT.unlink()
     identity.KEPT.mkdir()
     identity.student("Ann")

@@ -35,6 +35,7 @@ from sample_class import make_class
 
 from coursework.__main__ import main
 from coursework.checking.reply import plain_text, to_html
+from coursework.checking.writing import answer_as_text
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import (
     Limits,
@@ -377,13 +378,11 @@ def test_one_function_makes_a_message_a_page_and_loses_no_sign(said, shown):
 
 
 def test_a_number_is_shown_with_the_digits_that_make_it_nearly_right():
-    from coursework.grading.reporting.mathematics import answer_as_mathematics
-
     nearly = {
         "value": ["expression", 2],
         "nodes": [["symbol", "x"], ["float", "1.0000001"], ["Mul", 1, 0]],
     }
-    assert "1.0000001" in answer_as_mathematics(nearly) and "1.0000001" in pages.answer_as_text(
+    assert "1.0000001" in pages.answer_as_mathematics(nearly) and "1.0000001" in answer_as_text(
         nearly
     )
 
@@ -393,12 +392,12 @@ def test_an_answer_is_printed_in_bounded_length():
         "value": ["expression", 60],
         "nodes": [["symbol", "x"], *(["Add", order, order] for order in range(60))],
     }
-    assert len(pages.answer_as_text(doubling)) < 400
+    assert len(answer_as_text(doubling)) < 400
     deep = {
         "value": ["expression", 5_000],
         "nodes": [["symbol", "x"], *(["sin", order] for order in range(5_000))],
     }
-    assert len(pages.answer_as_text(deep)) < 400
+    assert len(answer_as_text(deep)) < 400
     import sympy as sm
 
     from coursework.checking.plain import to_plain
@@ -415,7 +414,7 @@ def test_an_answer_is_printed_in_bounded_length():
         -(x + y),
         (x**2) ** y,
     ):
-        assert sm.simplify(sm.sympify(pages.answer_as_text(to_plain(expression))) - expression) == 0
+        assert sm.simplify(sm.sympify(answer_as_text(to_plain(expression))) - expression) == 0
 
 
 # ---- the report

@@ -1,11 +1,12 @@
 """A resolved page of the book as plain Markdown, for Jupyter or any editor.
 
 The page's tree is read after Sphinx has numbered and linked everything, so that a
-reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore". Only markup that
-every Markdown reader knows comes out.
+reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore"; to another page it is
+a link where the book has an address. Only markup that every Markdown reader knows comes out.
 """
 
 from textwrap import indent
+from urllib.parse import urljoin
 
 from docutils import nodes
 from sphinx import addnodes
@@ -29,6 +30,8 @@ class MarkdownWriter:
         self.figure_numbers = env.toc_fignumbers.get(docname, {})
         self.section_numbers = env.toc_secnumbers.get(docname, {})
         self.names = env.config.numfig_format
+        base = env.config.html_baseurl
+        self.address = f"{base.rstrip('/')}/{docname}.html" if base else ""
         self.pieces = []  # (is_cell, Markdown or the cell's node)
         self.answers = []  # to the questions of the page, which stand at its end
 
@@ -79,8 +82,9 @@ class MarkdownWriter:
             return f"*{text}*"
         if isinstance(node, nodes.strong):
             return f"**{text}**"
-        if isinstance(node, nodes.reference) and "://" in node.get("refuri", ""):
-            return f"[{text}]({node['refuri']})"
+        uri = node.get("refuri", "") if isinstance(node, nodes.reference) else ""
+        if "://" in uri or uri and self.address:
+            return f"[{text}]({urljoin(self.address, uri)})"
         if isinstance(node, nodes.footnote_reference):
             return f"[{text}]"
         # Leave the spaces at the edges of nested text as they are.

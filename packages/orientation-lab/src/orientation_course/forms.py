@@ -1,11 +1,17 @@
 """Other ways of writing an orientation, and other orientations, to try questions with."""
 
+import sympy
+from sympy import Rational
+from sympy.physics.mechanics import ReferenceFrame
 
-def of_dcm(question, answer):
+from coursework.checking.question import Question
+from orientation import multiply_quaternions
+
+from .mistakes import Answer, Turns, dcm_of, quaternion_of
+
+
+def of_dcm(question: Question, answer: Answer) -> list[tuple[str, object]]:
     """A direction cosine matrix of symbols as a SymPy reference frame."""
-    import sympy
-    from sympy.physics.mechanics import ReferenceFrame
-
     if not isinstance(answer, sympy.MatrixBase) or not question.symbols:
         return []
     target, source = (ReferenceFrame(name) for name in question.frames)
@@ -13,21 +19,15 @@ def of_dcm(question, answer):
     return [("reference frame", target)]
 
 
-def of_sequence(question, answer):
+def of_sequence(question: Question, answer: str) -> list[tuple[str, object]]:
     return [("dashes", "-".join(answer)), ("spaces", " ".join(answer)), ("list", list(answer))]
 
 
-def _a_turn():
-    from sympy import Rational
-
+def _a_turn() -> Turns:
     return [((Rational(2, 3), Rational(-1, 3), Rational(2, 3)), Rational(37, 100))]
 
 
-def another_dcm(question, answer):
-    import sympy
-
-    from .mistakes import dcm_of
-
+def another_dcm(question: Question, answer: Answer) -> Answer:
     if hasattr(answer, "dcm"):
         answer = answer.dcm(next(iter(answer._dcm_dict)))
     return dcm_of(_a_turn()) * sympy.Matrix(
@@ -35,15 +35,9 @@ def another_dcm(question, answer):
     )
 
 
-def another_quaternion(question, answer):
-    import sympy
-
-    from orientation import multiply_quaternions
-
-    from .mistakes import quaternion_of
-
+def another_quaternion(question: Question, answer: Answer) -> Answer:
     return multiply_quaternions(sympy.Matrix(list(answer)), quaternion_of(_a_turn()))
 
 
-def another_sequence(question, answer):
+def another_sequence(question: Question, answer: str) -> str:
     return next(word for word in ("xyx", "yzy", "zxy") if word not in (answer, answer[::-1]))

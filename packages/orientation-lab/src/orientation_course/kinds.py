@@ -6,12 +6,16 @@ something that there is one of.
 """
 
 import unicodedata
+from collections.abc import Sequence
+from functools import partial
+from typing import cast
 
 from coursework.checking.evaluate import MP
 from coursework.checking.kinds import (
     FUNCTIONS,
     TRANSPOSED,
     Fault,
+    Number,
     components,
     leaf,
     length_in_words,
@@ -23,27 +27,31 @@ from coursework.checking.kinds import (
     slack,
     word,
 )
+from coursework.checking.plain import Plain, Value, by_frame, parts_of, text_of
 from coursework.checking.plugins import Kind
+from coursework.checking.question import Question
 from orientation.axis_angle import axis_angle_formula
 from orientation.euler_angles import body_fixed_formula
+from orientation.quaternions import dcm_from_quaternion
 
 from . import forms, mistakes
 
 
-def _dcm(question, value):
+def _dcm(question: Question, value: Value) -> list[int]:
+    # What a function returns has no frames of its own.
+    target, source = question.frames or ("", "")
     if value[0] == "frames":
-        target, source = question.frames
-        if target not in value[1] or source not in value[1][target]:
+        frames = cast("dict[str, dict[str, Value]]", value[1])
+        if source not in frames.get(target, {}):
             raise Fault(
                 "frame",
-                f"These are the frames {listed(value[1])}; the question asks for the orientation "
+                f"These are the frames {listed(frames)}; the question asks for the orientation "
                 f"of `{target}` with respect to `{source}`, and there is no path between two of "
                 "these names.",
             )
-        value = value[1][target][source]
+        value = frames[target][source]
     if value[0] == "frame":
-        target, source = question.frames
-        name, others = value[1], value[2]
+        name, others = text_of(value), by_frame(value)
         if target != name or source not in others:
             connected = [other for other in others if other != name]
             raise Fault(
@@ -52,40 +60,32 @@ def _dcm(question, value):
                 f"the question asks for the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
-    if value[0] == "list" and value[1] and all(row[0] == "vector" for row in value[1]):
+    rows = parts_of(value) if value[0] == "list" else []
+    if rows and all(row[0] == "vector" for row in rows):
         # Its rows as the unit vectors themselves: their components are along the source frame.
-        source = question.frames[1]
-        if not all(source in row[1] for row in value[1]):
+        if not all(source in by_frame(row) for row in rows):
             raise Fault(
                 "frame",
                 f"These vectors are not connected with the frame `{source}` that the question "
                 "names.",
             )
-        value = ["list", [row[1][source] for row in value[1]]]
+        value = ["list", [by_frame(row)[source] for row in rows]]
     return row_entries(value, 3, 3, "A matrix of 3 × 3")
 
 
-def _quaternion(question, value):
-    return components(value, 4, "A list of four numbers, the scalar first")
-
-
-def _angles(question, value):
-    return components(value, 3, "A list of three angles")
-
-
-def _axis_and_angle(question, value):
+def _axis_and_angle(question: Question, value: Value) -> list[int]:
     wanted = "An axis with three components and an angle, `(axis, angle)`"
-    if value[0] != "list" or len(value[1]) != 2:
+    if value[0] != "list" or len(parts_of(value)) != 2:
         raise shape_fault(wanted, value)
-    first, second = value[1]
+    first, second = parts_of(value)
     if first[0] == "expression":
         first, second = second, first
     if first[0] == "vector":
-        first = next(iter(first[1].values()), ["list", []])
+        first = next(iter(by_frame(first).values()), ["list", []])
     return [*components(first, 3, wanted), leaf(second, wanted)]
 
 
-def _sequence(question, plain):
+def _sequence(question: Question, plain: Plain) -> str:
     given = word(plain, "A sequence of three axes, such as `'xyz'`").lower()
     # Wide letters are letters; and in many a book the axes are numbers.
     text = "".join(letter for letter in unicodedata.normalize("NFKC", given) if letter.isalnum())
@@ -99,26 +99,26 @@ def _sequence(question, plain):
     if text[0] == text[1] or text[1] == text[2]:
         raise Fault(
             "impossible sequence",
-            f"`{text}` has two turns in a row about one axis, which are one turn: it is none of "
-            "the 12 sets.",
+            f"`{text}` turns about one axis twice in a row, which is a single turn: it is not one "
+            "of the 12 sequences.",
         )
     return text
 
 
-def _of_angles(question, numbers):
-    return body_fixed_formula(question.arguments["sequence"])(FUNCTIONS, *numbers)
+def _of_angles(question: Question, numbers: Sequence[Number]) -> Sequence[Number]:
+    return body_fixed_formula(str(question.arguments["sequence"]))(FUNCTIONS, *numbers)
 
 
-def _of_axis_and_angle(question, numbers):
+def _of_axis_and_angle(question: Question, numbers: Sequence[Number]) -> Sequence[Number]:
     if not any(numbers[:3]):
         raise Fault("zero axis", "The axis is zero, and a zero vector points nowhere.")
     return axis_angle_formula(FUNCTIONS, *numbers)
 
 
-def _dcm_fault(question, numbers):
+def _dcm_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     rows = [numbers[0:3], numbers[3:6], numbers[6:9]]
     worst = max(
-        ((abs(_dot(rows[i], rows[j]) - (i == j)), i, j) for i in range(3) for j in range(i, 3)),
+        ((abs(MP.fdot(rows[i], rows[j]) - (i == j)), i, j) for i in range(3) for j in range(i, 3)),
         key=lambda found: found[0],
     )
     size, i, j = worst
@@ -126,7 +126,7 @@ def _dcm_fault(question, numbers):
     if size > slack(question):
         names = ("first", "second", "third")
         if i == j:
-            length = MP.sqrt(_dot(rows[i], rows[i]))
+            length = MP.sqrt(MP.fdot(rows[i], rows[i]))
             said = (
                 f"the {names[i]} row should be a unit vector and has length "
                 f"{length_in_words(length)}{where}"
@@ -134,10 +134,10 @@ def _dcm_fault(question, numbers):
         else:
             said = (
                 f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot "
-                f"product is {short(_dot(rows[i], rows[j]))}{where}"
+                f"product is {short(MP.fdot(rows[i], rows[j]))}{where}"
             )
         return Fault("not orthogonal", f"This is no direction cosine matrix: {said}.")
-    if _determinant(rows) < 0:
+    if MP.det(MP.matrix(rows)) < 0:
         return Fault(
             "left-handed",
             "The rows are perpendicular unit vectors, but their determinant is −1: they make a "
@@ -147,7 +147,7 @@ def _dcm_fault(question, numbers):
     return None
 
 
-def _quaternion_fault(question, numbers):
+def _quaternion_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     length = FUNCTIONS.norm(*numbers)
     if abs(length - 1) > slack(question):
         where = " at the values tried" if question.symbols else ""
@@ -159,7 +159,7 @@ def _quaternion_fault(question, numbers):
     return None
 
 
-def _angles_fault(question, numbers):
+def _angles_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     largest = max(numbers, key=abs)
     if abs(largest) > 2 * MP.pi + MP.mpf("0.01"):
         return Fault(
@@ -172,7 +172,7 @@ def _angles_fault(question, numbers):
     return None
 
 
-def _axis_fault(question, numbers):
+def _axis_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     length = FUNCTIONS.norm(*numbers[:3])
     if abs(length - 1) > slack(question) / 3 and question.arguments.get("unit axis", True):
         return Fault(
@@ -182,68 +182,61 @@ def _axis_fault(question, numbers):
     return _angles_fault(question, numbers[3:])
 
 
-def _conjugate(question, numbers):
-    scalar, *rest = numbers
-    return [scalar, *(-number for number in rest)]
+def _triads(question: Question, entries: Sequence[Number]) -> str:
+    """The triad of an orientation in that of the source frame, as HTML."""
+    # Drawing needs NumPy: it is imported for a picture alone.
+    from orientation_figures.drawing import Drawing
+    from orientation_figures.vectors import IDENTITY
+    from orientation_figures.words import hatted
+
+    rows = [[float(entry) for entry in entries[start : start + 3]] for start in (0, 3, 6)]
+    target, source = question.frames or ("A", "N")
+    drawing = Drawing(f"The triad of {target}, as it was read, in the triad of {source}.", scale=70)
+    # The longer one shows where the two coincide.
+    drawing.triad("N", IDENTITY, length=1.7, labels=hatted(source.lower()))
+    drawing.triad("A", rows, labels=hatted(target.lower()))
+    return str(drawing._repr_html_())
 
 
-def _dot(first, second):
-    return sum(a * b for a, b in zip(first, second))
-
-
-def _determinant(rows):
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
-
-
-#: Where to begin with each kind of question.
-BEGIN = {
-    "direction cosine matrix": "Write down what one row is: the components of one unit vector of "
-    "the first frame along those of the second. "
-    "Draw the two triads for a small angle and read off one row.",
-    "quaternion": "What is the axis, as a unit vector, and what is the angle? Half of it goes into "
-    "sine and cosine.",
-    "Euler angles": "Which turn comes first, and about which axis? "
-    "Compare the matrix of the three turns with the one that is given, and begin "
-    "with its simplest entry.",
-    "axis and angle": "Which vector does the turn leave as it is? "
-    "It is the axis; the trace gives the angle.",
-    "sequence": "Which axis do the first two frames share? And which one the next two?",
-}
+#: What all kinds here have in common: the messages of one catalogue.
+_kind = partial(Kind, messages=mistakes.MESSAGES, details=mistakes.DETAILS)
 KINDS = {
-    "direction cosine matrix": Kind(
-        begin=BEGIN["direction cosine matrix"],
+    "direction cosine matrix": _kind(
         entries=_dcm,
+        picture=_triads,
         fault=_dcm_fault,
         wrong="This is a direction cosine matrix, but not the right one.",
         needs=("frames",),
         mistakes=mistakes.of_dcm,
-        messages=mistakes.MESSAGES,
-        details=mistakes.DETAILS,
         slips=TRANSPOSED,
         build=mistakes.dcm_of,
         forms=forms.of_dcm,
         another=forms.another_dcm,
     ),
-    "quaternion": Kind(
-        begin=BEGIN["quaternion"],
-        entries=_quaternion,
+    "quaternion": _kind(
+        entries=lambda question, value: components(
+            value, 4, "A list of four numbers, the scalar first"
+        ),
+        picture=lambda question, numbers: _triads(
+            question, dcm_from_quaternion([float(number) for number in numbers]).ravel().tolist()
+        ),
         unique=one_sign,
         fault=_quaternion_fault,
         wrong="This is a quaternion of unit length, but not the right one.",
         either_sign=True,
         mistakes=mistakes.of_quaternion,
-        messages=mistakes.MESSAGES,
-        details=mistakes.DETAILS,
         slips={
-            "conjugate": ("it is the conjugate, and its conjugate has another mistake.", _conjugate)
+            "conjugate": (
+                "it is the conjugate, and its conjugate has another mistake.",
+                lambda question, numbers: [numbers[0], *(-number for number in numbers[1:])],
+            )
         },
         build=mistakes.quaternion_of,
         another=forms.another_quaternion,
     ),
-    "Euler angles": Kind(
-        begin=BEGIN["Euler angles"],
-        entries=_angles,
+    "Euler angles": _kind(
+        entries=lambda question, value: components(value, 3, "A list of three angles"),
+        picture=lambda question, numbers: _triads(question, _of_angles(question, numbers)),
         unique=_of_angles,
         fault=_angles_fault,
         # An entry of the matrix is built of three angles, and off by what all three are.
@@ -252,26 +245,19 @@ KINDS = {
         needs=("sequence",),
         arguments=("sequence",),
         mistakes=mistakes.of_angles,
-        messages=mistakes.MESSAGES,
-        details=mistakes.DETAILS,
     ),
-    "axis and angle": Kind(
-        begin=BEGIN["axis and angle"],
+    "axis and angle": _kind(
         entries=_axis_and_angle,
+        picture=lambda question, numbers: _triads(question, _of_axis_and_angle(question, numbers)),
         unique=_of_axis_and_angle,
         fault=_axis_fault,
         parts=3,
         wrong="This axis and angle give a different orientation.",
         mistakes=mistakes.of_axis_and_angle,
-        messages=mistakes.MESSAGES,
-        details=mistakes.DETAILS,
     ),
-    "sequence": Kind(
-        begin=BEGIN["sequence"],
+    "sequence": _kind(
         text=_sequence,
         mistakes=mistakes.of_sequence,
-        messages=mistakes.MESSAGES,
-        details=mistakes.DETAILS,
         forms=forms.of_sequence,
         another=forms.another_sequence,
     ),

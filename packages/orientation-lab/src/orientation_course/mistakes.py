@@ -4,13 +4,31 @@ answer, and what the student is told.
 
 import itertools
 import math
+from collections.abc import Callable, Iterator
+from typing import Any, TypeAlias
+
+import sympy
 
 from coursework.checking.mistakes import Mistake, as_matrix, of_symbols
+from coursework.checking.question import Question
+from orientation import (
+    SEQUENCES,
+    body_fixed_from_dcm,
+    dcm_from_axis_angle,
+    dcm_from_body_fixed,
+    multiply_quaternions,
+    quaternion_from_axis_angle,
+    space_fixed_from_dcm,
+)
 
+#: An orientation as an author writes it: a matrix or a list of SymPy or of numbers.
+Answer: TypeAlias = Any
+#: Successive turns: the axis of each, as a letter or as components, and the angle.
+Turns: TypeAlias = list[tuple[Any, Any]]
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
-def _name(question):
+def _names(question: Question) -> tuple[str, str]:
     target, source = (question.frames or ("A", "N"))[:2]
     return (
         rf"${{}}^{{{target}}}\mathbf{{C}}^{{{source}}}$",
@@ -18,22 +36,22 @@ def _name(question):
     )
 
 
-def _transposed(question):
+def _transposed(question: Question) -> str:
     if question.kind == "matrix" or not question.frames:
         return "This is the transpose of what the question asks for."
-    wanted, given = _name(question)
+    wanted, given = _names(question)
     return (
         f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. "
         "Transpose it."
     )
 
 
-def _product(question):
+def _product(question: Question) -> str:
     quaternions = question.kind_of_values == "quaternion"
     return f"The {'quaternions' if quaternions else 'factors'} are multiplied"
 
 
-def _other_order(question):
+def _other_order(question: Question) -> str:
     if question.kind_of_values == "quaternion":
         return (
             "The quaternions are multiplied in the wrong order. "
@@ -47,11 +65,11 @@ def _other_order(question):
     )
 
 
-def _turn(number):
+def _turn(number: int | None) -> str:
     return "the turn" if number is None else f"the {ORDINALS[number]} turn"
 
 
-MESSAGES = {
+MESSAGES: dict[str, Callable[..., str]] = {
     "transposed": _transposed,
     "sign of one turn": lambda question, turn: f"The angle of {_turn(turn)} has the wrong sign.",
     "sign of two turns": lambda question, first, second: (
@@ -192,24 +210,16 @@ DEEDS = {
 # --- what each mistake does to an answer --------------------------------------------------------
 
 
-def dcm_of(turns):
+def dcm_of(turns: Turns) -> Answer:
     """The direction cosine matrix of successive turns."""
-    import sympy
-
-    from orientation import dcm_from_axis_angle
-
     result = sympy.eye(3)
     for axis, angle in turns:
         result = dcm_from_axis_angle(_components(axis), sympy.sympify(angle)) * result
     return result
 
 
-def quaternion_of(turns):
+def quaternion_of(turns: Turns) -> Answer:
     """The quaternion of successive turns."""
-    import sympy
-
-    from orientation import multiply_quaternions, quaternion_from_axis_angle
-
     result = sympy.Matrix([1, 0, 0, 0])
     for axis, angle in turns:
         result = multiply_quaternions(
@@ -218,22 +228,17 @@ def quaternion_of(turns):
     return result
 
 
-def _components(axis):
-    import sympy
-
+def _components(axis: Any) -> list[Any]:
     if isinstance(axis, str):
         sign = -1 if axis.startswith("-") else 1
         return [sympy.Integer(sign * (letter == axis[-1])) for letter in "xyz"]
     return [sympy.sympify(part) for part in axis]
 
 
-def _of_turns(build, turns):
+def _of_turns(build: Callable[[Turns], Answer], turns: Turns) -> Iterator[Mistake]:
     """Mistakes in building an orientation from successive turns."""
-    import sympy
 
-    from orientation import SEQUENCES
-
-    def changed(*numbers):
+    def changed(*numbers: int) -> Turns:
         return [
             (axis, -angle if order in numbers else angle)
             for order, (axis, angle) in enumerate(turns)
@@ -241,7 +246,7 @@ def _of_turns(build, turns):
 
     count = len(turns)
 
-    def named(turn):
+    def named(turn: int) -> int | None:
         # A single turn is not called the first of its kind.
         return turn if count > 1 else None
 
@@ -298,7 +303,7 @@ def _of_turns(build, turns):
         )
 
 
-def of_dcm(question, answer, turns, turned):
+def of_dcm(question: Question, answer: Answer, turns: Turns, turned: Answer) -> Iterator[Mistake]:
     answer = as_matrix(answer)
     yield Mistake("transposed", {}, answer.T)
     yield from _of_turns(dcm_of, turns)
@@ -308,9 +313,9 @@ def of_dcm(question, answer, turns, turned):
         yield from of_symbols(question, answer)
 
 
-def of_quaternion(question, answer, turns, turned):
-    import sympy
-
+def of_quaternion(
+    question: Question, answer: Answer, turns: Turns, turned: Answer
+) -> Iterator[Mistake]:
     answer = as_matrix(answer)
     scalar, i, j, k = answer
     yield Mistake("conjugate", {}, sympy.Matrix([scalar, -i, -j, -k]))
@@ -329,16 +334,12 @@ def of_quaternion(question, answer, turns, turned):
         yield from of_symbols(question, answer)
 
 
-def of_angles(question, answer, turns, turned):
-    from orientation import (
-        SEQUENCES,
-        body_fixed_from_dcm,
-        dcm_from_body_fixed,
-        space_fixed_from_dcm,
-    )
-
-    angles = [float(angle) for angle in answer]
-    dcm = dcm_from_body_fixed(angles, question.arguments["sequence"])
+def of_angles(
+    question: Question, answer: Answer, turns: Turns, turned: Answer
+) -> Iterator[Mistake]:
+    asked: Any = question.arguments["sequence"]
+    angles: Answer = [float(angle) for angle in answer]
+    dcm = dcm_from_body_fixed(angles, asked)
     for turn in range(3):
         yield Mistake(
             "sign of one angle",
@@ -350,14 +351,12 @@ def of_angles(question, answer, turns, turned):
     yield Mistake(
         "angles of the transpose",
         {},
-        list(body_fixed_from_dcm(dcm.T, question.arguments["sequence"])),
+        list(body_fixed_from_dcm(dcm.T, asked)),
     )
     yield Mistake("in degrees", {}, [math.degrees(angle) for angle in angles])
-    yield Mistake(
-        "space fixed angles", {}, list(space_fixed_from_dcm(dcm, question.arguments["sequence"]))
-    )
+    yield Mistake("space fixed angles", {}, list(space_fixed_from_dcm(dcm, asked)))
     for sequence in SEQUENCES:
-        if sequence != question.arguments["sequence"]:
+        if sequence != asked:
             yield Mistake(
                 "angles of another sequence",
                 {"sequence": sequence},
@@ -365,11 +364,11 @@ def of_angles(question, answer, turns, turned):
             )
 
 
-def of_axis_and_angle(question, answer, turns, turned):
+def of_axis_and_angle(
+    question: Question, answer: Answer, turns: Turns, turned: Answer
+) -> Iterator[Mistake]:
     axis, angle = answer
     axis = list(axis)
-    import sympy
-
     angle = sympy.sympify(angle)
     yield Mistake("axis reversed", {}, [axis, -angle])
     yield Mistake("in degrees", {}, [axis, angle * 180 / sympy.pi])
@@ -380,6 +379,8 @@ def of_axis_and_angle(question, answer, turns, turned):
         yield Mistake("double", {}, [axis, 2 * angle])
 
 
-def of_sequence(question, answer, turns, turned):
+def of_sequence(
+    question: Question, answer: Answer, turns: Turns, turned: Answer
+) -> Iterator[Mistake]:
     if answer != answer[::-1]:
         yield Mistake("sequence reversed", {}, answer[::-1])

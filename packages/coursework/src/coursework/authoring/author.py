@@ -36,7 +36,7 @@ from ..checking.fields import Json, Misread
 from ..checking.kinds import PARTS, Blank, Fault, Number, Undecidable, sign_limit
 from ..checking.mistakes import GENERAL, Mistake, short_name
 from ..checking.plain import NotPlain, Plain, to_plain
-from ..checking.plugins import kind_of_values, kinds
+from ..checking.plugins import kinds
 from ..checking.points import ANGLES
 from ..checking.question import OUTCOMES, KnownAnswer, Locker, Note, Question, Sealed, Variant
 from ..checking.questions import CODE_LETTERS, NEARLY, code_text, compare, rung_key, salt_of_all
@@ -61,9 +61,9 @@ WIDEST = 10_000
 #: We recognise a mistake up to this many tolerances beyond the edge of its cell, since rounding may
 #: cross the edge.
 REACH = 0.5
-#: What is known of an answer is rounded to this share of what it may be off by; no finer than its
-#: doubles hold, and never to more than the last share: a seal must not follow from the last bits,
-#: which other processors have otherwise.
+#: Round the numbers of an answer to this share of its tolerance, no finer than doubles hold and no
+#: coarser than the last share. A seal must not depend on the last bits, which differ between
+#: processors.
 ROUNDED, DOUBLES, ROUNDED_MOST = MP.mpf("1e-5"), MP.mpf("1e-12"), MP.mpf("1e-1")
 #: Where rounding tips from one number to the next: no number of few
 #: digits or small denominator lies there.
@@ -507,8 +507,8 @@ def ladder_of(public: Question, authored: Iterable[str] | None, turns: Sequence[
     """
     if authored is not None:
         return list(authored)
-    begin = (kinds()[public.kind].begin, kind_of_values(public).begin)
-    steps = [step for step in dict.fromkeys(begin) if step]
+    begin = kinds()[public.kind].begin
+    steps = [begin] if begin else []
     if len(turns) > 1:
         steps.append(
             f"It is built of {len(turns)} turns, one after another. Check each of them alone."

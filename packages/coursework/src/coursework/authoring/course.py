@@ -35,6 +35,8 @@ class Course(NamedTuple):
         How variants are given to students: ``"by name"``, so that one that is taken out moves only
         those who had it, or by number if nothing is said. Say it before a term begins: students'
         numbers change with it.
+    roster : bool
+        Whether the course has a list of its students: then each notebook asks for the student's ID.
     """
 
     root: Path
@@ -48,6 +50,7 @@ class Course(NamedTuple):
     chapter: str = ""
     solution: str = ""
     variants: str = ""
+    roster: bool = False
 
 
 #: The settings of a course that are not paths.
@@ -117,11 +120,14 @@ def _read(path: Path) -> Course:
         raise AuthorError(
             f'{path}: set variants = "{BY_NAME}" or leave it out; it is {said["variants"]!r}.'
         )
+    roster = said.pop("roster", False)
+    if not isinstance(roster, bool):
+        raise AuthorError(f"{path}: set roster = true or leave it out; it is {roster!r}.")
     unknown = sorted(set(said) - {*DEFAULTS, "title", *TEXTS})
     if unknown or not all(isinstance(value, str) for value in said.values()):
         raise AuthorError(
-            f"{path}: it may only set title, {', '.join((*TEXTS, *DEFAULTS))}, each to a string"
-            + (f"; what is {unknown[0]!r}?" if unknown else ".")
+            f"{path}: it may only set roster, and title, {', '.join((*TEXTS, *DEFAULTS))}, each to "
+            "a string" + (f"; what is {unknown[0]!r}?" if unknown else ".")
         )
     places = {name: path.parent / said.get(name, default) for name, default in DEFAULTS.items()}
     others = {name: said.get(name, "") for name in TEXTS}
@@ -133,4 +139,6 @@ def _read(path: Path) -> Course:
                 f"{path}: `{name}` must be an address with {{notebook}} or {{question}} in it, "
                 f"not {others[name]!r}."
             )
-    return Course(path.parent, said.get("title", path.parent.name), **places, **others)
+    return Course(
+        path.parent, said.get("title", path.parent.name), **places, **others, roster=roster
+    )

@@ -21,10 +21,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
+
+import nbformat
+from nbformat import NotebookNode
 
 from ..checking import fields, sealing
 from ..checking.evaluate import MP
+from ..checking.identity import PLACEHOLDER
 from ..checking.question import FORMAT
 from ..checking.questions import beside, salt_of_all
 from ..checking.reading import canonical, read
@@ -46,11 +50,11 @@ from .source import (
 )
 from .variation import drawn_in
 
-if TYPE_CHECKING:
-    from nbformat import NotebookNode
-
 #: The lockers of a question without variants are so many, or twice as many, and so on.
 TOGETHER = 8
+#: The line that asks students for their ID, and what it is where no course is held with a roster.
+ASKS_WHO = re.compile(r"""^student\((?:''|"")\).*$""", re.M)
+LEFT_OPEN = f"# student({PLACEHOLDER!r})  # if your course gave you one"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
 
 
@@ -106,10 +110,11 @@ def shows_variants(cells: Sequence[NotebookNode], number: int) -> bool:
     )
 
 
-def exercise_notebook(source: Source) -> NotebookNode:
-    """The notebook that students get: no solution, no hidden test, and no code of a figure."""
-    import nbformat
+def exercise_notebook(source: Source, roster: bool = False) -> NotebookNode:
+    """The notebook that students get: no solution, no hidden test, and no code of a figure.
 
+    It asks for the student's ID where the course has a ``roster``.
+    """
     checked = checked_names(source.notebook)
     owners = {variable: name for name, variable in checked.items()}
     cells = []
@@ -128,7 +133,8 @@ def exercise_notebook(source: Source) -> NotebookNode:
             cells.append(nbformat.v4.new_markdown_cell(cell.source))
         else:
             blanks = answered_in(cell.source, owners)
-            code = nbformat.v4.new_code_cell(posed(cell.source, owners))
+            text = posed(cell.source, owners)
+            code = nbformat.v4.new_code_cell(text if roster else ASKS_WHO.sub(LEFT_OPEN, text))
             graded = [
                 source.questions[name]
                 for name, variable in checked.items()
@@ -246,8 +252,6 @@ def _as_text(content: Mapping[str, object]) -> str:
 
 def _release_one(path: Path, course: Course) -> Made:
     """Make a notebook and its sealed questions."""
-    import nbformat
-
     source = read_source(path, edition=course.edition)
     for name, question in source.questions.items():
         for text in question.no_mistakes:
@@ -264,7 +268,8 @@ def _release_one(path: Path, course: Course) -> Made:
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
-        nbformat.write(exercise_notebook(source), course.exercises / f"{source.name}.ipynb")
+        made = exercise_notebook(source, course.roster)
+        nbformat.write(made, course.exercises / f"{source.name}.ipynb")
     pages = {name: source.questions[name].pages for name in source.rules}
     return Made(
         source.name,
@@ -423,8 +428,6 @@ def _add_names_for_others(
 
 
 def _run_one(path: Path, sealed: Path) -> None:
-    import nbformat
-
     notebook = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         # The sealed questions stand beside the notebook, as they do

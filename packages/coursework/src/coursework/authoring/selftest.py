@@ -18,6 +18,8 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
+import sympy
+
 from ..checking.catalogue import message
 from ..checking.kinds import Fault, Undecidable
 from ..checking.mistakes import GENERAL
@@ -306,8 +308,6 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
 
 def _judge_code(question: AuthoredQuestion, code: str) -> str:
     """The outcome of a piece of code as the answer to a question; empty where it gives none."""
-    import sympy
-
     symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.symbols}
     with contextlib.suppress(Exception):  # whatever is wrong with it, it is no answer then
         names = {**vars(sympy), "sm": sympy, **symbols}
@@ -325,8 +325,6 @@ def _tells_nothing(line: str) -> bool:
 
 
 def _writings(answer: object) -> list[str]:
-    import sympy
-
     if isinstance(answer, tuple) and isinstance(answer[-1], str):
         answer = answer[0]  # of a number with its unit
     try:

@@ -6,7 +6,7 @@ import html
 import re
 from pathlib import Path
 
-from ..checking.reply import to_html
+from ..checking.reply import mathml, to_html
 from ..checking.variants import image
 from ..checking.variants import text_of as whole_text
 from .author import AuthoredQuestion, AuthorError, to_page
@@ -61,9 +61,7 @@ def _under(text: str) -> str:
 
 def _with_mathematics(page: str) -> str:
     """The page with its formulas as browsers show them."""
-    from latex2mathml.converter import convert
-
-    return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: convert(html.unescape(found[2])), page)
+    return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: mathml(html.unescape(found[2])), page)
 
 
 def _text(source: Source, question: AuthoredQuestion) -> str:

@@ -7,8 +7,9 @@ from contextlib import suppress
 from dataclasses import replace
 
 from .cells import outdated, watch
-from .identity import forgotten, identity
-from .plain import NotPlain, to_plain
+from .identity import identity
+from .plain import NotPlain, Plain, by_frame, text_of, to_plain
+from .plugins import kinds
 from .progress import Entry, Progress
 from .question import Locker, Place, Question
 from .questions import (
@@ -23,10 +24,11 @@ from .questions import (
     rung_key,
     solution_on,
 )
-from .reading import calls_for
-from .reply import HELP, Reply
+from .reading import calls_for, fault, read
+from .reply import HELP, Reply, Shown
 from .sealing import unseal
 from .variants import siblings_of, without_sibling
+from .writing import answer_as_tex, answer_as_text
 
 #: After so many days an earlier mistake is worth another look.
 REVIEW_AFTER = 3
@@ -38,6 +40,8 @@ MOST_ANSWERS = 100
 MOST_TOLD, DIGITS = 20, 6
 #: Notes of wrong answers that are no help on the way to the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
+#: Signs of the TeX of an answer up to which a reply typesets it.
+LONGEST_SHOWN = 1_500
 #: What is said in place of a verdict on a value that no longer stands in the notebook.
 OUTDATED = (
     "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
@@ -78,9 +82,10 @@ def check(name: str, answer: object) -> Reply:
     if names := outdated():
         return Reply(name, "invalid", "outdated", [OUTDATED.format(names[0])])
     try:
-        reply = judge(
-            name, sealed, to_plain(answer, calls_for(sealed.question), raise_missing=True), student
-        )
+        plain = to_plain(answer, calls_for(sealed.question), raise_missing=True)
+        reply = judge(name, sealed, plain, student)
+        if reply.outcome != "not attempted":
+            reply.shown = shown(sealed.question, plain)
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
@@ -91,13 +96,33 @@ def check(name: str, answer: object) -> Reply:
     if reply.outcome == "correct":
         reply.help = entry.help
         _offer_sibling(reply, sealed.question, reply.help)
-    if reply.outcome != "not attempted" and (said := forgotten(student, sealed.question)):
-        reply.messages.append(said)
     reply.tries = len(entry.answers) + (entry.outcome == "correct")
     reply.tried = [answer[:DIGITS] for answer in entry.answers[-MOST_TOLD:]]
     if os.environ.get("NBGRADER_EXECUTION") and reply.outcome not in ("correct", "recorded"):
         raise NotCorrect(repr(reply))
     return reply
+
+
+def shown(question: Question, plain: Plain) -> Shown:
+    """An answer as it was read: of a frame or a vector, what the question asks for.
+
+    The picture is no part of the verdict: where it cannot be drawn, as without NumPy, there is
+    none.
+    """
+    value, picture = plain["value"], ""
+    if value[0] in ("frame", "vector") and question.frames:
+        wanted, known = question.frames[-1], by_frame(value)
+        if wanted in known:
+            inner = known[wanted]
+            value = ["frame", text_of(value), {wanted: inner}] if value[0] == "frame" else inner
+    draw = kinds()[question.kind].picture
+    with suppress(Exception):
+        if draw and not question.symbols and not fault(question, found := read(question, plain)):
+            picture = draw(question, found.numbers[0])
+    plain = {"value": value, "nodes": plain["nodes"]}
+    text = ("a function that " if value[0] == "function" else "") + answer_as_text(plain)
+    tex = answer_as_tex(plain)
+    return Shown(tex if len(tex) <= LONGEST_SHOWN else "", text, picture)
 
 
 # --- help ---------------------------------------------------------------------------------------
@@ -211,10 +236,9 @@ def _show_next_hint(student: str, reply: Reply, entry: Entry) -> None:
     if steps[:earned]:
         _note_help(reply.question, student, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
-    if len(steps) > earned:
+    if len(steps) > earned == 0:
         # In words, and not as a call of `hint`, which few notebooks import.
-        reply.messages.append("Each new answer earns you a hint." if earned == 0 else "")
-    reply.messages = [line for line in reply.messages if line]
+        reply.messages.append("Each new answer earns you a hint.")
 
 
 # --- progress -----------------------------------------------------------------------------------
@@ -277,11 +301,12 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
 
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
     today = time.time()
-    found: list[str] = []
-    for name, entry in sorted(record.items()):
-        days = int((today - (entry.mistake_at or today)) / DAY)
-        if days >= REVIEW_AFTER and entry.mistake:
-            found.append(f"`{name}` ({days} days ago: {entry.mistake})")
+    found = [
+        f"`{name}` ({days} days ago: {entry.mistake})"
+        for name, entry in sorted(record.items())
+        if (days := int((today - (entry.mistake_at or today)) / DAY)) >= REVIEW_AFTER
+        and entry.mistake
+    ]
     return (
         [f"Worth another look, since you made a mistake there: {', '.join(found)}."]
         if found

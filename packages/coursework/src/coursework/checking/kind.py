@@ -46,6 +46,8 @@ class Kind(NamedTuple):
         The answer that successive turns lead to, where ``turns`` may be given.
     forms : function (question, answer) -> list of (str, answer)
         Further ways of writing a right answer, to try a question with.
+    picture : function (question, numbers) -> str
+        The picture of an answer of numbers, as HTML.
     public : function (answer) -> dict
         What of the right answer a student's computer must know, and may.
     by_a_person : bool
@@ -60,7 +62,7 @@ class Kind(NamedTuple):
     unique: Callable[..., Any] | None = None
     fault: Callable[..., Any] | None = None
     parts: int = 1
-    wrong: str = "The form is right; the value is not."
+    wrong: str = "Right kind of answer, wrong value."
     begin: str = ""
     needs: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
@@ -72,5 +74,6 @@ class Kind(NamedTuple):
     build: Callable[..., Any] | None = None
     forms: Callable[..., Any] | None = None
     another: Callable[..., Any] | None = None
+    picture: Callable[..., str] | None = None
     public: Callable[..., Any] | None = None
     by_a_person: bool = False

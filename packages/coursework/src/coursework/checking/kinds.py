@@ -63,8 +63,11 @@ def listed(names: Iterable[str]) -> str:
 
 
 def shape_fault(wanted: str, got: Value | str) -> Fault:
-    said = got if isinstance(got, str) else _describe(got)
-    return Fault("shape", f"The question wants {wanted[0].lower()}{wanted[1:]}; this is {said}.")
+    return Fault(
+        "shape",
+        f"Give {wanted[0].lower()}{wanted[1:]}; this is "
+        f"{got if isinstance(got, str) else _describe(got)}.",
+    )
 
 
 def _describe(value: Value) -> str:
@@ -75,13 +78,14 @@ def _describe(value: Value) -> str:
         parts = parts_of(value)
         lengths = {len(parts_of(row)) for row in parts if row[0] == "list"}
         if len(lengths) == 1 and all(row[0] == "list" for row in parts):
-            return f"a list of {len(parts)} rows with {lengths.pop()} entries each"
+            rows, each = (f"{len(parts)} rows", " each") if len(parts) > 1 else ("one row", "")
+            return f"a list of {rows} with {lengths.pop()} entries{each}"
         if [part[0] for part in parts] == ["expression", "text"]:
-            return "a number with a unit, or with a text"
+            return "a number with a unit, or with a string"
         return f"a list with {len(parts)} entr{'y' if len(parts) == 1 else 'ies'}"
     return {
-        "text": "a text",
-        "truth": "a truth value",
+        "text": "a string",
+        "truth": "a Boolean",
         "expression": "a single expression",
         "frame": "a reference frame",
         "vector": "a vector",
@@ -98,13 +102,13 @@ def _holding(whole: Value, part: Value) -> str:
     if is_blank(part):
         return "a list that is still blank in part"
     if part[0] == "text":
-        return "a list that holds a text"
+        return "a list in which one entry is a string"
     return f"a list with {len(parts_of(whole))} entries, one of which is {_describe(part)}"
 
 
 def _fault_of_numbers(wanted: str, value: Value) -> Fault:
     return shape_fault(
-        wanted, "a text: write it without quotation marks" if value[0] == "text" else value
+        wanted, "a string: write it without quotation marks" if value[0] == "text" else value
     )
 
 
@@ -126,7 +130,7 @@ def _leaf_of(whole: Value, part: Value, wanted: str) -> int:
     try:
         return leaf(part, wanted)
     except Fault:
-        said = ": numbers stand without quotation marks" if part[0] == "text" else ""
+        said = "; write numbers without quotation marks" if part[0] == "text" else ""
         raise shape_fault(wanted, _holding(whole, part) + said) from None
 
 
@@ -162,19 +166,20 @@ def scale_of(answer: Any) -> dict[str, str]:
 
 
 def _vector(question: Question, value: Value) -> list[int]:
-    length = question.length or 3
     frame = question.frames[0] if question.frames else None
+    parts = "components" if frame else "expressions" if question.symbols else "numbers"
+    wanted = f"A list of {question.length or 3} {parts}"
     if value[0] == "vector":
         # The zero vector belongs to every frame.
         if frame is None:
-            raise shape_fault(f"A list of {length} components", value)
+            raise shape_fault(wanted, value)
         if frame not in by_frame(value):
             raise Fault(
                 "frame",
                 f"This vector is not connected with the frame `{frame}` that the question names.",
             )
         value = by_frame(value)[frame]
-    return components(value, length, f"A list of {length} components")
+    return components(value, question.length or 3, wanted)
 
 
 def row_entries(value: Value, rows: int, columns: int, wanted: str) -> list[int]:
@@ -190,7 +195,7 @@ def _row(whole: Value, row: Value, columns: int, wanted: str) -> list[int]:
     if length not in (1, columns):
         described = _describe(whole)
         uneven = f"a list of rows, one of which has {length} entries"
-        raise shape_fault(wanted, described if "rows" in described else uneven)
+        raise shape_fault(wanted, described if " row" in described else uneven)
     in_line = row[0] == "list" or row[0] == "matrix" and 1 in size_of(row)
     if is_blank(row) or not in_line:
         raise shape_fault(wanted, _holding(whole, row))
@@ -257,7 +262,7 @@ def _choices(question: Question, plain: Plain) -> list[str]:
 
 def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
-    wanted = f"A list of {length} truth values, `True` or `False`"
+    wanted = f"A list of {length} Booleans, `True` or `False`"
     if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(wanted, value)
     letters = ""
@@ -366,60 +371,44 @@ def transposed(question: Question, numbers: list[Number]) -> list[Number] | None
 TRANSPOSED = {
     "transposed": ("the matrix is transposed, and its transpose has another mistake.", transposed)
 }
-SEVERAL = "More than one of these is not right."
-#: Where to begin with each kind of question.
-BEGIN = {
-    "expression": "Name what is known and what is asked for, and write down one equation that "
-    "connects them.",
-    "vector": "Along which frame are the components asked for? Write the vector down where it is "
-    "simplest.",
-    "matrix": "Take one entry and work it out alone; then ask which rule gives all the others.",
-    "choice": "Put each of the possibilities to the test on the simplest case that tells them "
-    "apart.",
-    "words": "Take them one by one, and begin with those that you are sure of; find a test for the "
-    "others.",
-    "truth values": "Look for an example that breaks a claim; where there is none, look for the "
-    "proof.",
-    "measurement": "Work with the units as with the numbers: what do those that are given make "
-    "together?",
-    "order": "Find the first and the last; then compare two at a time.",
-    "function": "Work out by hand what it should return for the simplest arguments, and compare.",
-}
+SEVERAL = "At least two of these are wrong."
 KINDS = {
-    "expression": Kind(
-        begin=BEGIN["expression"], entries=_expression, mistakes=mistakes.of_expression
-    ),
+    "expression": Kind(entries=_expression, mistakes=mistakes.of_expression),
     "vector": Kind(
-        begin=BEGIN["vector"],
         entries=_vector,
         unique=one_sign,
         fault=_unit_vector_fault,
         mistakes=mistakes.of_vector,
     ),
     "matrix": Kind(
-        begin=BEGIN["matrix"],
         entries=_matrix,
         needs=("shape",),
         mistakes=mistakes.of_matrix,
         slips=TRANSPOSED,
     ),
-    "choice": Kind(begin=BEGIN["choice"], text=_choice, needs=("options",)),
+    "choice": Kind(
+        begin="Put each of the possibilities to the test on the simplest case that tells them "
+        "apart.",
+        text=_choice,
+        needs=("options",),
+    ),
     "words": Kind(
-        begin=BEGIN["words"],
+        begin="Take them one by one, and begin with those that you are sure of. Find a test for "
+        "the others.",
         text=_words,
         needs=("options", "length"),
         wrong=SEVERAL,
         mistakes=mistakes.of_parts,
     ),
     "truth values": Kind(
-        begin=BEGIN["truth values"],
+        begin="Look for an example that breaks a claim. Where there is none, look for the proof.",
         text=_truths,
         needs=("length",),
         wrong=SEVERAL,
         mistakes=mistakes.of_parts,
     ),
     "measurement": Kind(
-        begin=BEGIN["measurement"],
+        begin="Work with the units as with the numbers: what do the given ones make together?",
         entries=_measurement,
         wrong="It is a number with a unit, but the number, the unit or both are wrong.",
         public=scale_of,
@@ -428,7 +417,7 @@ KINDS = {
         details={"power": mistakes.POWERS},
     ),
     "order": Kind(
-        begin=BEGIN["order"],
+        begin="Find the first and the last, then compare two at a time.",
         text=_order,
         needs=("options",),
         wrong="The order is not right.",
@@ -436,5 +425,8 @@ KINDS = {
         messages=mistakes.OF_ORDERS,
     ),
     "free text": Kind(text=_free_text, by_a_person=True),
-    "function": Kind(begin=BEGIN["function"], needs=("calls", "result")),
+    "function": Kind(
+        begin="Work out by hand what it should return for the simplest arguments, and compare.",
+        needs=("calls", "result"),
+    ),
 }

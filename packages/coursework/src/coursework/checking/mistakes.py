@@ -14,6 +14,9 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
+import sympy
+from sympy.core.function import AppliedUndef
+
 from .fields import Json
 from .question import Question
 from .sealing import MISTAKE
@@ -113,8 +116,6 @@ def short_name(note: str, details: Mapping[str, Json]) -> bytes:
 
 
 def as_matrix(answer: Any) -> Any:
-    import sympy
-
     if hasattr(answer, "dcm"):
         raise TypeError(
             "A reference frame is the right answer here: bind its direction cosine matrix instead, "
@@ -136,8 +137,6 @@ def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
 
 
 def _unknowns(answer: Any) -> set[Any]:
-    from sympy.core.function import AppliedUndef
-
     functions = set(answer.atoms(AppliedUndef))
     times = {argument for function in functions for argument in function.args}
     return functions | (set(answer.free_symbols) - times)
@@ -181,8 +180,6 @@ def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterat
 
 def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     """What is mixed up in a number, with the unit as it is; and a prefix that is lost."""
-    import sympy
-
     number, unit = answer
     for mistake in of_expression(question, number, turns, turned):
         if mistake.note != "reciprocal":
@@ -197,15 +194,11 @@ def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> 
 
 def of_factors(answer: Any) -> Iterator[Mistake]:
     """The answer times a small factor."""
-    import sympy
-
     for name, factor in FACTORS:
         yield Mistake("factor", {"factor": name}, sympy.Rational(factor) * answer)
 
 
 def of_vector(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
-    import sympy
-
     if hasattr(answer, "to_matrix"):
         # a SymPy vector: its author has written its components in `turned`, or names mistakes
         return
@@ -221,8 +214,6 @@ def of_vector(question: Question, answer: Any, turns: Any, turned: Any) -> Itera
 
 
 def of_expression(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
-    import sympy
-
     answer = sympy.sympify(answer)
     yield Mistake("opposite", {}, -answer)
     if question.quantity == "angle":

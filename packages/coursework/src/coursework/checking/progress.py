@@ -205,20 +205,3 @@ class Progress:
             draft = KEPT.with_name(f"progress-{os.getpid()}-{random.random()}.json")
             draft.write_text(json.dumps(self.entries, indent=1, sort_keys=True), "utf8")
             draft.replace(KEPT)
-
-    def right_for_others(self, student: str) -> dict[str, list[str]]:
-        """The questions that are right with other numbers, and not with those
-        of a student: by whose they were.
-        """
-        found: dict[str, list[str]] = {}
-        for name in sorted(self.entries):
-            entry = self.entry(name)
-            known = {
-                one.whose: one.outcome == "correct"
-                for one in (*entry.others, entry)
-                if one.whose is not None
-            }
-            if not known.get(student):
-                for whose in [whose for whose, right in known.items() if right][:1]:
-                    found.setdefault(whose, []).append(name)
-        return found

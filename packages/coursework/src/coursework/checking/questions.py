@@ -17,13 +17,13 @@ from dataclasses import replace
 from fractions import Fraction
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import cast
+from typing import TypeVar, cast
 
 from . import sealing
 from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
-from .identity import forgotten, identity
+from .identity import identity
 from .kinds import Blank, Fault, Number, Undecidable
 from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
@@ -52,14 +52,12 @@ PERHAPS_DEGREES = "Multiplied by $\\pi/180$, this is right. Does the question as
 #: and one is told that it is close.
 NEARLY = 3
 #: The note of an answer that is right for another variant, here and in the marks, and what is said
-#: of it, by whether that is the one that everybody sees.
+#: of it.
 OTHER_NUMBERS = "other numbers"
-FOR_OTHERS = {
-    True: "This is right for the numbers that everybody sees. "
-    "Since you have said who you are, yours are others: they ",
-    False: "This is right for other numbers than yours, those of another student. Yours ",
-}
-WHERE_ONES_OWN_ARE = "stand in the text of the question, as its cell shows it once it has run."
+FOR_OTHERS = (
+    "This is right for other numbers than yours: the default ones, or another student's. Yours "
+    "stand in the text of the question, as its cell shows it once it has run."
+)
 #: As far from it one is told so where the locker has opened all the same: its
 #: cell is wider for several numbers.
 CLOSE = 30
@@ -72,6 +70,7 @@ SMALL, LARGE = 64, 1000
 MOST_LOOKED_AT = 16
 
 
+Some = TypeVar("Some")
 #: What is known of a fingerprint, or nothing.
 Find = Callable[[str], Locker | None]
 
@@ -238,10 +237,8 @@ def variant(name: str) -> Given:
     NoSuchQuestion
         If the name is misspelt.
     """
-    student = identity()
-    question = find_question(name, student).question
-    found, note = question.variant or Variant(), forgotten(student, question)
-    return Given(text_of(found) + (f"\n\n{note}" if note else ""), found.given)
+    found = find_question(name, identity()).question.variant or Variant()
+    return Given(text_of(found), found.given)
 
 
 def own_numbers(name: str, student: str) -> tuple[int, str]:
@@ -280,19 +277,14 @@ def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
     """Compare an answer, as plain data, with what is sealed; the reply holds what it opened.
 
     What a classmate has answered is looked for where somebody has said who works here: it costs a
-    slow hash, and those who have not hear in each reply that these are nobody's numbers.
+    slow hash, and others have no numbers of their own.
     """
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
     for_others = (
         functools.partial(is_right_for_others, sealed, plain) if student and sealed.others else None
     )
-    reply = compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
-    if reply.note == OTHER_NUMBERS:
-        reply.messages = [
-            FOR_OTHERS[_is_right_for_everybody(name, sealed, plain)] + WHERE_ONES_OWN_ARE
-        ]
-    return reply
+    return compare(name, sealed.question, plain, functools.partial(opened, sealed), for_others)
 
 
 def salt_of_all(name: str) -> str:
@@ -313,15 +305,6 @@ def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
     except (Blank, Fault, Undecidable):
         return False
     return sealing.is_among(names, sealing.slow_key(salt, known))
-
-
-def _is_right_for_everybody(name: str, sealed: Sealed, plain: Plain) -> bool:
-    """Whether an answer to a variant is right for the one that everybody sees."""
-    everybodys = notebook_questions(name.partition("/")[0]).get(without_sibling(name)[0])
-    if everybodys is None or not (sealed.question.variant and sealed.question.variant.number):
-        return False
-    find = functools.partial(opened, everybodys)
-    return compare(name, everybodys.question, plain, find).outcome == "correct"
 
 
 def code_text(code: str) -> str:
@@ -533,7 +516,7 @@ def _not_known(
     texts = near + [fingerprint(question, turned) for _, _, turned in others]
     lockers = _each(find, texts)
     if for_others and for_others():
-        return Reply(name, "wrong", OTHER_NUMBERS)
+        return Reply(name, "wrong", OTHER_NUMBERS, [FOR_OTHERS])
     if near and lockers.pop(0) is not None:
         return Reply(
             name,
@@ -561,11 +544,13 @@ def _not_known(
     # Whoever has rounded right work hears of that first, and not that the value is wrong.
     few = _few_digits(question, plain)
     right = what_can_be_said(question, plain)
-    lines = [decimals, few, f"If not: {right[:1].lower()}{right[1:]}" if few else right]
+    lines = [decimals, few, f"Otherwise: {right[:1].lower()}{right[1:]}" if few else right]
+    if question.symbols and not any(node[0] == "symbol" for node in plain["nodes"]):
+        lines = [right]
     return Reply(name, "wrong", "", [" ".join(filter(None, lines))])
 
 
-def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
+def _begun(work: Callable[[], Some]) -> Callable[[], Some]:
     """Begin some work in a thread, since the slow hash lets others run; what it
     gives comes when it is asked for.
     """
@@ -581,16 +566,11 @@ def _begun(work: Callable[[], bool]) -> Callable[[], bool]:
 
 
 def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """What is known of each fingerprint; the slow hash lets other
-    threads run: all is looked up at once.
-    """
-    if len(texts) > 1:
-        from concurrent.futures import ThreadPoolExecutor
-
-        # A browser's Python has no threads.
-        with suppress(RuntimeError), ThreadPoolExecutor(len(texts)) as threads:
-            return list(threads.map(find, texts))
-    return [find(text) for text in texts]
+    """What is known of each fingerprint, all looked up at once."""
+    if len(texts) < 2:
+        return [find(text) for text in texts]
+    begun = [_begun(functools.partial(find, text)) for text in texts]
+    return [found() for found in begun]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
@@ -616,7 +596,7 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
         return ""
     exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return (
-        "It holds decimal fractions, but the question asks for an exact answer: write "
+        "Your answer has decimal fractions, but the question asks for an exact one: write "
         f"{exact_forms}."
     )
 
@@ -646,8 +626,8 @@ def _few_digits(question: Question, plain: Plain) -> str:
         if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
             count = f"{places} place{'' if places == 1 else 's'}"
             return (
-                f"`{float(digits):g}` has {count} after the point, and an answer may be off by "
-                f"{allowed:.1g} at most: if you rounded, keep all digits until the end."
+                f"If you rounded, keep all digits until the end: `{float(digits):g}` has {count}, "
+                f"and an answer may be off by {allowed:.1g}."
             )
     return ""
 

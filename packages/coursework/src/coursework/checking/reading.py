@@ -327,7 +327,7 @@ def _read_function(question: Question, plain: Plain) -> Reading:
         except Fault as fault_of_result:
             raise Fault(
                 fault_of_result.note,
-                f"{which} did not return what the question wants. {fault_of_result.message}",
+                f"{which} did not return what the question asks for. {fault_of_result.message}",
             ) from None
     if len(numbers) != len(question.calls):
         raise Fault("raised an error", "The function did not answer all calls.")

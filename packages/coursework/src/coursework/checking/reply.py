@@ -5,6 +5,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
+from typing import NamedTuple
 
 from .fields import Json
 from .question import KnownAnswer, Locker
@@ -24,10 +25,31 @@ OUTCOMES = {
 
 #: Each kind of help that a student may have had, in words, from little to much.
 HELP = {
-    "mistake": "a mistake was named",
-    "hint": "a hint was shown",
-    "solution": "the worked solution was shown",
+    "mistake": "we named your mistake",
+    "hint": "we showed a hint",
+    "solution": "we showed the worked solution",
 }
+
+
+class Shown(NamedTuple):
+    """An answer as it was read.
+
+    Attributes
+    ----------
+    tex : str
+        Empty where it is shown as text only.
+    text : str
+    picture : str
+        HTML, for an orientation; empty for other answers.
+    """
+
+    tex: str
+    text: str
+    picture: str = ""
+
+    def as_html(self, formula: Callable[[str], str] = lambda source: _as_tex(source)) -> str:
+        written = formula(self.tex) if self.tex else f"<code>{html.escape(self.text)}</code>"
+        return f'<div style="margin:.3em 0;overflow-x:auto">We read: {written}</div>{self.picture}'
 
 
 class Reply:
@@ -58,6 +80,8 @@ class Reply:
         The sibling of the question for practice after help; empty where there is none.
     opened : Locker or None
         What else the answer opened: the place of the worked solution, hints for other questions.
+    shown : Shown or None
+        The answer as it was read.
     known : KnownAnswer or None
         The mistake of the question that it is, with its hints.
     """
@@ -84,13 +108,16 @@ class Reply:
         self.help = ""
         self.sibling = ""
         self.details = details or {}
+        self.shown: Shown | None = None
         self.opened, self.known = opened, known
 
     def __repr__(self) -> str:
         _, word, _ = OUTCOMES[self.outcome]
         lines = [f"{word}: {self.question}", *map(plain_text, self.messages)]
+        if self.shown:
+            lines.append(f"We read: {self.shown.text}")
         if self.solution:
-            lines.append("The worked solution is shown where HTML can be.")
+            lines.append("Open the notebook in Jupyter to see the worked solution.")
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
@@ -108,6 +135,7 @@ class Reply:
             f'<p style="margin:.3em 0">{to_html(message, **formula)}</p>'
             for message in self.messages
         )
+        shown = self.shown.as_html(**formula) if self.shown else ""
         solution = (
             "<details><summary>The worked "
             f"solution</summary><div>{for_this_front_end(self.solution)}</div></details>"
@@ -119,7 +147,7 @@ class Reply:
             f'style="border-left:.3em solid {colour};padding:.2em .8em">'
             f'<p style="margin:.3em 0"><strong><span aria-hidden="true">{sign}</span> '
             f"{word}</strong> "
-            f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{solution}</div>'
+            f'<span style="opacity:.8">{name}{tries}</span></p>{paragraphs}{shown}{solution}</div>'
         )
 
 
@@ -159,15 +187,17 @@ def for_this_front_end(page: str) -> str:
     return re.sub(r"\$([^$]+)\$", lambda found: mathml(html.unescape(found[1])), blocks)
 
 
+def _as_tex(source: str) -> str:
+    return f'<span class="math">${html.escape(source)}$</span>'
+
+
 #: Code, mathematics and emphasis, each with both of its marks; what has only one is text.
 MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
 def to_html(
     message: str,
-    formula: Callable[[str], str] = lambda source: (
-        f'<span class="math">${html.escape(source)}$</span>'
-    ),
+    formula: Callable[[str], str] = lambda source: _as_tex(source),
 ) -> str:
     """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
 

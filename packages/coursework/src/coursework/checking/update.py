@@ -18,6 +18,8 @@ from .fields import Fields, by_name, many, text, whole
 
 #: The file of a package: its name and its version.
 WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-]+\.whl")
+#: What a browser adds to the name of a second download: (1) or -1.
+NUMBERED = re.compile(r" ?\(\d+\)$|[- ]\d+$")
 REQUIREMENTS = "requirements.txt"
 #: The folder of the sealed questions: no student changes them, so a newer one
 #: takes the place of the older one.
@@ -159,13 +161,24 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
             f"{place} is {'a folder' if place.is_dir() else f'not there, seen from {Path.cwd()}'}. "
             "Put the archive there as you have downloaded it, or write where it is."
         )
+    others = [
+        one
+        for one in place.parent.glob(f"*{place.suffix}")
+        if NUMBERED.sub("", one.stem) == NUMBERED.sub("", place.stem)
+    ]
+    newest = max(others, key=lambda one: one.stat().st_mtime)
+    if newest.stat().st_mtime > place.stat().st_mtime:
+        raise ArchiveRefused(
+            f'Beside {place} lies "{newest.name}", which is newer. Nothing was changed: write that '
+            "name, in quotation marks, or delete what you do not want."
+        )
     try:
         with zipfile.ZipFile(archive_file) as box:
-            # A Mac's own archives hold a file with ._ before its name beside each.
+            # A Mac's own archives hold a hidden file beside each.
             entries = [
                 entry
                 for entry in sorted(box.namelist())
-                if not entry.endswith("/") and not Path(entry).name.startswith("._")
+                if not entry.endswith("/") and not Path(entry).name.startswith(".")
             ]
             files = {_place(entry): box.read(entry) for entry in entries}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):

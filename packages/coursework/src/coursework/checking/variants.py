@@ -193,9 +193,8 @@ class Given:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._parameters:
-            raise AttributeError(
-                f"This question gives {', '.join(self._parameters)}, and no {name}."
-            )
+            names = ", ".join(f"`{one}`" for one in self._parameters) or "no numbers of its own"
+            raise AttributeError(f"This question gives {names}; `{name}` is not among them.")
         return self._parameters[name]
 
     def __repr__(self) -> str:

@@ -25,6 +25,7 @@ from ..authoring.author import to_page
 from ..checking.identity import plain_identity
 from ..checking.plain import Plain
 from ..checking.variants import text_of
+from ..checking.writing import answer_as_text, readable
 from .judging.cases import Contracts, changed_since, questions_in
 from .judging.contract import Contract
 from .judging.journal import (
@@ -44,12 +45,11 @@ from .judging.journal import (
 )
 from .record import Answer, Mark, Record
 from .reporting import pages
-from .reporting.mathematics import answer_as_mathematics
 from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
 from .submissions.intake import SAYS
-from .tables import number, readable
+from .tables import number
 
 ALONE = "127.0.0.1"
 POLICY = (
@@ -331,7 +331,7 @@ class Class:
         names = self.aliases if hide_names else {}
         students = " ".join(names.get(record.student, record.student) for record in cluster.members)
         said = " ".join(cluster.mark.messages)
-        answer = pages.answer_as_text(cluster.answer.plain, 2_000)
+        answer = answer_as_text(cluster.answer.plain, 2_000)
         return (
             f"{students} {cluster.question} {cluster.mark.title} {cluster.mark.note} {said} "
             f"{answer}"
@@ -492,7 +492,7 @@ class _Overview(_Page):
             appeals={one.id for one in clusters if graded.is_shown(one, "appeals")},
             earlier=sum(graded.is_shown(one, "earlier") for one in clusters),
             titles={one.question: one.mark.title for one in graded.clusters.values()},
-            text=lambda cluster: pages.answer_as_text(cluster.answer.plain, 120),
+            text=lambda cluster: answer_as_text(cluster.answer.plain, 120),
         )
 
 
@@ -558,10 +558,10 @@ class _Answer(_Page):
             given=contract.variant.given if contract else {},
             calls=contract.question.calls if contract else (),
             case=record.cases.get(cluster.question),
-            right=Markup(answer_as_mathematics(right)),
-            right_text=pages.answer_as_text(right, 2_000),
-            answer=Markup(answer_as_mathematics(cluster.answer.plain)),
-            answer_text=pages.answer_as_text(cluster.answer.plain, 2_000),
+            right=Markup(pages.answer_as_mathematics(right)),
+            right_text=answer_as_text(right, 2_000),
+            answer=Markup(pages.answer_as_mathematics(cluster.answer.plain)),
+            answer_text=answer_as_text(cluster.answer.plain, 2_000),
             right_prose=_prose(right),
             answer_prose=_prose(cluster.answer.plain),
             by_a_person=judged.note == "for a person",

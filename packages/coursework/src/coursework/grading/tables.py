@@ -6,6 +6,8 @@ import itertools
 import unicodedata
 from collections.abc import Iterable, Iterator
 
+from ..checking.writing import readable
+
 STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -63,18 +65,3 @@ def in_a_line(text: str, most: int) -> str:
     another, which would seem to be ours.
     """
     return " ".join(readable(text, most).split())
-
-
-def readable(text: str, most: int = 2_000) -> str:
-    """Text that shows what it holds: without signs that are not
-    seen, or that turn the rest round.
-    """
-    if len(text) <= most and text.isascii() and text.isprintable():
-        return text
-    shown = "".join(
-        sign
-        if sign in "\n\t" or unicodedata.category(sign) not in ("Cc", "Cf", "Cs", "Co", "Cn")
-        else "\N{REPLACEMENT CHARACTER}"
-        for sign in text[:most]
-    )
-    return shown + ("…" if len(text) > most else "")

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...checking.reply import plain_text
+from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
 from ..judging.term import EXCUSED, FILE, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
@@ -27,7 +28,7 @@ from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import local_parts, turned
-from ..tables import in_a_line, number, readable, table
+from ..tables import in_a_line, number, table
 
 NBGRADER = (
     "assignment",

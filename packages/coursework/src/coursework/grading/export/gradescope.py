@@ -224,7 +224,7 @@ def run(home: Path = HOME) -> None:
 
 def _say(results: Path, said: str) -> None:
     """Results without questions: for nothing there are no points, and the student is told why."""
-    from ..tables import readable
+    from ...checking.writing import readable
 
     results.write_text(
         json.dumps({"score": 0, "output": readable(said), "output_format": "text"}), "utf8"

@@ -359,16 +359,9 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
             "this student have?"
         )
         reply = _undecided(name, "numbers of another edition", said)
-    elif short and (
-        others := [one for one in question.siblings if _is_right(name, Asked(one), answer)]
-    ):
-        everybodys = any(one.variant.number == 0 for one in others)
-        whose = (
-            "the numbers that everybody sees; yours are others"
-            if everybodys
-            else "other numbers than yours"
-        )
-        reply = Reply(name, "wrong", OTHER_NUMBERS, [f"This is right for {whose}."])
+    elif short and any(_is_right(name, Asked(one), answer) for one in question.siblings):
+        said = "This is right for other numbers than yours."
+        reply = Reply(name, "wrong", OTHER_NUMBERS, [said])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(
         reply.outcome, 0
     )

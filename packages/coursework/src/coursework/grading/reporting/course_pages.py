@@ -8,11 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...checking.writing import answer_as_text
 from ..judging.term import FILE, BadTerm, Result, Term, results_of, unknown_times
 from ..reading import AsJson
 from ..store import Store, as_text, file_name, write
 from ..tables import number, table
-from . import pages
 from .statistics import FORMAT, Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
@@ -234,7 +234,7 @@ def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], 
                     {
                         "number": same.number,
                         "plain": same.plain,
-                        "text": pages.answer_as_text(same.plain, 600),
+                        "text": answer_as_text(same.plain, 600),
                         "who": [
                             {
                                 "student": student,

@@ -4,15 +4,11 @@ import base64
 import functools
 import hashlib
 import html
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, TypeVar
 from xml.etree import ElementTree
 
 from ...checking.plain import Plain
 from ...checking.reply import to_html
-from ..tables import readable
-
-Part = TypeVar("Part")
+from ...checking.writing import LONGEST, answer_as_tex, readable
 
 STYLE = """
 :root { color-scheme: light dark; --paper: #fdfcfa; --panel: #f5f3ee; --rule: #dcd8cf; --ink: #22262b; --soft: #565c64;
@@ -138,126 +134,7 @@ def formula(source: str, longest: int = 300) -> str:
         return f"<code>{text(source)}</code>"
 
 
-# --- an answer in readable form -----------------------------------------------------------------
-
-OPERATORS = {"Add": (" + ", 1), "Mul": ("*", 2), "Pow": ("**", 3)}
-NAMES = {"Pi": "pi", "Exp1": "E", "ImaginaryUnit": "I", "Abs": "abs"}
-
-
-def answer_as_text(plain: Plain | None, most: int = 300) -> str:
-    """A plain answer as one line like the code that makes it, cut short where it is long."""
-    return _Printer(plain["nodes"], most).value(plain["value"]) if plain else ""
-
-
-class _Printer:
-    """Writes no more than asked for: what is shared in the nodes would
-    fill a disk if it were written out.
-    """
-
-    def __init__(self, nodes: Sequence[Any], most: int) -> None:
-        self.nodes = nodes
-        self.left = most
-        self.is_cut = False
-
-    def put(self, piece: str) -> str:
-        if self.left <= 0:
-            return self.cut()
-        self.left -= len(piece)
-        return piece if self.left >= 0 else piece[: self.left] + self.cut()
-
-    def cut(self) -> str:
-        """The sign that something is missing: once."""
-        first, self.is_cut = not self.is_cut, True
-        return "…" if first else ""
-
-    def parts(
-        self, parts: Iterable[Part], write: Callable[[Part], str], between: str = ", "
-    ) -> str:
-        written: list[str] = []
-        for part in parts:
-            if self.left <= 0:
-                written.append(self.cut())
-                break
-            written.append((self.put(between) if written else "") + write(part))
-        return "".join(written)
-
-    def value(self, value: Sequence[Any]) -> str:
-        kind, *rest = value
-        if kind == "blank":
-            return self.put("...")
-        if kind == "text":
-            return self.put(repr(readable(rest[0])))
-        if kind == "truth":
-            return self.put(str(rest[0]))
-        if kind == "printed":
-            return self.put(f"printed {readable(rest[0])}")
-        if kind == "frames":
-            return self.parts(
-                sorted(rest[0]),
-                lambda name: self.put(f"{readable(name)} ") + self.named(rest[0][name]),
-            )
-        if kind == "raised":
-            return self.put(f"raised {readable(rest[0])}")
-        if kind == "expression":
-            return self.node(rest[0], 0, 0)
-        if kind == "matrix":
-            rows, columns, entries = rest
-            lines = [entries[row * columns : (row + 1) * columns] for row in range(rows)]
-            return (
-                "["
-                + self.parts(
-                    lines,
-                    lambda line: "[" + self.parts(line, lambda entry: self.node(entry, 0, 0)) + "]",
-                )
-                + "]"
-            )
-        if kind == "list":
-            return "[" + self.parts(rest[0], self.value) + "]"
-        if kind == "function":
-            return self.put("returned ") + self.parts(rest[0], self.value, "; ")
-        if kind == "frame":
-            return self.put(f"frame {readable(rest[0])}: ") + self.named(rest[1])
-        return self.put("vector: ") + self.named(rest[0])
-
-    def named(self, values: Mapping[str, Any]) -> str:
-        return self.parts(
-            sorted(values),
-            lambda name: self.put(f"in {readable(name)}: ") + self.value(values[name]),
-            "; ",
-        )
-
-    def node(self, order: int, depth: int, around: int) -> str:
-        if self.left <= 0 or depth > 40:
-            return self.cut() if self.left <= 0 else self.put("…")
-        operation, *rest = self.nodes[order]
-        if operation == "symbol":
-            return self.put(readable(rest[0]))
-        if operation == "constant":
-            return self.put(NAMES.get(rest[0], readable(rest[0])))
-        if operation in ("integer", "rational", "float"):
-            digits = "/".join(rest)
-            if operation == "float" and 1e-300 < abs(float(digits)) < 1e300:
-                digits = f"{float(digits):.10g}"  # enough to recognise a number by
-            tight = around > 1 and ("/" in digits or digits.startswith("-"))
-            return self.put(f"({digits})" if tight else digits)
-        if operation == "Pow" and self.nodes[rest[1]] == ["rational", "1", "2"]:
-            return self.put("sqrt(") + self.node(rest[0], depth + 1, 0) + self.put(")")
-        if operation == "Mul" and len(rest) > 1 and self.nodes[rest[0]] == ["integer", "-1"]:
-            inner = self.put("-") + self.parts(
-                rest[1:], lambda child: self.node(child, depth + 1, 2), "*"
-            )
-            return f"({inner})" if around > 1 else inner
-        if operation in OPERATORS:
-            sign, binding = OPERATORS[operation]
-            inner = self.parts(
-                rest,
-                lambda child: self.node(child, depth + 1, binding + (operation == "Pow")),
-                sign,
-            )
-            inner = inner.replace("+ -", "- ")
-            return f"({inner})" if around > binding else inner
-        return (
-            self.put(f"{operation}(")
-            + self.parts(rest, lambda child: self.node(child, depth + 1, 0))
-            + self.put(")")
-        )
+def answer_as_mathematics(plain: Plain | None) -> str:
+    """The MathML of a plain answer, or an empty text where it is shown as text only."""
+    found = formula(answer_as_tex(plain), LONGEST) if plain else ""
+    return found if found.startswith("<math") else ""

@@ -18,6 +18,7 @@ from ...checking.fields import by_name, text
 from ...checking.plain import Plain
 from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
+from ...checking.writing import answer_as_text
 from ..judging.journal import case_id
 from ..judging.laboratory import PAGE, TABLE, Change, Laboratory
 from ..judging.term import Term, result_of, term_of
@@ -25,7 +26,6 @@ from ..record import Cell, Mark, Record, RunNotebook
 from ..store import Store, file_name, write
 from ..submissions.intake import Refused, refused_of
 from ..tables import lines, table
-from . import pages
 from .templates_of_pages import page
 
 #: The addresses that feedback leads to, as the course had them when it was graded.
@@ -114,14 +114,12 @@ class _Assignment:
                 self.mixups[name, deed(mark)] += 1
             elif mark.outcome == "wrong" and mark.group:
                 if (name, mark.group) not in self.same:
-                    self.examples[name, mark.group] = pages.answer_as_text(
-                        record.answer(name).plain
-                    )
+                    self.examples[name, mark.group] = answer_as_text(record.answer(name).plain)
                 self.same[name, mark.group] += 1
             if mark.outcome == "undecided":
                 self.waiting += 1
                 if len(self.undecided) < MOST_UNDECIDED:
-                    answer = pages.answer_as_text(record.answer(name).plain)
+                    answer = answer_as_text(record.answer(name).plain)
                     self.undecided.append((record.student, name, mark.messages, answer))
         for kind in _oddities(record):
             number, names = self.odd.get(kind, (0, []))
@@ -201,7 +199,7 @@ def _undecided_of(records: Iterable[Record]) -> Iterator[tuple[object, ...]]:
                     mark.worth,
                     mark.note,
                     " ".join(mark.messages),
-                    pages.answer_as_text(record.answer(name).plain),
+                    answer_as_text(record.answer(name).plain),
                 )
 
 
@@ -287,7 +285,7 @@ def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
         or plain["value"][0] == "function"
     ):
         return None
-    return plain, pages.answer_as_text(plain)
+    return plain, answer_as_text(plain)
 
 
 def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:

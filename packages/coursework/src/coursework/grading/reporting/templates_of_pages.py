@@ -5,9 +5,9 @@ be mathematics or a message of ours.
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from ..tables import number, readable
+from ...checking.writing import readable
+from ..tables import number
 from . import pages
-from .mathematics import answer_as_mathematics
 
 LOADER = PackageLoader("coursework.grading.reporting", "templates")
 ENVIRONMENT = Environment(
@@ -22,7 +22,7 @@ ENVIRONMENT.filters |= {
     "points": number,
     "message": lambda said: Markup(pages.message(said)),
     "capital": lambda text: text[:1].upper() + text[1:],
-    "mathematics": lambda plain: Markup(answer_as_mathematics(plain)),
+    "mathematics": lambda plain: Markup(pages.answer_as_mathematics(plain)),
     "count": lambda how_many, one, more: f"{how_many} {one if how_many == 1 else more}",
     "percent": lambda share: f"{100 * share:.0f} %",
 }

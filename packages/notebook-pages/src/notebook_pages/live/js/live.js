@@ -48,14 +48,13 @@ class Page {
 
   // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
   askWho() {
-    const cell = this.cells.find(({ original }) => /^(?:student|(?:coursework\.)?me|this_is_me)\(/m.test(original));
+    const cell = this.cells.find(({ original }) => /^student\(/m.test(original));
     if (!cell || this.who?.contains(document.activeElement)) return;
     const name = coursework.read("me.txt")?.text ?? "";
     const field = Object.assign(element("input"), { value: name, name: "student", autocomplete: "email", spellcheck: false });
-    const label = element("label", "", "Your name or address, as your course has it: ", field);
+    const label = element("label", "", "Your ID, as your course has it: ", field);
     const button = element("button", "", name ? "Change" : "Give me my own numbers");
-    const words = name ? `The numbers on these pages are those of ${name}.`
-      : "These are the numbers that everybody sees. Whoever says who they are gets their own; it stays in this browser.";
+    const words = name ? `The numbers on these pages are those of ${name}.` : "Your ID stays in this browser.";
     const form = element("form", "live-note live-choice live-who", element("p", "", words), label, " ", button);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -65,7 +64,7 @@ class Page {
       button.blur();
       this.tellWhose();
       this.askWho();
-      this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are those that everybody sees.");
+      this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are the default ones.");
     });
     if (this.who) this.who.replaceWith(form);
     else cell.input.after(form);

@@ -239,8 +239,8 @@
       const varies = shown.includes(question), known = question && store.standing(question, varies);
       if (whose !== undefined && question && !varies) return; // the same for everybody
       const run = "Run this cell to see the reply again.";
-      const numbers = known?.whose ? `the numbers of ${known.whose}` : "the numbers that everybody sees";
-      const now = `The numbers are those ${name ? `of ${name}` : "that everybody sees"} now`;
+      const numbers = known?.whose ? `the numbers of ${known.whose}` : "the default numbers";
+      const now = `${name ? `The numbers are those of ${name}` : "You have the default numbers"} now`;
       let said = "";
       if (shown[number]) said = name && `Run this cell: you get the numbers of ${name}.`;
       else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
@@ -251,7 +251,7 @@
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();
       if (shown[number] || whose !== undefined) { // what is another one's is not taken for one's own
         const others = make("details", { className: "live-built live-others" });
-        others.append(make("summary", {}, shown[number] ? "The numbers that everybody sees" : "The reply to other numbers"), ...output.childNodes);
+        others.append(make("summary", {}, shown[number] ? "The default numbers" : "The reply to other numbers"), ...output.childNodes);
         output.append(others);
       }
       output.prepend(make("p", { className: "live-known" }, said));

@@ -46,7 +46,7 @@ async function bookNotebook(data, originals) {
 // questions would be everybody's.
 function signed(code) {
   const name = store.read("coursework me.txt")?.text.trim();
-  return name ? code.replace(/^student\((''|"")\)/m, () => `student(${JSON.stringify(name)})`) : code;
+  return name ? code.replace(/^(# )?student\((''|""|'your ID')\)/m, () => `student(${JSON.stringify(name)})`) : code;
 }
 
 // The page's notebook with the reader's answers, as a file.
