@@ -2,13 +2,18 @@
 copy with one thing flipped is caught.
 """
 
-import ahrs
+import warnings
+
 import numpy as np
 import pytest
 import pytransform3d.rotations as pr
 import sympy as sm
 import sympy.physics.mechanics as me
 from scipy.spatial.transform import Rotation
+
+with warnings.catch_warnings():  # of its docstrings, where it has never been imported before
+    warnings.simplefilter("ignore")
+    import ahrs
 
 import orientation
 from orientation_workbench import assert_convention, convention_of

@@ -7,8 +7,6 @@ import itertools
 import json
 import random
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -584,15 +582,6 @@ def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):
     with pytest.raises(SystemExit) as left:
         main(["explain", *arguments])
     assert left.value.code == 3 and said in capsys.readouterr().err
-
-
-def test_the_command_is_installed():
-    done = subprocess.run(
-        [sys.executable, "-m", "orientation_workbench", "explain", "1 0 0", "0 0 0 2 1"],
-        capture_output=True,
-        text=True,
-    )
-    assert done.returncode == 3 and "5 numbers" in done.stderr
 
 
 def test_degrees_are_seen_wherever_the_angle_stands():
