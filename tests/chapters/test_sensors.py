@@ -11,6 +11,7 @@ import pytest
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 
+import orientation
 import orientation_recordings as recordings
 from orientation import MultiplicativeKalmanFilter, dcm_from_rotation_vector
 from orientation_workbench.recording import examine
@@ -289,3 +290,75 @@ def test_the_bench_warns_of_no_walk_without_a_car():
         sum(examine(walk(seed, False), "walk").light("filter") == "wrong" for seed in range(20))
         <= 1
     )
+
+
+def named(word, chapter, *names):
+    """Functions and constants that the one cell with the word defines, as the chapter has them."""
+    scope = {"np": np, **vars(orientation)}
+    exec(found(word, chapter)[0].partition("\n\n\nahead")[0].partition("\n\ng_A")[0], scope)
+    return [scope[name] for name in names]
+
+
+def active(dcm):
+    """SciPy's rotation for a direction cosine matrix of this book, which is its transpose."""
+    return Rotation.from_matrix(np.transpose(dcm))
+
+
+def test_swing_and_twist_by_scipy():
+    [swing_twist] = named("def swing_twist", "axis-and-angle", "swing_twist")
+    e = np.array([2, -1, 2]) / 3
+    for turned in Rotation.random(20, rng=3):
+        swing, twist = (
+            Rotation.from_quat(q, scalar_first=True)
+            for q in swing_twist(turned.as_quat(scalar_first=True), e)
+        )
+        assert np.allclose((swing * twist).as_matrix(), turned.as_matrix())
+        assert np.allclose(np.cross(twist.as_rotvec(), e), 0)
+        assert abs(swing.as_rotvec() @ e) < 1e-9
+        angle = np.arccos(e @ turned.apply(e))
+        assert np.isclose(swing.magnitude(), angle)
+
+
+def test_zero_on_the_left_takes_out_the_mounting_by_scipy():
+    ground, mounting = Rotation.from_euler("Z", 65, degrees=True), Rotation.random(rng=4)
+    turn = Rotation.from_euler("Z", 30, degrees=True)  # of the person, about the vertical
+    # SciPy's rotations carry vectors: the instrument's own rotation in its ground frame.
+    before, after = ground * mounting, turn * ground * mounting
+    C_0, C = before.as_matrix().T, after.as_matrix().T
+    assert np.allclose(active(C_0.T @ C).as_euler("ZYX", degrees=True), [30, 0, 0])
+    yaw, *rest = active(C @ C_0.T).as_euler("ZYX", degrees=True)
+    assert np.isclose(active(C @ C_0.T).magnitude(), np.radians(30)) and np.abs(rest).max() > 1
+
+
+def test_covariance_about_fixed_axes_by_scipy():
+    base = Rotation.from_euler("ZYX", [0, 60, 0], degrees=True)
+    step = 1e-6
+    J = np.transpose(
+        [
+            ((Rotation.from_rotvec(step * axis) * base).as_euler("ZYX") - base.as_euler("ZYX"))
+            / step
+            for axis in np.eye(3)
+        ]
+    )
+    P = np.diag([1.0, 1.0, 4.0])
+    ours = orientation.propagate_covariance(
+        orientation.body_fixed_from_dcm,
+        base.as_matrix().T,
+        1e-6 * P,
+        "zyx",
+        along="source",
+    )
+    assert np.allclose(1e6 * ours, J @ P @ J.T, atol=1e-4)
+    assert np.allclose(np.sqrt(np.diag(J @ P @ J.T)), [np.sqrt(7), 1, 2], atol=1e-4)
+
+
+def test_misorientation_by_scipy():
+    [misorientation] = named("def misorientation", "cases-from-practice", "misorientation")
+    group = Rotation.create_group("O")
+    grains = [
+        Rotation.from_euler("ZXZ", angles, degrees=True) for angles in ([20, 30, 40], [150, 50, 10])
+    ]
+    between = grains[0].inv() * grains[1]  # along the crystals
+    smallest = min((between * symmetry).magnitude() for symmetry in group)
+    g_A, g_B = (grain.as_matrix().T for grain in grains)
+    assert np.allclose(misorientation(g_A[None], g_B[None]), np.degrees(smallest))
