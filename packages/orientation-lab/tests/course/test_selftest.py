@@ -35,7 +35,10 @@ def test_every_question_passes_and_names_its_mistakes(name):
 def test_nothing_leaks_into_the_archive(tmp_path):
     archive = pack(COURSE, tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]
-    assert leaks(sources, released_texts(COURSE.exercises, COURSE.sealed, archive)) == []
+    received = released_texts(COURSE.exercises, COURSE.sealed, archive)
+    assert leaks(sources, received) == []
+    # The questions to ask aloud stand beside the solutions.
+    assert not any("spoken-questions" in name for name in received)
 
 
 def test_nothing_to_try_is_not_a_pass(tmp_path):
