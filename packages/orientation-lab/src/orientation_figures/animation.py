@@ -77,7 +77,7 @@ class Animation:
     draw : callable
         ``draw(progress)`` returns the ``Drawing`` at that moment; ``progress`` runs from 0 to the
         number of steps. All drawings must consist of the same marks in the same order.
-    steps : sequence of (str, float or str)
+    steps : list of (str, float or str)
         What happens in each step: the words shown under the picture, and what a screen reader adds
         to them, either the angle turned so far (the last value is given, in radians) or more words.
     still : float, optional
