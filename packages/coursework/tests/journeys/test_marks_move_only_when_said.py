@@ -185,3 +185,30 @@ def test_a_line_of_the_journal_that_was_edited_is_noticed(course):
     path.write_text(whole + whole[:40])
     said = course.regrade()
     assert "ends within a line" in said and "0 moved." in said
+
+
+def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
+    """The journal knows that a mark was given: without its record nothing is exported."""
+    course = Course(tmp_path, hw2={"load": (7, 8)})
+    course.hands_in("ada", "hw2")
+    course.hands_in("ben", "hw2")
+    course.grade()
+    book = course.canvas_book("HW 2 (7)")
+    (course.marks / "records" / "ada" / "hw2.json").unlink()
+    said = course.export(book, fails=True)
+    assert "The record of 'ada', hw2 is gone from" in said and "grade again first" in said
+    assert "its record is gone: grade again" in course.run("why", "ada", "hw2", fails=True)
+    course.grade()
+    course.export(book)
+    assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "8"}
+
+
+def test_who_was_graded_before_is_not_missing_in_a_late_folder(tmp_path):
+    course = Course(tmp_path, hw2={"load": (7, 8)})
+    (tmp_path / "roster.csv").write_text("student\nada\nben\ncem\n")
+    course.run("term", "new", "marks", "--solutions", "solutions", "--roster", "roster.csv")
+    course.hands_in("ada", "hw2")
+    assert "2 handed in nothing: ben, cem." in course.grade()
+    (course.handed_in / "ada").rename(tmp_path / "first")
+    course.hands_in("ben", "hw2")
+    assert "1 handed in nothing: cem." in course.grade()

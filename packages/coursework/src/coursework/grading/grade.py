@@ -26,7 +26,7 @@ from .assignments import Course, NothingToGrade
 from .judging import marking
 from .judging.cases import Contracts, answered, changed_since, variants_of
 from .judging.contract import Asked
-from .judging.journal import Journal, Standing, appeals_open, with_decisions
+from .judging.journal import Given, Journal, Standing, appeals_open, with_decisions
 from .judging.judge import Judge
 from .judging.laboratory import PAGE, Agree, Laboratory, settle
 from .judging.term import BEST, FILE, result_of, term_of
@@ -52,11 +52,6 @@ from .tables import in_a_line, number
 REJUDGED = "the questions or the software changed"
 DECIDED = "a person decided"
 MOST_SHOWN = 40  # names on the screen
-
-
-def always(laboratory: Laboratory) -> bool:
-    """Agree to whatever would move, unseen: commands ask a person."""
-    return True
 
 
 class Desk:
@@ -232,7 +227,7 @@ def grade(
     dry_run: bool = False,
     running: Running | None = None,
     show: TextIO | None = None,
-    agree: Agree = always,
+    agree: Agree = lambda laboratory: True,
 ) -> dict[str, int]:
     """Grade what was handed in and write records and reports to the folder ``out``, whose file
     ``term.toml`` says who is in the course and what there is to hand in.
@@ -273,7 +268,13 @@ def grade(
     with at_desk(out, show, agree) as (desk, closing):
         course, place = Course(solutions, desk.term, only), Path(submissions)
         handed_in = _read_and_pair(desk, course, place, student)
-        foreign = say(handed_in, desk.term, desk.store.folder, desk.show)
+        foreign = say(
+            handed_in,
+            desk.term,
+            {one.student for one in desk.journal.events if isinstance(one, Given)},
+            desk.store.folder,
+            desk.show,
+        )
         demand_a_class(handed_in.work, desk.term.roster, student)
         desk.ask(course, (one.assignment for one in handed_in.work), closing)
         if not as_listed:
@@ -437,7 +438,7 @@ def regrade(
     solutions: str | Path | None = None,
     dry_run: bool = False,
     show: TextIO | None = None,
-    agree: Agree = always,
+    agree: Agree = lambda laboratory: True,
 ) -> Laboratory:
     """Judge the stored answers again, by the questions and people's decisions as they are now.
 
@@ -467,7 +468,7 @@ def regrade(
 
 
 def bring_in_decisions(
-    out: str | Path, *, show: TextIO | None = None, agree: Agree = always
+    out: str | Path, *, show: TextIO | None = None, agree: Agree = lambda laboratory: True
 ) -> Laboratory:
     """Bring what people decided into marks and pages; nothing is judged anew."""
     with at_desk(out, show, agree) as (desk, _):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
@@ -192,16 +192,18 @@ def _attempts(
 # --- what a person is told before anything is run -------------------------------------------------
 
 
-def say(handed_in: HandedIn, term: Term, folder: Path, show: TextIO) -> list[Foreign]:
+def say(
+    handed_in: HandedIn, term: Term, graded: Collection[str], folder: Path, show: TextIO
+) -> list[Foreign]:
     """Say whose each file is, how that is known, and which do not count; give the notebooks that
-    say that they are of somebody else.
+    say that they are of somebody else. Who was graded before is not missing.
     """
     for name, number in sorted(handed_in.left_alone.items()):
         are = ("notebook is", "is") if number == 1 else ("notebooks are", "are")
         print(f"{number} {are[0]} of {name}, and {are[1]} left alone.", file=show)
     _say_whose(handed_in, folder, show)
     if term.roster:
-        _say_absent(handed_in, term, term.roster, show)
+        _say_absent(handed_in, term, graded, term.roster, show)
     return _say_foreign(handed_in.work, show)
 
 
@@ -239,8 +241,11 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         print(f"  ? <- {in_a_line(refused.file, 120)}: {in_a_line(refused.why, 300)}", file=show)
 
 
-def _say_absent(handed_in: HandedIn, term: Term, roster: Roster, show: TextIO) -> None:
-    present = {member for one in handed_in.work for member in term.members(one.student)}
+def _say_absent(
+    handed_in: HandedIn, term: Term, graded: Collection[str], roster: Roster, show: TextIO
+) -> None:
+    came = {*graded, *(one.student for one in handed_in.work)}
+    present = {member for name in came for member in term.members(name)}
     damaged = {one.student for one in handed_in.refused} & set(roster.people) - present
     missing = sorted(set(roster.people) - present - damaged)
     for names, what in (

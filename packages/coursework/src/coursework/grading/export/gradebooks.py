@@ -43,7 +43,6 @@ NBGRADER = (
     "score",
     "max_score",
 )
-POSSIBLE = "points possible"
 
 
 class CannotExport(ValueError):
@@ -105,6 +104,18 @@ class Marks:
         if not self.records:
             named = f" of {assignment!r}" if assignment else ""
             raise CannotExport(f"There are no marks{named} in {store.folder}.")
+        # Who has another name by now has a record that was put aside.
+        aside = store.folder / "put-aside"
+        if lost := [
+            key
+            for key in self.given
+            if not (place := store.place(*key)).exists()
+            and not (aside / place.relative_to(store.records)).exists()
+        ]:
+            raise CannotExport(
+                f"The record of {lost[0][0]!r}, {lost[0][1]} is gone from {store.records}, and its "
+                "marks were given: grade again first."
+            )
         self.assignments = sorted({record.assignment for record in self.records})
         self.students: dict[str, list[Record]] = {}
         for record in self.records:
@@ -619,7 +630,7 @@ def _scale(book: Gradebook, system: System, place: int) -> tuple[float | None, i
     about = re.search(system.out_of, book.header[place].lower())
     said = about[1] if about else book.says(1, book.column("maximum grade"))
     while system.name == "Canvas" and first < len(book.lines):
-        if book.says(first, 0).lower() == POSSIBLE:
+        if book.says(first, 0).lower() == "points possible":
             said = book.says(first, place)
         elif book.says(first, book.column("id")):
             break
@@ -752,9 +763,6 @@ def write_nbgrader(path: str | Path, marks: Marks) -> None:
     write(path, table(NBGRADER, rows))
 
 
-STATUS = {"correct": "passed", "decided": "passed"}
-
-
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
     """Write what Gradescope reads of an autograder: the results of one student."""
     tests: list[dict[str, str | float]] = []
@@ -770,7 +778,11 @@ def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:
                     **(
                         {}
                         if mark.outcome == "undecided"
-                        else {"status": STATUS.get(mark.outcome, "failed")}
+                        else {
+                            "status": "passed"
+                            if mark.outcome in ("correct", "decided")
+                            else "failed"
+                        }
                     ),
                     "visibility": "visible",
                     "output_format": "text",

@@ -25,7 +25,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         raise ValueError(
             f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
             f"marks {'for' if own else 'of'} "
-            f"{', '.join(own or sorted({one for one, _ in keys})[:40]) or 'nobody yet'}."
+            f"{', '.join(own or sorted({one for one, _ in keys})[:40]) or 'nobody yet'}"
+            f"{', but its record is gone: grade again' if given else ''}."
         )
     group = f" (in {whose})" if whose != student else ""
     said = [f"{student}{group}, {assignment}: {_of(given)}."]
