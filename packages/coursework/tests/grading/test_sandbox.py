@@ -563,7 +563,6 @@ def test_an_answer_that_gets_next_to_nothing_of_a_processor_is_not_lost():
     assert time.monotonic() - start > 2  # or it was no strain
 
 
-@pytest.mark.long
 @pytest.mark.sampled(2, of="sandboxes under strain")
 @pytest.mark.parametrize("made_by", ["unshare", "bubblewrap"])
 def test_addresses_are_the_same_each_time(made_by):
