@@ -24,7 +24,7 @@ MAY_IMPORT = {
     "coursework.checking": (),
     "coursework.authoring": ("coursework.checking",),
     "coursework.grading": ("coursework.checking", "coursework.authoring"),
-    "orientation_course": ("coursework", "orientation"),
+    "orientation_course": ("coursework", "orientation", "orientation_figures"),
     "notebook_pages": (),
 }
 #: In grading, what follows a notebook on its way uses only what comes before it,

@@ -59,7 +59,7 @@ def test_a_sealed_question_is_written_as_it_was_read():
         ),
         (
             Contract.from_json,
-            {"title": "One", "public": LEVER},
+            {"title": "One", "variable": "force", "public": LEVER},
             {"worth": "2"},
             "'worth' should be a number",
         ),
