@@ -198,7 +198,7 @@ def test_students_have_the_command_that_updates_and_no_other(
         [*command, "--help"], env=readers_variables, capture_output=True, text=True, check=True
     )
     assert re.findall(r"^    (\w\S*)", told.stdout, re.M) == ["update"]
-    assert "from its repository" in told.stdout
+    assert "install coursework-tools" in told.stdout
     archive = FOLDER / "exercises.zip"
     done = subprocess.run(
         [*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True

@@ -16,7 +16,7 @@ LATER = "later"
 MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
 #: More text than the first view of a large screen holds, in characters; and
 #: how many a large block counts for.
-FIRST_VIEW, LARGEST = 3000, 800
+FIRST_VIEW, LARGEST = 3200, 800
 #: A line of a column, which even the shortest block takes.
 LINE = 80
 #: What has no box of its own, or one that cannot be left empty.

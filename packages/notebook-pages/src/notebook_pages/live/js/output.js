@@ -163,7 +163,9 @@ export function shown(data, name, figure) {
   const form = ORDER.find((known) => known in data);
   if (form === "text/html") {
     const box = html(data[form]);
-    return [box, box.querySelector("figure, svg, img") ? "a figure" : data["text/plain"] ?? box.textContent.trim()];
+    const drawing = box.querySelector("figure, svg, img");
+    const alone = drawing && !box.textContent.replace(drawing.textContent, "").trim();
+    return [box, alone ? "a figure" : data["text/plain"] ?? box.textContent.trim()];
   }
   if (form === "text/latex") return [formula(data[form]), data["text/plain"]?.includes("\n") ? "a formula" : data["text/plain"] ?? "a formula"];
   if (form === "text/markdown") return [markdown(data[form]), data["text/plain"] ?? data[form]];
