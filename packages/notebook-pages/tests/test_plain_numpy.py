@@ -222,7 +222,9 @@ def ordinary_lines(count):
         if inspect.isfunction(value) or name == "linalg"
     ]
     functions = [name for name in functions if name not in ("np.linalg", "np.empty")]
-    functions += [f"np.linalg.{name}" for name in plain_numpy.PARTS["linalg"].offered]
+    # The signs of singular vectors and eigenvectors differ between processors, with NumPy too.
+    offered = set(plain_numpy.PARTS["linalg"].offered) - {"svd", "eigh"}
+    functions += [f"np.linalg.{name}" for name in sorted(offered)]
     operators = ["+", "-", "*", "/", "**", "@", "//", "%", "==", "<", "&", "|"]
     for _ in range(count):
         kind = draw.random()

@@ -1211,6 +1211,14 @@ def swapaxes(a, axis1, axis2):
 
 
 @offered
+def moveaxis(a, source, destination):
+    value = as_array(a)
+    order = list(range(value.ndim))
+    order.insert(range(value.ndim)[destination], order.pop(range(value.ndim)[source]))
+    return value.transpose(*order)
+
+
+@offered
 def concatenate(arrays, /, axis=0):
     arrays = [as_array(array) for array in arrays]
     axis = range(arrays[0].ndim)[axis]
@@ -1431,7 +1439,7 @@ def percentile(a, q, axis=None):
     value, q = as_array(a, float), as_array(q)
     if (
         q.ndim > 1
-        or q.kind == "b"
+        or "b" in (q.kind, as_array(a).kind)
         or not all_finite(value.values)
         or not all(0 <= part <= 100 for part in q.values)
     ):
@@ -1652,16 +1660,6 @@ def inner(one, two):
     return sum(map(operator.mul, one, two))
 
 
-def asked_by_a_module():
-    """Whether a module calls, and not the reader's own cell, who looks at every digit and sign.
-
-    Which signs LAPACK gives to the vectors of a factor, and which digits to the determinant of a
-    matrix that is next to singular, no rule says; modules make nothing of either.
-    """
-    # Between this and the caller stand the function that is called and what it is wrapped in.
-    return sys._getframe(3).f_globals.get("__name__", "__main__") != "__main__"
-
-
 def eliminated(rows, right, careful=True):
     """Solve by Gauss's elimination with row exchanges; returns the solution and the determinant."""
     rows, right, n, determinant = (
@@ -1729,8 +1727,8 @@ def inv(a):
 @within("linalg")
 def det(a):
     stack_of, batch, n = matrices(a)
-    careful = not asked_by_a_module()
-    return result([eliminated(rows, [[]] * n, careful)[1] for rows in stack_of], batch, "f")
+    # Which digits it has next to zero differs between processors, with NumPy too.
+    return result([eliminated(rows, [[]] * n, careful=False)[1] for rows in stack_of], batch, "f")
 
 
 def of_symmetric(rows):
@@ -1782,8 +1780,6 @@ def symmetric(a):
 
 @within("linalg")
 def eigh(a):
-    if not asked_by_a_module():
-        raise NotImplementedError("signs")
     stack_of, batch, n = symmetric(a)
     found = [of_symmetric(rows) for rows in stack_of]
     # A vector and its opposite are both right, and no rule says which LAPACK gives.
@@ -1852,8 +1848,6 @@ def orthonormal(columns, sizes):
 
 @within("linalg")
 def svd(a, full_matrices=True, compute_uv=True):
-    if compute_uv and not asked_by_a_module():
-        raise NotImplementedError("signs")
     stack_of, batch, n = matrices(a)
     spend(len(stack_of) * n**3 * 90)
     lefts, sizes, rights = [], [], []
@@ -1861,7 +1855,8 @@ def svd(a, full_matrices=True, compute_uv=True):
         columns, own, right = singular(rows)
         if compute_uv:
             columns = orthonormal(columns, own)
-            # LAPACK's signs are not to be had; the product of the factors is.
+            # Which signs the vectors have no rule says, and they differ between processors with
+            # NumPy, too; the product of the factors is the matrix.
             lefts += [entry for row in zip(*columns) for entry in row]
             rights += [entry for row in right for entry in row]
         sizes += own
@@ -1892,6 +1887,15 @@ def matrix_power(a, n):
         found = (matrix if found is None else product(found, matrix)) if odd else found
         matrix = product(matrix, matrix) if exponent else matrix
     return found
+
+
+@within("linalg")
+def matrix_rank(A):
+    sizes = svd(A, compute_uv=False)
+    if sizes.ndim != 1:
+        raise NotImplementedError("stacks")
+    limit = sizes.values[0] * as_array(A).shape[-1] * sys.float_info.epsilon
+    return Integer(sum(size > limit for size in sizes.values))
 
 
 class Quiet:
