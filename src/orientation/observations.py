@@ -7,6 +7,7 @@ fitted.
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 from .direction_cosines import nearest_by_scales
@@ -158,7 +159,7 @@ def dcm_from_directions(
     # well, as a share of what these weights allow: beside a star tracker, a magnetometer counts for
     # a millionth, and fixes the turn around the star all the same.
     allowed = weights.sum() - weights.max()
-    margin = gap / max(allowed, numpy.finfo(float).tiny)
+    margin = gap / max(allowed, sys.float_info.min)
     if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):
         raise ValueError(
             f"the directions do not determine an orientation (margin {numpy.min(margin):.1e}): "

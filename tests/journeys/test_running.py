@@ -5,7 +5,7 @@ from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 import pytest
-from places import HTML
+from places import HTML, PATIENCE
 from playwright.sync_api import expect
 
 CHAPTER = "chapters/simple-orientations.html"
@@ -24,7 +24,7 @@ def page(browser):
 def said(page, words):
     """The words of the bar, once they hold ``words``."""
     bar = page.locator("#live-words")
-    expect(bar).to_contain_text(words)
+    expect(bar).to_contain_text(words, timeout=PATIENCE)
     text = bar.inner_text()
     assert not [part for part in OF_PROGRAMS if part in text]
     return text
@@ -42,7 +42,7 @@ def test_what_is_written_awaits_and_what_is_not_there_is_named(page, site):
         page.keyboard.press("Control+a")
         page.keyboard.type(code)
         page.keyboard.press("Shift+Enter")
-        expect(cell.locator(".cell_output")).to_contain_text(result)
+        expect(cell.locator(".cell_output")).to_contain_text(result, timeout=PATIENCE)
 
 
 def test_a_book_kept_without_python_says_so_offline(page, site):
@@ -63,7 +63,7 @@ def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
     page.set_content(frame)
     inside = page.frame_locator("iframe")
     inside.locator("button.run-cell:visible").first.click()
-    expect(inside.locator("#live-words")).to_contain_text("sandbox")
+    expect(inside.locator("#live-words")).to_contain_text("sandbox", timeout=PATIENCE)
 
 
 class AsText(SimpleHTTPRequestHandler):

@@ -1017,7 +1017,8 @@ OFFERED["round"] = around
 
 @offered
 def clip(a, a_min, a_max):
-    return OFFERED["minimum"](OFFERED["maximum"](a, a_min), a_max)
+    found = a if a_min is None else OFFERED["maximum"](a, a_min)
+    return found if a_max is None else OFFERED["minimum"](found, a_max)
 
 
 @offered
@@ -1493,6 +1494,24 @@ def diff(a, n=1, axis=-1, prepend=None):
         value = concatenate([atleast_1d(prepend), value])
     after, before = between(value, axis)
     return after - before
+
+
+@offered
+def unwrap(p, *, period=2 * math.pi, axis=-1):
+    if as_array(p).kind != "f" and not isinstance(period, float):
+        raise NotImplementedError("whole numbers")
+    value, half = as_array(p, float), period / 2
+    steps = diff(value, axis=axis)
+
+    def wrapped(step):
+        rest_of_it = (step + half) % period - half
+        return half if rest_of_it == -half and step > 0 else rest_of_it
+
+    corrections = where(abs_(steps) < half, 0.0, entry_by_entry(wrapped, steps) - steps)
+    found = value.copy()
+    later = (*(slice(None),) * range(value.ndim)[axis], slice(1, None))
+    found[later] = value[later] + cumsum(corrections, axis)
+    return found
 
 
 @offered
