@@ -595,6 +595,7 @@ def on_windows(program, *arguments):
     return subprocess.run(command, capture_output=True, text=True)
 
 
+@pytest.mark.long
 def test_on_windows_what_runs_nobody_s_code_runs(out, tmp_path):
     """And what does, says where it can be run."""
     command = "main(sys.argv[1:])"
