@@ -3,12 +3,37 @@ solutions, and students who work on them.
 """
 
 import copy
+import io
 import json
 
 import nbformat
 
+from coursework.grading.execution.sandbox import Limits
+from coursework.grading.grade import grade
 from coursework.grading.judging.journal import Journal
 from coursework.grading.judging.laboratory import settle
+from coursework.grading.running import Running
+
+#: So that what never ends is stopped soon, and a busy machine costs nobody an answer.
+LIMITS = Limits(
+    cell_seconds=2,
+    cell_wall_seconds=60,
+    answer_seconds=1,
+    answer_wall_seconds=60,
+    grace_seconds=0.5,
+)
+
+
+def grade_quietly(submissions, out, solutions):
+    """Grade within these limits; what would be shown is dropped."""
+    return grade(
+        submissions,
+        out,
+        solutions=solutions,
+        running=Running(limits=LIMITS),
+        show=io.StringIO(),
+    )
+
 
 SOURCES = {
     "turns": [

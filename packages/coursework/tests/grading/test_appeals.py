@@ -12,13 +12,12 @@ from urllib.parse import quote_plus
 
 import nbformat
 import pytest
-from grading_class import notebook, put, write_term
+from grading_class import LIMITS, grade_quietly, notebook, put, write_term
 from test_review import Served
 
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
 from coursework.authoring.source import read_source
-from coursework.grading.execution.sandbox import Limits
 from coursework.grading.export import gradebooks
 from coursework.grading.grade import bring_in_decisions, grade, regrade
 from coursework.grading.judging import secret
@@ -35,13 +34,6 @@ from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 SCRIPT = "<script>alert(1)</script>"
 ESSAY, SUM = "essays/why", "essays/sum"
 RUBRIC = {"names the couple": 2, "says why": 1, "forgets the point": -1}
@@ -85,13 +77,7 @@ def begun(tmp_path_factory):
     solutions = write_essays(place / "solutions")
     for student, total in (("ada", 5), ("ben", 6), ("cem", 6)):
         put(place / "in", student, answered(f"Since {student} says so.", total), "essays.ipynb")
-    grade(
-        place / "in",
-        place / "out",
-        solutions=solutions,
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(place / "in", place / "out", solutions)
     return place
 
 

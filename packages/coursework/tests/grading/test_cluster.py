@@ -15,11 +15,11 @@ import threading
 
 import psutil
 import pytest
-from grading_class import handed_in, put, write_sources
+from grading_class import LIMITS, handed_in, put, write_sources
 
 from coursework.grading import commands
 from coursework.grading.execution import cluster_keys
-from coursework.grading.execution.sandbox import Limits, given_up
+from coursework.grading.execution.sandbox import given_up
 from coursework.grading.grade import grade
 from coursework.grading.judging.journal import Journal
 from coursework.grading.running import Running
@@ -31,13 +31,6 @@ pytestmark = [
     ),
     pytest.mark.filterwarnings("ignore"),
 ]
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 
 
 @contextlib.contextmanager

@@ -22,9 +22,11 @@ from html.parser import HTMLParser
 import nbformat
 import pytest
 from grading_class import (
+    LIMITS,
     RIGHT,
     SETUP,
     give,
+    grade_quietly,
     handed_in,
     notebook,
     put,
@@ -38,7 +40,6 @@ from coursework.checking.reply import plain_text, to_html
 from coursework.checking.writing import answer_as_text
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import (
-    Limits,
     Sandbox,
     WeakIsolation,
     WorkerDied,
@@ -64,13 +65,6 @@ pytestmark = [
     pytest.mark.usefixtures("libraries_are_loaded_once"),
 ]
 
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 SCRIPT = "<script>alert(1)</script>"
 
 
@@ -134,13 +128,7 @@ def course(tmp_path_factory):
     put(submissions, "refused", "{")
     put(submissions, SCRIPT.replace("/", ""), "no notebook", "answers.pdf")
     (submissions / "refused" / "link.ipynb").symlink_to(submissions / "right" / "turns.ipynb")
-    said = grade(
-        submissions,
-        place / "out",
-        solutions=solutions,
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    said = grade_quietly(submissions, place / "out", solutions)
     assert said == {"graded": 15, "kept": 0, "refused": 3, "held": 0}
     return place
 
@@ -507,13 +495,7 @@ def test_a_run_that_is_killed_goes_on_where_it_was(course, prepared):
     assert not list((out / "records").glob("*/*.json"))
     (out / "waiting" / "right").mkdir(exist_ok=True)
     (out / "waiting" / "right" / ".half-written").write_text("{")
-    said = grade(
-        course / "submissions",
-        out,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    said = grade_quietly(course / "submissions", out, course / "solutions")
     assert 3 <= done < 15 and said == {"graded": 15 - done, "kept": done, "refused": 3, "held": 0}
     lines = graded_lines(out)
     # The last one may have been recorded and not yet logged when the run was killed.
@@ -526,13 +508,7 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
         "coursework.grading.execution.sandbox.Sandbox",
         lambda *arguments, **options: pytest.fail("it was run"),
     )
-    said = grade(
-        course / "submissions",
-        copied,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    said = grade_quietly(course / "submissions", copied, course / "solutions")
     assert said == {"graded": 0, "kept": 15, "refused": 3, "held": 0}
     assert contents(copied) == contents(course / "out")
 
@@ -540,13 +516,7 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
 def test_what_changed_is_graded_again(course, copied, tmp_path):
     submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
     put(submissions, "right", handed_in(sum="sine = 0"))
-    said = grade(
-        submissions,
-        copied,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    said = grade_quietly(submissions, copied, course / "solutions")
     assert said == {"graded": 1, "kept": 14, "refused": 3, "held": 0}
     assert Store(copied).read("right", "turns").points == 5
 
@@ -580,13 +550,7 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
     monkeypatch.setattr(versions, "folders", lambda: copies)
     versions.software.cache_clear()
     try:
-        said = grade(
-            few,
-            copied,
-            solutions=course / "solutions",
-            running=Running(limits=LIMITS),
-            show=io.StringIO(),
-        )
+        said = grade_quietly(few, copied, course / "solutions")
     finally:
         versions.software.cache_clear()
     assert said == {"graded": 1, "kept": 0, "refused": 0, "held": 0}
@@ -595,13 +559,7 @@ def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypat
 def test_a_second_assignment_in_one_folder_can_be_judged_again(course, copied, tmp_path):
     few = tmp_path / "few"
     put(few, "right", handed_in("axes"), "axes.ipynb")
-    said = grade(
-        few,
-        copied,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    said = grade_quietly(few, copied, course / "solutions")
     assert said["graded"] == 1
     assert regrade(copied, solutions=course / "solutions").moves == []
     # What the term calls otherwise is another assignment.
@@ -687,23 +645,11 @@ def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path
 
     with monkeypatch.context() as patched:
         patched.setattr(Sandbox, "run", die)
-        grade(
-            few,
-            copied,
-            solutions=course / "solutions",
-            running=Running(limits=LIMITS),
-            show=io.StringIO(),
-        )
+        grade_quietly(few, copied, course / "solutions")
     assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {
         "undecided"
     }
-    again = grade(
-        few,
-        copied,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    again = grade_quietly(few, copied, course / "solutions")
     assert again["graded"] == 1 and Store(copied).read("right", "turns").points == 5
 
 
@@ -791,13 +737,7 @@ def test_feedback_gives_no_outputs_of_calls_away(course):
 
 def test_two_runs_on_one_folder_are_refused(course, copied):
     with Store(copied).locked(), pytest.raises(InUse):
-        grade(
-            course / "submissions",
-            copied,
-            solutions=course / "solutions",
-            running=Running(limits=LIMITS),
-            show=io.StringIO(),
-        )
+        grade_quietly(course / "submissions", copied, course / "solutions")
 
 
 def test_names_lead_nowhere_and_stay_apart():
@@ -1032,13 +972,7 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     # Graded again with another answer, the decision on the old one does not count.
     again = tmp_path / "again"
     put(again, "mistaken", handed_in(sum="sine = 0"))
-    grade(
-        again,
-        copied,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(again, copied, course / "solutions")
     assert store.read("mistaken", "turns").marks["turns/sum"].outcome == "wrong"
     with pytest.raises(ValueError, match="from 0 to 1"):
         journal.add(found, "turns/sum", 2)

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import nbformat
 import pytest
 import sympy as sm
-from grading_class import notebook, put, write_term
+from grading_class import LIMITS, grade_quietly, notebook, put, write_term
 
 from coursework.__main__ import main
 from coursework.authoring.author import AuthorError
@@ -28,7 +28,6 @@ from coursework.checking.variants import (
 from coursework.grading import review
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution import isolation
-from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
@@ -45,13 +44,6 @@ from coursework.grading.submissions import pictures
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 WEIGHTS = [12, 25, 31, 44, 57, 68, 73, 89]
 NAME = "beams/load"
 STUDENTS = [f"student-{number:02}" for number in range(14)]
@@ -112,13 +104,7 @@ def begun(tmp_path_factory):
     for student in STUDENTS:
         put(place / "in", student, answered(2 * own[student], says=student), "beams.ipynb")
     put(place / "in", "wrong", answered(1), "beams.ipynb")
-    grade(
-        place / "in",
-        place / "out",
-        solutions=solutions,
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(place / "in", place / "out", solutions)
     return SimpleNamespace(place=place, own=own)
 
 
@@ -165,13 +151,7 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     assert {(mark.outcome, mark.note) for mark in marks_of(out, "beams/twice").values()} == {
         ("undecided", "not called")
     }
-    grade(
-        begun.place / "in",
-        out.folder,
-        solutions=others,
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(begun.place / "in", out.folder, others)
     assert {mark.points for mark in marks_of(out, "beams/twice").values()} == {3}
     assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {
         2

@@ -18,27 +18,27 @@ from urllib.parse import quote
 
 import nbformat
 import pytest
-from grading_class import RIGHT, SETUP, give, handed_in, notebook, put, write_sources
+from grading_class import (
+    RIGHT,
+    SETUP,
+    give,
+    grade_quietly,
+    handed_in,
+    notebook,
+    put,
+    write_sources,
+)
 from trial_course import PROJECT
 
 from coursework.__main__ import main
-from coursework.grading.execution.sandbox import Limits
-from coursework.grading.grade import grade, regrade
+from coursework.grading.grade import regrade
 from coursework.grading.judging.journal import Journal
 from coursework.grading.record import Record, Remembered
 from coursework.grading.review import POLICY, Class, application, hints_of
-from coursework.grading.running import Running
 from coursework.grading.store import Store
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(2)>"
 UNUSUAL = "sine = sm.sin(alpha)*sm.cos(beta)**7 + sm.Rational(3, 17)*sm.cos(alpha - 2*beta)"
 
@@ -64,13 +64,7 @@ def graded(tmp_path_factory):
     put(submissions, "hostile", handed_in(sum=f"# {SCRIPT}\nsine = sm.Symbol({SCRIPT!r})"))
     put(submissions, "right", handed_in())
     put(submissions, "blank", notebook([SETUP["turns"], RIGHT["turns/sum"]]))
-    grade(
-        submissions,
-        place / "out",
-        solutions=solutions,
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(submissions, place / "out", solutions)
     return place
 
 
@@ -432,13 +426,7 @@ def plotted(tmp_path_factory):
         made.cells[2].source = f"plt.plot([0, 1, 2], [0, 1, 4])\n{made.cells[2].source}"
         made.cells[2].outputs = [nbformat.v4.new_output("display_data", data) for data in shown]
         put(place / "submissions", student, made, "plots.ipynb")
-    grade(
-        place / "submissions",
-        place / "out",
-        solutions=place / "solutions",
-        running=Running(limits=LIMITS),
-        show=io.StringIO(),
-    )
+    grade_quietly(place / "submissions", place / "out", place / "solutions")
     return place / "out"
 
 

@@ -7,12 +7,11 @@ import io
 import os
 
 import pytest
-from grading_class import handed_in, put, write_sources
+from grading_class import LIMITS, handed_in, put, write_sources
 from test_review import Served, first_of
 
 from coursework.__main__ import main
 from coursework.grading.assignments import NothingToGrade
-from coursework.grading.execution.sandbox import Limits
 from coursework.grading.grade import grade
 from coursework.grading.judging import journal as judging
 from coursework.grading.judging.journal import Journal
@@ -21,14 +20,6 @@ from coursework.grading.store import Store
 from coursework.grading.submissions.roster import Roster
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
-
-LIMITS = Limits(
-    cell_seconds=2,
-    cell_wall_seconds=60,
-    answer_seconds=1,
-    answer_wall_seconds=60,
-    grace_seconds=0.5,
-)
 
 
 @pytest.fixture
