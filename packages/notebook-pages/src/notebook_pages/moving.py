@@ -131,6 +131,16 @@ def bring(app, exception):
         return
     target = Path(app.outdir) / "_static" / "moving"
     shutil.copytree(written, target, dirs_exist_ok=True)
+    # A loader names the script that it fetches; those that earlier builds have written go.
+    loaders = "".join(
+        path.read_text("utf8")
+        for kind in named(REGISTERED["figures"]).BUILT
+        for path in written.glob(f"{kind}.js")
+    )
+    for folder in (written, target):
+        for path in folder.glob("*-" + 8 * "[0-9a-f]" + ".js"):
+            if path.name not in loaders:
+                path.unlink()
     if (styles := target / "moving.css").is_file():
         shared = target / "shared.js"
         later = take_later(Path(app.outdir), styles)
