@@ -414,7 +414,7 @@ class _Bench:
             )
             if lying
             else None,
-            "likeness": round(max((one.likeness for one in lying), default=0.0), 2),
+            "autocorrelation": round(max((one.autocorrelation for one in lying), default=0.0), 2),
         }
         if lying:
             self.say(
@@ -433,7 +433,7 @@ class _Bench:
                 f"it wavers by {np.degrees(one.deviation):.1f} °/s, and slowly, as a hand does",
                 {
                     "deviation (°/s)": round(float(np.degrees(one.deviation)), 2),
-                    "likeness": round(one.likeness, 2),
+                    "autocorrelation": round(one.autocorrelation, 2),
                 },
                 "A mean over that is motion and no bias. Lay it down for some seconds.",
             )
@@ -1043,8 +1043,8 @@ class _Bench:
             for name in self.judgements[0].squares
         }
         alike = {
-            name: round(float(np.mean([one.likeness[name] for one in self.judgements])), 2)
-            for name in self.judgements[0].likeness
+            name: round(float(np.mean([one.autocorrelation[name] for one in self.judgements])), 2)
+            for name in self.judgements[0].autocorrelation
         }
         worst, high = too_sure(self.judgements)
         light = RED if worst > 5 or high > 5 else YELLOW if worst > 3 or high > 3 else GREEN
@@ -1072,7 +1072,7 @@ class _Bench:
             "claimed (°)": round(claimed, 3),
             "found (°)": round(found, 3),
             "innovations": squares,
-            "likeness": alike,
+            "autocorrelation": alike,
             "held out (°)": {
                 name: round(off, 1) for name, off in self.judgements[0].held_out.items()
             },

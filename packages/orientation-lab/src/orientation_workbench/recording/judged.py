@@ -72,7 +72,7 @@ class Judgement(NamedTuple):
         Mean normalised squares of innovations, by sensor, as multiples of what they should be.
     bounds : dict
         Between which 95 of 100 honest ones lie.
-    likeness : dict
+    autocorrelation : dict
         Correlation of successive innovations, by sensor.
     held_out : dict
         Degrees (rms) by which each sensor's direction was missed by a filter that did not see it.
@@ -91,7 +91,7 @@ class Judgement(NamedTuple):
     heading: tuple[float, float] | None
     squares: dict[str, float]
     bounds: dict[str, Array]
-    likeness: dict[str, float]
+    autocorrelation: dict[str, float]
     held_out: dict[str, float]
     times: Array
     dcms: Array

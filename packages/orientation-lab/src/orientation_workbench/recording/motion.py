@@ -108,7 +108,7 @@ class Stretch(NamedTuple):
         Whether what the gyroscope says is white: else something alive holds it.
     deviation : float
         Of the angular velocity, root mean square over the axes, radians per second.
-    likeness : float
+    autocorrelation : float
         Root mean square of the correlations of neighbours, one to five samples apart, less what
         chance gives.
     """
@@ -117,7 +117,7 @@ class Stretch(NamedTuple):
     last: int
     still: bool
     deviation: float
-    likeness: float
+    autocorrelation: float
 
 
 #: Radians per second: a hand trembles more than that, and an instrument that is held
@@ -125,7 +125,7 @@ class Stretch(NamedTuple):
 TREMBLE, QUIET = np.radians(0.15), np.radians(4.0)
 
 
-def likeness(rates: Array, lags: int = 5) -> float:
+def autocorrelation(rates: Array, lags: int = 5) -> float:
     """Root mean square correlation of neighbours, less what white noise gives by chance."""
     count = len(rates)
     rates = rates - rates.mean(axis=0)
@@ -180,7 +180,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     for first, last in found:
         part = rates[first * size : last * size]
         deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
-        alike = likeness(part)
+        alike = autocorrelation(part)
         result.append(
             Stretch(
                 first * size,
