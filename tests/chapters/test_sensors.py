@@ -295,7 +295,10 @@ def test_the_bench_warns_of_no_walk_without_a_car():
 def named(word, chapter, *names):
     """Functions and constants that the one cell with the word defines, as the chapter has them."""
     scope = {"np": np, **vars(orientation)}
-    exec(found(word, chapter)[0].partition("\n\n\nahead")[0].partition("\n\ng_A")[0], scope)
+    source = found(word, chapter)[0]
+    for printed in ("\n\n\nahead", "\n\ng_A", "\n\n\nprint("):
+        source = source.partition(printed)[0]
+    exec(source, scope)
     return [scope[name] for name in names]
 
 
@@ -362,3 +365,53 @@ def test_misorientation_by_scipy():
     smallest = min((between * symmetry).magnitude() for symmetry in group)
     g_A, g_B = (grain.as_matrix().T for grain in grains)
     assert np.allclose(misorientation(g_A[None], g_B[None]), np.degrees(smallest))
+
+
+def test_an_error_is_carried_through_a_pose_as_by_differences():
+    """Against the poses themselves: one is disturbed, carried through another, and compared."""
+    poses, carrying = named("def carrying", "cases-from-practice", "poses", "carrying")
+    random = np.random.default_rng(5)
+    through, pose = poses(Rotation.random(2, rng=random).as_matrix(), random.normal(size=(2, 3)))
+    errors = 1e-6 * np.eye(6)
+    disturbed = poses(dcm_from_rotation_vector(errors[:, :3]), errors[:, 3:]) @ pose
+    carried = through @ disturbed @ np.linalg.inv(through @ pose)
+    turned = orientation.rotation_vector_from_dcm(carried[:, :3, :3])
+    by_differences = np.hstack([turned, carried[:, :3, 3]]) / 1e-6
+    assert np.allclose(carrying(through), by_differences.T, atol=1e-5)
+
+
+def test_a_camera_on_a_hand_is_as_wrong_as_its_covariance_says():
+    """As printed for five seeds; and, alone, the rotation by the formula for directions."""
+    for line in found("def hand_eye", "cases-from-practice")[1].splitlines()[2:]:
+        *_, low, high, low_angle, high_angle, low_place, high_place = numbers(line)
+        assert 5.4 < low < high < 6.7
+        assert 2.6 < low_angle < high_angle < 3.5 and 2.6 < low_place < high_place < 3.6
+    poses, carrying = named("def carrying", "cases-from-practice", "poses", "carrying")
+    turns = Rotation.random(10, rng=7)
+    turned = np.eye(3) - carrying(poses(turns.as_matrix(), np.zeros((10, 3))))[:, :3, :3]
+    information = (turned.swapaxes(-1, -2) @ turned / (4 * 0.01**2)).sum(axis=0)
+    axes = turns.as_rotvec() / turns.magnitude()[:, None]
+    ours = orientation.directions_covariance(axes, 0.01 / np.sin(turns.magnitude() / 2))
+    assert np.allclose(np.linalg.inv(information), ours)
+
+
+@pytest.mark.long
+def test_the_printed_seed_of_the_walks_ranks_as_the_chapter_says():
+    """Seeds 1 to 6: the middle and the worst walk, without a gate, and the worst with one."""
+    from orientation_recordings.walks import STEP, walks
+    from tools.gate import chapter
+
+    names, rows = chapter(), []
+    for seed in range(1, 7):
+        walked, row = walks(100, seed), []
+        for gate in (np.inf, 9.21):
+            estimate, predictions, _ = names["follow"](walked, gate)
+            errors = names["of_the_filter"](walked, estimate, predictions)
+            ends = np.sqrt((errors[:, -round(3 / STEP) :] ** 2).mean(axis=1))
+            row += [np.median(ends), ends.max()]
+        rows.append(row)
+    rows = np.array(rows)
+    assert (rows.min(axis=0).round() == [15, 56, 1, 3]).all()
+    assert (rows.max(axis=0).round() == [22, 82, 1, 6]).all()
+    ranks = 1 + (rows > rows[0]).sum(axis=0)
+    assert list(ranks[[0, 1, 3]]) == [2, 4, 1]

@@ -470,7 +470,7 @@ class _Bench:
             self.say(
                 "bias of the gyroscope",
                 UNKNOWN,
-                "it is never still, and its turns do not tell",
+                "it is never still, and its rotations do not determine it",
                 {},
                 "Lay it down for some seconds.",
             )
@@ -705,8 +705,8 @@ class _Bench:
                     f", its dip by {dips[1]:.0f}°" if dips else ""
                 )
                 words += (
-                    ": by iron that turns with it, or by iron that it passed; the turns do not "
-                    "tell which"
+                    ": by iron that turns with it, or by iron that it passed; its rotations do not "
+                    "show which"
                 )
                 self.say(
                     "field",
@@ -1027,12 +1027,12 @@ class _Bench:
         claimed = float(np.sqrt(np.mean([one.claimed**2 for one in self.judgements])))
         found = float(np.sqrt(np.mean([one.found**2 for one in self.judgements])))
         words = (
-            f"from {where}: it claims its tilt to {claimed:.2f}°, forwards and backwards differ as "
-            f"if by {found:.2f}°"
+            f"from {where}: it claims the tilt to {claimed:.2f}°, and its forward and backward "
+            f"runs differ by {found:.2f}°"
         )
         if self.judgements[0].heading:
             heading = np.sqrt(np.mean([np.square(one.heading) for one in self.judgements], axis=0))
-            words += f"; its heading to {heading[0]:.2f}°, and {heading[1]:.2f}°"
+            words += f"; the heading to {heading[0]:.2f}°, and they differ by {heading[1]:.2f}°"
         else:
             words += (
                 "; of the heading it can say nothing, for gravity is the same whichever way one "
