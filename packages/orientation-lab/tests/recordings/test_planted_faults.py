@@ -1,91 +1,109 @@
-"""The bench on recordings with one planted fault: is it named, and is nothing else advised?
+"""The bench on recordings with one planted fault: is it named, and is nothing false advised?
 
-``python packages/orientation-lab/tests/recordings/test_planted_faults.py [COUNT]`` tries all kinds
-on COUNT instruments each, and five times as many honest ones, and prints what was missed.
+``python packages/orientation-lab/tests/recordings/test_planted_faults.py [COUNT] [FIRST]`` tries
+all kinds with COUNT seeds each, and five times as many honest recordings, and prints every miss.
 """
 
 import re
 import sys
 
 import pytest
-from planted_faults import KINDS, sample
+from simulated_faults import KINDS, simulate
 
 from orientation_workbench.recording import examine
 from orientation_workbench.recording.examined import RED, YELLOW
 
-#: What an answer about the fault is called, and words that must stand in it.
+#: What an answer about the fault is called, and words that must stand in it; in braces what was
+#: planted.
 NAMED = {
     "gyroscope saturated": ("range of the gyroscope", "cut off"),
-    "gyroscope late": ("delay of the gyroscope", "60 ms"),
-    "gyroscope bias": ("bias of the gyroscope", "Subtract"),
-    "gyroscope drifts": ("drift of the bias", "One number"),
-    "gyroscope follows temperature": ("drift of the bias", "temperature"),
-    "gyroscope scale of an axis": ("scale of the gyroscope", "Multiply [xyz] by"),
-    "gyroscope axis reversed": ("axes of the gyroscope", "Take"),
-    "gyroscope axes exchanged": ("axes of the gyroscope", "Take"),
-    "gyroscope in rad/s": ("unit of the gyroscope", "Read it as rad/s"),
-    "gyroscope in counts": ("unit of the gyroscope", "counts"),
-    "accelerometer axis reversed": ("axes of the accelerometer", "Take"),
-    "accelerometer negated": ("signs", "accelerometer"),
-    "accelerometer axes exchanged": ("axes of the accelerometer", "Take"),
-    "accelerometer in g": ("unit of the accelerometer", "Read it as g"),
-    "accelerometer bias": ("accelerometer", "offset of [xyz]"),
-    "accelerometer scale of an axis": ("accelerometer", "scale of [xyz]"),
+    "gyroscope late": ("delay of the gyroscope", "comes late"),
+    "gyroscope offset": ("bias of the gyroscope", "Subtract"),
+    "gyroscope drifts": ("drift of the bias", "about {axis}"),
+    "gyroscope drifts with temperature": ("drift of the bias", "about {axis} .*temperature"),
+    "gyroscope scale of an axis": ("scale of the gyroscope", "Multiply {axis} by"),
+    "gyroscope scale": ("scale of the gyroscope", "Multiply what it says by"),
+    "gyroscope axis reversed": ("axes of the gyroscope", "-{axis}"),
+    "gyroscope axes exchanged": ("axes of the gyroscope", "Use"),
+    "gyroscope unit": ("unit of the gyroscope", "Read it as rad/s"),
     "accelerometer saturated": ("range of the accelerometer", "cut off"),
-    "magnetometer late": ("delay of the magnetometer", "2[01]0 ms|190 ms"),
+    "accelerometer offset": ("accelerometer", "Subtract .*from {axis}"),
+    "accelerometer scale of an axis": ("accelerometer", "Divide .*{axis} by"),
+    "accelerometer axis reversed": ("axes of the accelerometer", "Use"),
+    "accelerometer axes exchanged": ("axes of the accelerometer", "Use"),
+    "accelerometer unit": ("unit of the accelerometer", "Read it as g"),
+    "magnetometer late": ("delay of the magnetometer", "comes late"),
     "magnetometer hard iron": ("offset of the magnetometer", "Subtract"),
-    "magnetometer soft iron": ("shape of the magnetometer", "multiply"),
-    "magnetometer axis reversed": ("axes of the magnetometer", "Take"),
-    "magnetometer disturbed for a while": ("field", "for a while"),
+    "magnetometer soft iron": ("shape of the magnetometer", "multiply by the matrix"),
+    "magnetometer axis reversed": ("axes of the magnetometer", "Use"),
+    "magnetometer axes exchanged": ("axes of the magnetometer", "Use"),
+    "magnetic disturbance": ("field", "for a while"),
     "samples lost": ("missing samples", "missing"),
 }
-#: What a fault may be told as besides: soft iron moves the middle as well.
+#: Soft iron moves the middle as well; a small bias or offset is there in many honest instruments.
 ALSO = {"magnetometer soft iron": "offset of the magnetometer"}
 
 
 def judged(kind, seed, with_filter=False):
-    """Return whether the fault was named, and what else was advised."""
-    verdicts = examine(sample(kind, seed), kind, judged=with_filter).verdicts
+    """Return whether the fault was named, and what else was advised or, if honest, lit."""
+    text, planted = simulate(kind, seed)
+    verdicts = examine(text, "recording", judged=with_filter).verdicts
     about, words = NAMED.get(kind, ("", "$."))
-    told = [one for one in verdicts if one.about == about and one.light != "as it should be"]
-    named = any(re.search(words, f"{one.words} {one.advice}") for one in told)
-    false = [
-        f"{one.about}: {one.words} -> {one.advice}"
-        for one in verdicts
-        if one.light in (RED, YELLOW) and one.about not in (about, ALSO.get(kind), "filter")
-        if one.advice or kind == "none"
+    named = any(
+        verdict.about == about
+        and verdict.light in (RED, YELLOW)
+        and re.search(words.format(**planted), f"{verdict.words} {verdict.advice}")
+        for verdict in verdicts
+    )
+    others = [
+        verdict
+        for verdict in verdicts
+        if verdict.light in (RED, YELLOW) and verdict.about not in (about, ALSO.get(kind))
     ]
-    lights = [one.light for one in verdicts if kind == "none"]
-    return named, false, lights
+    if kind:
+        others = [verdict for verdict in others if verdict.advice and not true(verdict, planted)]
+    return named, [f"{one.light}: {one.about}: {one.words} -> {one.advice}" for one in others]
+
+
+def true(verdict, planted):
+    """Whether what is advised is an imperfection that every part has, here a larger one."""
+    size = planted.get(verdict.about)
+    if size is None or verdict.light == RED:
+        return False
+    numbers = [float(number) for number in re.findall(r"-?\d+\.?\d*", verdict.advice)]
+    return any(abs(number - own) < 0.3 * abs(own) for number in numbers for own in size)
 
 
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_planted_fault_is_named_and_nothing_else_advised(kind):
-    named, false, _ = judged(kind, 1000)
+def test_a_planted_fault_is_named_and_nothing_false_advised(kind):
+    named, false = judged(kind, 1000)
     assert named and not false, false
 
 
 def test_an_honest_recording_has_neither_a_red_nor_a_yellow_light():
-    assert {RED, YELLOW}.isdisjoint(judged("none", 1000, True)[2])
+    assert not judged(None, 1000, True)[1]
 
 
 def score(count, first=2000):
     """Print how many of each kind were named, and everything that was missed or false."""
-    every = 0
+    whole = 0
     for kind in KINDS:
-        tries = [(seed, *judged(kind, seed)) for seed in range(first, first + count)]
-        every += sum(named for _, named, _, _ in tries)
-        wrong = [(seed, false) for seed, _, false, _ in tries if false]
-        missed = [seed for seed, named, _, _ in tries if not named]
+        tries = {seed: judged(kind, seed) for seed in range(first, first + count)}
+        missed = [seed for seed, (named, _) in tries.items() if not named]
+        whole += count - len(missed)
         print(f"{count - len(missed):3} of {count} {kind}", f"missed: {missed}" * bool(missed))
-        for seed, false in wrong:
-            print(f"      false advice, seed {seed}: {'; '.join(false)}", flush=True)
-    lights = [judged("none", seed, True)[2] for seed in range(first, first + 5 * count)]
-    print(f"named {every} of {count * len(KINDS)} ({every / count / len(KINDS):.0%})")
+        for seed, (_, false) in tries.items():
+            for words in false:
+                print(f"      false advice, seed {seed}: {words}", flush=True)
+    print(f"named {whole} of {count * len(KINDS)} ({whole / count / len(KINDS):.0%})", flush=True)
+    honest = [judged(None, seed, True)[1] for seed in range(first, first + 5 * count)]
     for light in (RED, YELLOW):
-        print(f"{sum(light in each for each in lights)} of {len(lights)} honest ones are {light}")
+        lit = [each for each in honest if any(words.startswith(light) for words in each)]
+        print(f"{len(lit)} of {len(honest)} honest ones are {light}")
+        for words in sorted({words for each in lit for words in each if words.startswith(light)}):
+            print(f"      {words}")
 
 
 if __name__ == "__main__":
-    score(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    score(*map(int, sys.argv[1:]))

@@ -115,15 +115,17 @@ def test_mixtures_of_up_to_three_faults(count, piece):
         if not same[0]:
             assert found.chains[0].cost <= truth.cost
         if found.verdict == "named":
-            assert mend.tried(
-                found.chains[0],
-                *(
-                    read_poses(text, "one", declared[k]["kind"]).numbers
-                    # fmt: skip
-                    for k, text in enumerate((first, second))
-                ),
-                1e-3,
-            )
+            texts = zip((first, second), declared, strict=True)
+            one, other = (read_poses(text, "one", known["kind"]).numbers for text, known in texts)
+            names = {"np": np, "Rotation": Rotation}
+            for wanted, second in zip(one, other, strict=True):
+                kind = declared[1]["kind"]
+                second = second.reshape(3, 3) if kind == "matrix" else second
+                mended = eval(mend.python_line(found.chains[0]), names | {"second": second})
+                mended = dcms_from_numbers(found.chains[0].first, np.ravel(mended)[None])
+                assert np.allclose(
+                    mended, dcms_from_numbers(found.chains[0].first, wanted[None]), atol=1e-3
+                )
     assert first_place >= 0.95 * count
 
 

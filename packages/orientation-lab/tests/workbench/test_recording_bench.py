@@ -294,7 +294,7 @@ def spoilt(kind, change):
         (spoilt("time", lambda values: 0 * values), "no column of time"),
         (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
         (spoilt("accelerometer", lambda values: 0 * values), "never change"),
-        (spoilt("gyroscope", lambda values: 1e12 * values), "turns so fast"),
+        (spoilt("gyroscope", lambda values: 1e12 * values), "rotates so fast"),
         (
             spoilt(
                 "magnetometer",

@@ -1,16 +1,12 @@
 """The one line that mends a mix-up: in NumPy with SciPy, and as a formula.
 
 Each line makes of ``second``, what the second program gives, what the first program gives for the
-same pose. Before one is shown, the Python line is run on the numbers that were pasted.
+same pose.
 """
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from . import table
-from .meaning import dcms_from_numbers
-
-_ORDINARY = "wxyz"
 
 
 def _index(order, wanted):
@@ -135,26 +131,6 @@ def python_line(chain):
             )
         return line
     return _write_in_python(first, _undo_in_python(relation, _read_in_python(second, "second")))
-
-
-def tried(chain, first, second, tolerance):
-    """Whether the line gives the first side's orientation at every pose.
-
-    Only lines that this module wrote are run, and only on numbers.
-    """
-    code = compile(python_line(chain), "the mending line", "eval")
-
-    def shaped(numbers, kind):
-        return numbers.reshape(3, 3) if kind == "matrix" else numbers
-
-    mended = []
-    for numbers in second:
-        names = {"np": np, "Rotation": Rotation, "second": shaped(numbers, chain.second["kind"])}
-        mended.append(np.ravel(eval(code, names)))  # noqa: S307
-    gap = np.abs(
-        dcms_from_numbers(chain.first, np.array(mended)) - dcms_from_numbers(chain.first, first)
-    ).max()
-    return bool(gap <= tolerance)
 
 
 def formula(chain):

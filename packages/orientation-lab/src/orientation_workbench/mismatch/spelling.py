@@ -6,137 +6,113 @@ being those of ASCII. In a replacement ``$1`` is the first group.
 """
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
-#: A number as it stands in a text: no part of a name, with a unit
-#: or the suffix of a type behind it.
-NUMBER_IN_TEXT = rf"(?<![\w.]){NUMBER}(?=(?:[fld]|deg(?:rees)?|rad(?:ians)?)?(?![\w.]))"
-#: A name and the number that follows it.
-NAMED = r"""["']?([a-z_][\w.]*)["')\]]*\s*[:=]?\s*[\[(]?\s*(?=[-+.]?[.\d])"""
-COMMENT = r"(#|//|%).*"
-#: Places, speeds and covariances, whose value stands behind their name, or below it, set in.
-NOT_TURNS = (
-    r"""["']?\b\w*(?:position|translation|header|stamp|location|covariance|velocity|acceleration|scale|twist|linear"""
-    r"""|angular|tvec)\w*["']?\s*[:=]\s*"""
-)
-VALUE = r"""(?:\{[^}]*\}|\[[^\]]*\]|[\w.]*\([^)]*\)|"[^"\n]*")"""
-DEGREES = r"\u00b0|\bdeg(?:rees)?\b|\d(?:deg)"
-RADIANS = r"\brad(?:ians?)?\b"
 #: What names of angles say: these are turns about z, y and x.
 YAW_PITCH_ROLL = {"sequence": "zyx", "axes of the turns": "body fixed", "places": "123"}
-#: Names of the three angles where none stands at its number: what that says of their order.
-ORDERS_OF_ANGLES = (
-    (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
-    (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
-)
-#: The same of the four parts of a quaternion.
-ORDERS_OF_PARTS = (
-    (r"\bq?_?w\W{1,3}q?_?x\W{1,3}q?_?y\W{1,3}q?_?z\b|\bwxyz\b", {"order": "wxyz"}),
-    (r"\bq?_?x\W{1,3}q?_?y\W{1,3}q?_?z\W{1,3}q?_?w\b|\bxyzw\b", {"order": "xyzw"}),
-)
-#: A line that names the columns of a table: what parts its names, the marks before and behind one,
-#: the names that are those of a quaternion rather than of a place, and the entries of a matrix.
-PARTING = r"\s*[,;|\t]\s*"
-AROUND_A_FIELD = r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$"
-UNIT_OF_A_COLUMN = r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$"
-OF_A_QUATERNION = r"q|rot|ori|att"
-#: The names of a quaternion's parts where a place's are there as well.
-PART_OF_A_QUATERNION = r"(?:^|[_.])q_?[wxyz]$"
-ENTRY_OF_A_MATRIX = r"^[a-z]*_?(\d)_?(\d)$"
-NO_ROW = r"^[\s|:=+-]*$|^\s*(?:#|//|%)"
-#: The innermost of brackets in brackets.
-INNERMOST = r"[\[({]([^\[\](){}]*)[\])}]"
-NOT_A_NUMBER = r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])"
-#: What would have to be worked out first.
-ARITHMETIC = r"\b(?:m_|np\.|math\.)?pi\b|\bsqrt\s*\(|\u221a|\u03c0"
-#: A quaternion as a sum of its parts.
-SUM = r"\d\s*[*.]?\s*i\b[^a-z]*\d\s*[*.]?\s*j\b[^a-z]*\d\s*[*.]?\s*k\b"
-SIGNS_OF_A_SUM = ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1"))
-PART_OF_A_SUM = rf"({NUMBER})\s*[*.]?\s*([ijk])\b"
-SCALAR_OF_A_SUM = rf"(?<![\w.=+-])({NUMBER})(?![\w.])"
 
-#: Of whole files in which numbers mean nothing without the rest: what to cut out of them.
-CUT_OUT = (
-    (
-        r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
-        "a whole file of BVH: cut the three angles of one joint out of the lines below MOTION, and "
-        "say their sequence, which is that of the joint's CHANNELS",
+#: By its name each pattern, or a list of patterns, each with what it stands for or is replaced by.
+SPELLING = {
+    # A number as it stands in a text: no part of a name, with a unit
+    # or the suffix of a type behind it.
+    "number": rf"(?<![\w.]){NUMBER}(?=(?:[fld]|deg(?:rees)?|rad(?:ians)?)?(?![\w.]))",
+    # A name and the number that follows it.
+    "named": r"""["']?([a-z_][\w.]*)["')\]]*\s*[:=]?\s*[\[(]?\s*(?=[-+.]?[.\d])""",
+    "comment": r"(#|//|%).*",
+    # Places, speeds and covariances, whose value stands behind their name, or below it, set in.
+    "not turns": (
+        r"""["']?\b\w*(?:position|translation|header|stamp|location|covariance|velocity|acceleration|scale|twist|linear"""
+        r"""|angular|tvec)\w*["']?\s*[:=]\s*"""
     ),
-)
-#: In this order: pattern and what takes its place; the first four before tables too.
-CLEANING = (
-    ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
-    ("[\u2212\u2013\ufe63\uff0d]", "-"),
-    # Headings of PX4's tables: the scalar part is the first of four.
-    (r"^(timestamp,.*?\b)q\[0\],q\[1\],q\[2\],q\[3\]", "$1q_w,q_x,q_y,q_z"),
-    (r"(?<=[a-z])\[(\d)\](?=,|$)", "_$1"),
-    # A line of COLMAP's images.txt, and the points of the image below it.
-    (rf"^\d+((?:[ \t]+{NUMBER}){{4}})(?:[ \t]+{NUMBER}){{3}}[ \t]+\d+[ \t]+\S+\.[a-z]\S*$"
-     r"(?:\n[-+.\d \t]*$)?",
-     "(w, x, y, z) $1"),
-    # A frame of transforms.json has a number of that name before its matrix.
-    (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
-    (r"(\d)d([-+]\d)", "$1e$2"),
-    # The report of ROS's tf2_echo says each orientation several times.
-    (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
-    (r"^.*\bat time.*$", " "),
-    # Of an element of URDF the place is not the turn.
-    (r'\bxyz\s*=\s*"[^"]*"(?=[^>]*\b(?:rpy|quat|wxyz)\b)', " "),
-    (r'(\b(?:rpy|quat|wxyz)\s*=\s*"[^"]*"[^>]*)\bxyz\s*=\s*"[^"]*"', "$1"),
-    # Texts in quotation marks, as names of files and of devices, and the
-    # place of an entry before its value.
-    (r'(?<![\w"])"(?=[^"\n]*[a-z_/])(?![^"\n]*\d\.\d)[^"\n]*"(?!\s*[:=])', " "),
-    (r"(?<![\w'])'[\w:/.,-]*[a-z][\w:/.,-]*'(?!\s*[:=])", " "),
-    (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
-    (r"(?<![.\d])\d+ ?[x\u00d7] ?\d+\b(?!\.)", " "),
-    (r"\bwith indices.*$", " "),
-    # The number of a row, where it stands before it.
-    (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
-    # The length of a list before it, the factor of MATLAB's console,
-    # Godot's columns with their place.
-    (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
-    (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
-    (r"\bo\s*:\s*\([^)]*\)", " "),
-    (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
-    # Of a pose of SDF the first three numbers are a place.
-    (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
-    (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
-    (r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows"""
-     r"""|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
-     r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""",
-     " "),
-    # Stamps of time, and the marks of a list.
-    (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
-    (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),
-)  # fmt: skip
-
-
-def whole_spelling():
-    """All of it as plain data, for the page."""
-    return {
-        "number": NUMBER_IN_TEXT,
-        "named": NAMED,
-        "comment": COMMENT,
-        "not turns": NOT_TURNS,
-        "value": VALUE,
-        "degrees": DEGREES,
-        "radians": RADIANS,
-        "yaw pitch roll": YAW_PITCH_ROLL,
-        "orders of angles": [list(entry) for entry in ORDERS_OF_ANGLES],
-        "orders of parts": [list(entry) for entry in ORDERS_OF_PARTS],
-        "parting": PARTING,
-        "around a field": AROUND_A_FIELD,
-        "unit of a column": UNIT_OF_A_COLUMN,
-        "of a quaternion": OF_A_QUATERNION,
-        "part of a quaternion": PART_OF_A_QUATERNION,
-        "entry of a matrix": ENTRY_OF_A_MATRIX,
-        "no row": NO_ROW,
-        "whole number": rf"^{NUMBER}$",
-        "innermost": INNERMOST,
-        "not a number": NOT_A_NUMBER,
-        "arithmetic": ARITHMETIC,
-        "sum": SUM,
-        "cut out": [list(entry) for entry in CUT_OUT],
-        "signs of a sum": [list(entry) for entry in SIGNS_OF_A_SUM],
-        "part of a sum": PART_OF_A_SUM,
-        "scalar of a sum": SCALAR_OF_A_SUM,
-        "cleaning": [list(entry) for entry in CLEANING],
-    }
+    "value": r"""(?:\{[^}]*\}|\[[^\]]*\]|[\w.]*\([^)]*\)|"[^"\n]*")""",
+    "degrees": r"\u00b0|\bdeg(?:rees)?\b|\d(?:deg)",
+    "radians": r"\brad(?:ians?)?\b",
+    # Names of the three angles where none stands at its number: what that says of their order.
+    "orders of angles": (
+        (r"\brpy\b|\broll\W{1,3}pitch\W{1,3}yaw\b", YAW_PITCH_ROLL | {"places": "321"}),
+        (r"\bypr\b|\byaw\W{1,3}pitch\W{1,3}roll\b", YAW_PITCH_ROLL),
+    ),
+    # The same of the four parts of a quaternion.
+    "orders of parts": (
+        (r"\bq?_?w\W{1,3}q?_?x\W{1,3}q?_?y\W{1,3}q?_?z\b|\bwxyz\b", {"order": "wxyz"}),
+        (r"\bq?_?x\W{1,3}q?_?y\W{1,3}q?_?z\W{1,3}q?_?w\b|\bxyzw\b", {"order": "xyzw"}),
+    ),
+    # A line that names the columns of a table: what parts its names, the marks before and behind
+    # one, the names that are a quaternion's rather than a place's, and the entries of a matrix.
+    "parting": r"\s*[,;|\t]\s*",
+    "around a field": r"^[\s\[\](){}<>\"'#/%|]+|[\s\[\](){}<>\"'\u00b0]+$",
+    "unit of a column": r"[_ ]?[\[(][^\])]*[\])]?$|[_ ](?:deg(?:rees)?|rad(?:ians)?)$",
+    "of a quaternion": r"q|rot|ori|att",
+    # The names of a quaternion's parts where a place's are there as well.
+    "part of a quaternion": r"(?:^|[_.])q_?[wxyz]$",
+    "entry of a matrix": r"^[a-z]*_?(\d)_?(\d)$",
+    "no row": r"^[\s|:=+-]*$|^\s*(?:#|//|%)",
+    # The innermost of brackets in brackets.
+    "innermost": r"[\[({]([^\[\](){}]*)[\])}]",
+    "not a number": r"(?<![a-z])[-+]?(nan|inf(?:inity)?)(?![a-z])",
+    # What would have to be worked out first.
+    "arithmetic": r"\b(?:m_|np\.|math\.)?pi\b|\bsqrt\s*\(|\u221a|\u03c0",
+    # A quaternion as a sum of its parts.
+    "sum": r"\d\s*[*.]?\s*i\b[^a-z]*\d\s*[*.]?\s*j\b[^a-z]*\d\s*[*.]?\s*k\b",
+    "signs of a sum": ((r"\+\s*-\s*(?=[.\d])", "-"), (r"([-+])\s+(?=[.\d])", "$1")),
+    "part of a sum": rf"({NUMBER})\s*[*.]?\s*([ijk])\b",
+    "scalar of a sum": rf"(?<![\w.=+-])({NUMBER})(?![\w.])",
+    # Of whole files in which numbers mean nothing without the rest: what to cut out of them.
+    "cut out": (
+        (
+            r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
+            "a whole file of BVH: cut the three angles of one joint out of the lines below MOTION, "
+            "and say their sequence, which is that of the joint's CHANNELS",
+        ),
+    ),
+    # In this order: pattern and what takes its place; the first four before tables too.
+    "cleaning": (
+        ("[\u00a0\u2000-\u200b\u202f\u3000]", " "),
+        ("[\u2212\u2013\ufe63\uff0d]", "-"),
+        # Headings of PX4's tables: the scalar part is the first of four.
+        (r"^(timestamp,.*?\b)q\[0\],q\[1\],q\[2\],q\[3\]", "$1q_w,q_x,q_y,q_z"),
+        (r"(?<=[a-z])\[(\d)\](?=,|$)", "_$1"),
+        # A line of COLMAP's images.txt, and the points of the image below it.
+        (
+            rf"^\d+((?:[ \t]+{NUMBER}){{4}})(?:[ \t]+{NUMBER}){{3}}[ \t]+\d+[ \t]+\S+\.[a-z]\S*$"
+            r"(?:\n[-+.\d \t]*$)?",
+            "(w, x, y, z) $1",
+        ),
+        # A frame of transforms.json has a number of that name before its matrix.
+        (rf'"rotation"\s*:\s*{NUMBER}\s*,(?=\s*")', " "),
+        (r"(\d)d([-+]\d)", "$1e$2"),
+        # The report of ROS's tf2_echo says each orientation several times.
+        (r"(in quaternion[^\[]*\[[^\]]*\])[\s\S]*?(?=at time|(?![\s\S]))", "$1\n"),
+        (r"^.*\bat time.*$", " "),
+        # Of an element of URDF the place is not the turn.
+        (r'\bxyz\s*=\s*"[^"]*"(?=[^>]*\b(?:rpy|quat|wxyz)\b)', " "),
+        (r'(\b(?:rpy|quat|wxyz)\s*=\s*"[^"]*"[^>]*)\bxyz\s*=\s*"[^"]*"', "$1"),
+        # Texts in quotation marks, as names of files and of devices, and the
+        # place of an entry before its value.
+        (r'(?<![\w"])"(?=[^"\n]*[a-z_/])(?![^"\n]*\d\.\d)[^"\n]*"(?!\s*[:=])', " "),
+        (r"(?<![\w'])'[\w:/.,-]*[a-z][\w:/.,-]*'(?!\s*[:=])", " "),
+        (r"\b(?:size|shape|dims?)\b\W{0,3}[\[(][\d\s,]*[\])]", " "),
+        (r"(?<![.\d])\d+ ?[x\u00d7] ?\d+\b(?!\.)", " "),
+        (r"\bwith indices.*$", " "),
+        # The number of a row, where it stands before it.
+        (r"^\s*(?:row\s*)?\d{1,3}\s*[:)]\s+(?=[-+.\d\[(])", " "),
+        # The length of a list before it, the factor of MATLAB's console,
+        # Godot's columns with their place.
+        (r"\barray\s*\(\d+\)|\(\d+\)\s*(?=\[)", " "),
+        (r"^\s*1\.0e\+?0+\s*\*\s*$", " "),
+        (r"\bo\s*:\s*\([^)]*\)", " "),
+        (r"\b[xyz]\s*:\s*(?=\([^)]*,)", " "),
+        # Of a pose of SDF the first three numbers are a place.
+        (rf"(<pose[^>]*>)\s*(?:{NUMBER}\s+){{3}}(?=(?:{NUMBER}\s+){{2}}{NUMBER}\s*<)", "$1 rpy "),
+        (r"\b([a-z_]\w*)(?:\s*[\[(]\s*\d*\s*(?:,\s*\d+\s*)?[\])])+\s*(?==(?!=)|:)", "$1 "),
+        (
+            r"""["']?\b(?:det(?:erminant|\(\w+\))?|norm|trace|seq|secs?|nsecs?|nanosecs?|id|index|rows"""
+            r"""|cols|width|height|step|fps|mesh|camera|node|time|timestamp"""
+            r"""|fl_[xy]|camera_angle_[xy]|\w*error)["']?\s*[:=]\s*[-+]?\d[\d.]*(?:e[-+]?\d+)?(?![\w.])""",
+            " ",
+        ),
+        # Stamps of time, and the marks of a list.
+        (r"(?<![\w.])\d{8,}(?:\.\d+)?(?![\w.])", " "),
+        (r"^(\s*)-\s+(?=[-+.]?\d)", "$1"),
+    ),
+    "yaw pitch roll": YAW_PITCH_ROLL,
+    "whole number": rf"^{NUMBER}$",
+}

@@ -26,7 +26,7 @@ from orientation import PROPER_EULER, SEQUENCES
 from orientation.mixups import CONJUGATE, REVERSED, SCALAR_LAST, TRANSPOSE, wrong_sign
 
 from ..programs import PROGRAMS, expected_of
-from .spelling import whole_spelling
+from .spelling import SPELLING
 
 #: The most faults that one chain may have.
 MOST_FAULTS = 3
@@ -673,7 +673,7 @@ def whole_table():
         "shared": SHARED,
         "opposites": OPPOSITES,
         "programs": {program: expected_of(program) for program in PROGRAMS},
-        "spelling": whole_spelling(),
+        "spelling": SPELLING,
         "inverse": INVERSE,
         "ways": WAYS,
         "taught": TAUGHT,

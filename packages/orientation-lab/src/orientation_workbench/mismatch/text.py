@@ -8,53 +8,39 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import spelling
+from .spelling import SPELLING, YAW_PITCH_ROLL
 from .table import COUNTS
-
-_FLAGS = re.IGNORECASE | re.MULTILINE | re.ASCII
-_IN_PYTHON = re.compile(r"\$(\d)")
 
 
 def _pattern(text):
-    return re.compile(text, _FLAGS)
+    return re.compile(text, re.IGNORECASE | re.MULTILINE | re.ASCII)
 
 
-def _replacing(entries):
-    return [
-        (_pattern(pattern), _IN_PYTHON.sub(r"\\\1", replacement))
-        for pattern, replacement in entries
-    ]
+#: The patterns by their names, and the lists of pairs of a pattern and what belongs to it.
+_PATTERNS = {name: _pattern(text) for name, text in SPELLING.items() if isinstance(text, str)}
+_PAIRS = {
+    name: [(_pattern(text), more) for text, more in entries]
+    for name, entries in SPELLING.items()
+    if isinstance(entries, tuple)
+}
+_VALUE_OF_NO_TURN = _pattern(SPELLING["not turns"] + SPELLING["value"])
+NUMBER = _PATTERNS["number"]
 
 
-NUMBER = _pattern(spelling.NUMBER_IN_TEXT)
-_NAMED, _COMMENT = _pattern(spelling.NAMED), _pattern(spelling.COMMENT)
-_NOT_TURNS, _VALUE_OF_NO_TURN = (
-    _pattern(spelling.NOT_TURNS),
-    _pattern(spelling.NOT_TURNS + spelling.VALUE),
-)
-_INNERMOST = _pattern(spelling.INNERMOST)
-_NOT_A_NUMBER, _ARITHMETIC = _pattern(spelling.NOT_A_NUMBER), _pattern(spelling.ARITHMETIC)
-_DEGREES, _RADIANS = _pattern(spelling.DEGREES), _pattern(spelling.RADIANS)
-_ORDERS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_ANGLES]
-_PARTS = [(_pattern(pattern), more) for pattern, more in spelling.ORDERS_OF_PARTS]
-_CUT_OUT = [(_pattern(pattern), words) for pattern, words in spelling.CUT_OUT]
-_PARTING, _AROUND, _UNIT, _OF_A_QUATERNION, _ENTRY, _NO_ROW = map(_pattern, (
-    spelling.PARTING, spelling.AROUND_A_FIELD, spelling.UNIT_OF_A_COLUMN, spelling.OF_A_QUATERNION,
-    spelling.ENTRY_OF_A_MATRIX, spelling.NO_ROW))  # fmt: skip
-_PART_OF_A_QUATERNION = _pattern(spelling.PART_OF_A_QUATERNION)
-_WHOLE_NUMBER = _pattern(rf"^{spelling.NUMBER}$")
-_SUM, _PART, _SCALAR = map(
-    _pattern, (spelling.SUM, spelling.PART_OF_A_SUM, spelling.SCALAR_OF_A_SUM)
-)
-_SIGNS, _CLEANING = _replacing(spelling.SIGNS_OF_A_SUM), _replacing(spelling.CLEANING)
+def _replaced(text, entries):
+    for pattern, replacement in entries:
+        text = pattern.sub(re.sub(r"\$(\d)", r"\\\1", replacement), text)
+    return text
+
+
 #: Names that numbers come with, in the order in which they are read, and what those names say.
 _NAMES = (
     (dict(zip("wxyz", range(4))), {"order": "wxyz"}),
     (
         {"yaw": 0, "heading": 0, "psi": 0, "pitch": 1, "theta": 1, "roll": 2, "bank": 2, "phi": 2},
-        spelling.YAW_PITCH_ROLL,
+        YAW_PITCH_ROLL,
     ),
-    ({"y": 0, "p": 1, "r": 2}, spelling.YAW_PITCH_ROLL),
+    ({"y": 0, "p": 1, "r": 2}, YAW_PITCH_ROLL),
     (dict(zip("xyz", range(3))), {}),
 )
 
@@ -125,21 +111,20 @@ def _rows_of_array(given, name):
 
 
 def _rows_of_text(text, name):
-    for pattern, words in _CUT_OUT:
+    for pattern, words in _PAIRS["cut out"]:
         if pattern.search(text):
             raise ValueError(f"the {name} side is {words}")
     if columns := _columns(text):
         return columns
-    for pattern, replacement in _CLEANING:
-        text = pattern.sub(replacement, text)
-    parts = [more for pattern, more in _PARTS if pattern.search(text)]
-    bare = _COMMENT.sub("", text)
+    text = _replaced(text, _PAIRS["cleaning"])
+    parts = [more for pattern, more in _PAIRS["orders of parts"] if pattern.search(text)]
+    bare = _PATTERNS["comment"].sub("", text)
     if NUMBER.search(bare):  # what stands in comments alone was meant
         text = bare
     text = _without_places(_decimal_points(text))
-    if found := _NOT_A_NUMBER.search(text):
+    if found := _PATTERNS["not a number"].search(text):
         raise ValueError(f"the {name} side holds '{found.group().strip()}', which is no number")
-    if found := _ARITHMETIC.search(text):
+    if found := _PATTERNS["arithmetic"].search(text):
         raise ValueError(
             f"the {name} side holds '{found.group().strip()}': paste the numbers that it comes to"
         )
@@ -151,19 +136,14 @@ def _rows_of_text(text, name):
             if shown
             else f"the {name} side is empty: paste its numbers"
         )
-    declared = (
-        {"unit": "degrees"}
-        if _DEGREES.search(text)
-        else {"unit": "radians"}
-        if _RADIANS.search(text)
-        else {}
-    )
+    declared = _unit_in(text)
     if labelled := _labelled(text):
         rows, half, more = labelled
         return rows, half, declared | more
     half = _half(NUMBER.findall(text))
     rows = [
-        [float(number) for number in NUMBER.findall(group)] for group in _INNERMOST.findall(text)
+        [float(number) for number in NUMBER.findall(group)]
+        for group in _PATTERNS["innermost"].findall(text)
     ]
     rows = [row for row in rows if row]
     in_brackets = {len(row) for row in rows}
@@ -172,17 +152,29 @@ def _rows_of_text(text, name):
     ):
         rows = _rows_of_lines(text)
     if all(len(row) == 3 for row in rows):
-        declared |= next((more for pattern, more in _ORDERS if pattern.search(text)), {})
+        declared |= next(
+            (more for pattern, more in _PAIRS["orders of angles"] if pattern.search(text)), {}
+        )
     if len(parts) == 1 and all(len(row) == 4 for row in rows):
         declared |= parts[0]
     return rows, half, declared
 
 
+def _unit_in(text):
+    """The unit of angles that a text names, as a declaration."""
+    named = [unit for unit in ("degrees", "radians") if _PATTERNS[unit].search(text)]
+    return {"unit": named[0]} if named else {}
+
+
 def _fields(line):
     """What stands between the marks of a line of a table, or between its spaces."""
     line = line.strip().strip("|")
-    parted = _PARTING.split(line.strip()) if _PARTING.search(line) else line.split()
-    fields = [_AROUND.sub("", field) for field in parted]
+    parted = (
+        _PATTERNS["parting"].split(line.strip())
+        if _PATTERNS["parting"].search(line)
+        else line.split()
+    )
+    fields = [_PATTERNS["around a field"].sub("", field) for field in parted]
     return fields[:-1] if fields and not fields[-1] else fields
 
 
@@ -190,18 +182,19 @@ def _columns(text):
     """Rows, half a unit and what is said, of a table under a line that names
     its columns; None where none does.
     """
-    for pattern, replacement in _CLEANING[:4]:
-        text = pattern.sub(replacement, text)
+    text = _replaced(text, _PAIRS["cleaning"][:4])
     lines = text.split("\n")
     for place, line in enumerate(lines):
         names = (
             []
             if NUMBER.search(line)
-            else [field.lower() for field in _fields(_AROUND.sub("", line))]
+            else [field.lower() for field in _fields(_PATTERNS["around a field"].sub("", line))]
         )
         if len(names) < 3:
             continue
-        table = [_fields(below) for below in lines[place + 1 :] if not _NO_ROW.search(below)]
+        table = [
+            _fields(below) for below in lines[place + 1 :] if not _PATTERNS["no row"].search(below)
+        ]
         if (
             not table
             or any(len(row) != len(names) for row in table)
@@ -210,16 +203,12 @@ def _columns(text):
             continue
         which, more = found
         kept = [[row[column] for column in which] for row in table]
-        if all(_WHOLE_NUMBER.search(field) for row in kept for field in row):
-            said = line.replace("_", " ")
-            unit = (
-                "degrees" if _DEGREES.search(said) else "radians" if _RADIANS.search(said) else None
-            )
+        if all(_PATTERNS["whole number"].search(field) for row in kept for field in row):
             half = _half([field for row in kept for field in row])
             return (
                 [list(map(float, row)) for row in kept],
                 half,
-                more | ({"unit": unit} if unit else {}),
+                more | _unit_in(line.replace("_", " ")),
             )
     return None
 
@@ -228,15 +217,18 @@ def _named_columns(names):
     """Which columns hold an orientation, in the order in which they are read,
     and what their names say of them.
     """
-    bare = [_UNIT.sub("", name) for name in names]
+    bare = [_PATTERNS["unit of a column"].sub("", name) for name in names]
     entries = [
         (found[1], found[2], column)
         for column, name in enumerate(bare)
-        if (found := _ENTRY.search(name))
+        if (found := _PATTERNS["entry of a matrix"].search(name))
     ]
     if len(entries) == 9:
         return [column for *_, column in sorted(entries)], {}
-    for own in ([bool(_OF_A_QUATERNION.search(name)) for name in bare], [True] * len(bare)):
+    for own in (
+        [bool(_PATTERNS["of a quaternion"].search(name)) for name in bare],
+        [True] * len(bare),
+    ):
         keys = [
             re.sub(r"^(.*[_.])?q?_*", "", name) if mine else "" for name, mine in zip(bare, own)
         ]
@@ -279,12 +271,13 @@ def _decimal_points(text):
 
 def _sums(text):
     """The text with names in the place of i, j and k, where quaternions are written as sums."""
-    if not _SUM.search(text):
+    if not _PATTERNS["sum"].search(text):
         return text
-    for pattern, replacement in _SIGNS:
-        text = pattern.sub(replacement, text)
-    text = _PART.sub(lambda part: f" {'xyz'['ijk'.index(part[2].lower())]}={part[1]} ", text)
-    return _SCALAR.sub(r" w=\1 ", text)
+    text = _replaced(text, _PAIRS["signs of a sum"])
+    text = _PATTERNS["part of a sum"].sub(
+        lambda part: f" {'xyz'['ijk'.index(part[2].lower())]}={part[1]} ", text
+    )
+    return _PATTERNS["scalar of a sum"].sub(r" w=\1 ", text)
 
 
 def _without_places(text):
@@ -298,10 +291,10 @@ def _without_places(text):
             continue
         below = (
             inset
-            if (found := _NOT_TURNS.search(line)) and not line[found.end() :].strip()
+            if (found := _PATTERNS["not turns"].search(line)) and not line[found.end() :].strip()
             else None
         )
-        kept.append(_NOT_TURNS.sub(" ", line))
+        kept.append(_PATTERNS["not turns"].sub(" ", line))
     return "\n".join(kept)
 
 
@@ -309,8 +302,15 @@ def _labelled(text):
     """Numbers that come with their names, ``w: 1, x: 0, ...`` or
     ``roll = ...``; None if they do not.
     """
-    pairs = [(match[1].lower(), NUMBER.match(text, match.end())) for match in _NAMED.finditer(text)]
-    parts = [(key, found) for key, found in pairs if found and _PART_OF_A_QUATERNION.search(key)]
+    pairs = [
+        (match[1].lower(), NUMBER.match(text, match.end()))
+        for match in _PATTERNS["named"].finditer(text)
+    ]
+    parts = [
+        (key, found)
+        for key, found in pairs
+        if found and _PATTERNS["part of a quaternion"].search(key)
+    ]
     pairs = [
         (re.sub(r"^(.*[_.])?q?_*", "", key), found[0]) for key, found in parts or pairs if found
     ]

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,7 @@ from .motion import (
     ASSIGNMENTS,
     dcm_of_quaternions,
     fit_axes,
-    fit_one_scale,
-    fit_scale,
+    fit_scales,
     readings,
     stretches,
     written,
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from .content import Content, Group
     from .examined import Facts
     from .judged import Judgement
-    from .motion import Fit, Reading, Stretch
+    from .motion import Fit, Reading, ScaleFit, Stretch
     from .table import Array, Source
 
 #: Above this margin the best of 48 assignments is believed.
@@ -81,6 +80,7 @@ def examine(
     bench.clock()
     bench.gyroscope()
     bench.accelerometer()
+    bench.scale_and_bias()
     bench.magnetometer()
     bench.timing()
     bench.orientation()
@@ -153,7 +153,7 @@ class _Bench:
                 UNKNOWN,
                 f"{self.content.clock}: the rate is not known",
                 {},
-                "Name it: --rate 100.",
+                "Give it: --rate 100.",
             )
             return
         steps = np.diff(time)
@@ -202,7 +202,7 @@ class _Bench:
             light,
             words,
             evidence,
-            "" if light == GREEN else "What happened in a gap, no filter knows.",
+            "" if light == GREEN else "No filter can know what happened in a gap.",
         )
         every = np.concatenate(list(self.raw.values()), axis=1)
         same = float((np.diff(every, axis=0) == 0).all(axis=1).mean())
@@ -271,7 +271,7 @@ class _Bench:
                 self.say(
                     "unit of the gyroscope",
                     RED,
-                    f"its turns carry the other sensors only if it is in {names[unit]}; its "
+                    f"its rotations agree with the other sensors only in {names[unit]}; its "
                     f"heading says {said}",
                     {"scale": round(fit.scale, 5)},
                     f"Read it as {names[unit]}.",
@@ -285,25 +285,25 @@ class _Bench:
                 self.say(
                     "unit of the gyroscope",
                     UNKNOWN,
-                    "no heading says it, and it turns too little to tell",
+                    "no heading gives it, and the instrument rotates too little to find it",
                     {},
-                    "Say it: --columns 'gyroscope=2-4:deg/s', or turn it about all axes.",
+                    "Give it: --columns 'gyroscope=2-4:deg/s', or rotate it about all its axes.",
                 )
                 return
             unit = DEGREES[said]
             self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
-                f"{names[unit]} by its heading; it turns too little to try that",
+                f"{names[unit]} by its heading; it rotates too little to check that",
                 {},
-                "Turn it about all axes.",
+                "Rotate it about all its axes.",
             )
         self.facts["unit of the gyroscope"] = unit
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
         if most > 10_000:
             words = (
-                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown turns "
-                "so fast"
+                f"one value in twenty is above {most:.2g} °/s: nothing that is held or flown "
+                "rotates so fast"
             )
             self.say(
                 "size of the gyroscope", RED, words, {}, "Is it another column, or another unit?"
@@ -325,9 +325,9 @@ class _Bench:
                         f"range of the {kind}",
                         RED,
                         f"{letter} stays at {end:.6g} for {lasting + 1} samples: what was {where} "
-                        "that was cut off",
+                        "that is cut off",
                         {"samples": lasting + 1},
-                        "Choose a larger range. What was cut off, no correction brings back.",
+                        "Choose a larger range. No correction can restore what is cut off.",
                     )
                     return
 
@@ -369,7 +369,7 @@ class _Bench:
                     RED,
                     f"along the accelerometer's axes it measures {written(best)}{mirrored}",
                     {},
-                    f"Take ({written(best)}) of the gyroscope for its x, y, z.",
+                    f"Use ({written(best)}) of the gyroscope as its x, y, z.",
                 )
             self.facts["axes of the gyroscope"] = best
             rates = rates @ best.T
@@ -380,11 +380,10 @@ class _Bench:
                 UNKNOWN,
                 f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}",
                 {"margin": round(fit.margin, 2)},
-                "Turn the instrument slowly about all three axes.",
+                "Rotate the instrument slowly about all three axes.",
             )
         self.rates = rates
         self.still = stretches(self.time, rates)
-        self._scale_and_bias()
 
     def _odd_accelerometer(self, assignment: Array) -> None:
         """The two others agree: it is the accelerometer whose axes are others, or all opposite."""
@@ -395,11 +394,14 @@ class _Bench:
             f"gyroscope and magnetometer agree; along their axes it measures {written(back)}, or "
             "the opposite",
             {},
-            f"Take ({written(back)}) of the accelerometer for its x, y, z, or the opposite.",
+            f"Use ({written(back)}) of the accelerometer as its x, y, z, or the opposite.",
         )
         self.raw["accelerometer"] = self.raw["accelerometer"] @ back.T
 
-    def _scale_and_bias(self) -> None:
+    def scale_and_bias(self) -> None:
+        """Scale and bias of the gyroscope, by gravity as the accelerometer is corrected to."""
+        if self.rates is None:
+            return
         lying = [one for one in self.still if one.still]
         held = [one for one in self.still if not one.still]
         seconds = sum(self.time[one.last - 1] - self.time[one.first] for one in lying)
@@ -414,13 +416,12 @@ class _Bench:
             )
             if lying
             else None,
-            "autocorrelation": round(max((one.autocorrelation for one in lying), default=0.0), 2),
         }
         if lying:
             self.say(
                 "stillness",
                 GREEN,
-                f"it lies still from {told}: what its gyroscope says there is white",
+                f"it lies still from {told}: its gyroscope shows only white noise there",
                 evidence,
             )
         elif held:
@@ -430,12 +431,9 @@ class _Bench:
                 YELLOW,
                 "it is never still. "
                 f"From {self.time[one.first]:.1f} to {self.time[one.last - 1]:.1f} s it is held: "
-                f"it wavers by {np.degrees(one.deviation):.1f} °/s, and slowly, as a hand does",
-                {
-                    "deviation (°/s)": round(float(np.degrees(one.deviation)), 2),
-                    "autocorrelation": round(one.autocorrelation, 2),
-                },
-                "A mean over that is motion and no bias. Lay it down for some seconds.",
+                f"it wavers by {np.degrees(one.deviation):.1f} °/s, slowly, as a hand does",
+                {"deviation (°/s)": round(float(np.degrees(one.deviation)), 2)},
+                "A mean over that time is motion, not bias. Lay it down for some seconds.",
             )
         else:
             self.say(
@@ -443,26 +441,23 @@ class _Bench:
             )
         bias, spread = None, None
         if lying:
-            parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
-            bias, spread = np.median(parts, axis=0), parts.std(axis=0) / np.sqrt(len(parts)) * 1.25
+            bias, spread = self._resting(lying)
             self._noise(max(lying, key=lambda one: one.last - one.first))
         poses = [one for one in self.still if one.last - one.first > 10]
         fitted = None
-        if "accelerometer" in self.raw and len(poses) >= 3:
-            fitted = fit_scale(self.time, self.rates, self.raw["accelerometer"], poses, bias)
+        if self.forces is not None:
+            fitted = fit_scales(self.time, self.rates, self.forces, poses, bias)
         scale: float | Array = 1.0
         if fitted is not None:
-            found, uncertain, by_turns, by_turns_spread, left = fitted
-            sure = uncertain < 0.03 and left < 0.25
-            scale = self._scale(fitted, bias, poses)
-            if bias is None and sure:
-                bias, spread = by_turns, by_turns_spread
+            scale = self._scale(fitted, poses)
+            if bias is None and fitted.common[1] < 0.03 and fitted.left < 0.25:
+                bias, spread = fitted.bias, fitted.bias_spreads
         else:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
                 f"still poses: {len(poses)}, "
-                f"{'too few' if len(poses) < 4 else 'too much alike'} to carry gravity through",
+                f"{'too few' if len(poses) < 4 else 'too alike'} to follow gravity by them",
                 {},
                 "Hold it still in poses that lean well away from each other, four or more.",
             )
@@ -481,7 +476,7 @@ class _Bench:
                 RED if most > 1 and sure else YELLOW if most > 0.3 else GREEN if sure else UNKNOWN
             )
             words = f"{_along(np.degrees(bias))} °/s, ± {np.degrees(spread.max()):.2g}"
-            drifts = self._drift(lying)
+            drifts = self._drift(lying, poses)
             known = light in (RED, YELLOW) and not drifts
             advice = f"Subtract {_along(np.degrees(bias))} °/s." if known else ""
             self.say(
@@ -498,80 +493,94 @@ class _Bench:
         if np.any(scale != 1.0):
             self.still = stretches(self.time, self.rates)
 
-    def _scale(
-        self,
-        fitted: tuple[float, float, Array, Array, float],
-        bias: Array | None,
-        poses: Sequence[Stretch],
-    ) -> float | Array:
+    def _resting(self, lying: Sequence[Stretch]) -> tuple[Array, Array]:
+        """Means of the gyroscope where it lies still, and their standard deviations."""
+        parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
+        return parts.mean(axis=0), parts.std(axis=0) / np.sqrt(len(parts))
+
+    def _scale(self, fitted: ScaleFit, poses: Sequence[Stretch]) -> float | Array:
         """What the gyroscope is to be multiplied by, if that is known."""
-        found, uncertain, _, _, left = fitted
+        (common, uncertain), left = fitted.common, fitted.left
         carries = f"its turns carry gravity through {len(poses)} poses"
-        self.facts["scale of the gyroscope"] = found
+        self.facts["scale of the gyroscope"] = common
         if self.counts:
-            unit = self.facts["unit of the gyroscope"] = self.facts["unit of the gyroscope"] * found
+            unit = self.facts["unit of the gyroscope"] = (
+                self.facts["unit of the gyroscope"] * common
+            )
             self.say(
                 "unit of the gyroscope",
                 RED if _said_unit(self.content.groups["gyroscope"].names) else YELLOW,
-                f"counts of its chip, whatever the heading says: one is {np.degrees(unit):.4g} "
-                f"°/s, {np.degrees(uncertain * unit):.1g} more or less, for so {carries}",
+                f"raw counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
+                f"± {np.degrees(uncertain * unit):.1g} °/s, since then {carries}",
                 {"rad/s": unit},
                 f"Multiply by {np.degrees(unit):.4g} to have °/s.",
             )
-            return found
-        if left > np.radians(1.2) and bias is not None:
-            forces = self.raw["accelerometer"]
-            axis, factor, rest = fit_one_scale(self.time, self.rates - bias, forces, poses)
-            if rest < 0.4 * left:
-                self.say(
-                    "scale of the gyroscope",
-                    RED,
-                    f"about {'xyz'[axis]} it is {factor:.3f} times too small: so multiplied, "
-                    f"{carries} to {np.degrees(rest):.1f}° and not to {np.degrees(left):.1f}°",
-                    {"axis": "xyz"[axis], "scale": round(factor, 4)},
-                    f"Multiply {'xyz'[axis]} by {factor:.3f}.",
-                )
-                return np.where(np.arange(3) == axis, factor, 1.0)
-        sure = uncertain < 0.03 and left < 0.25
-        off = abs(found - 1)
+            return common
+        off = np.abs(fitted.scales / np.median(fitted.scales) - 1)
+        odd = np.flatnonzero(off > np.maximum(0.04, 5 * fitted.spreads))
+        cut_off = any(verdict.about == "range of the gyroscope" for verdict in self.verdicts)
+        if len(odd) == 1 and not cut_off and left < 0.7 * fitted.left_alike:
+            axis, factor = "xyz"[odd[0]], float(fitted.scales[odd[0]])
+            self.say(
+                "scale of the gyroscope",
+                RED,
+                f"what it says of {axis} needs another scale than the rest: with {factor:.3f} "
+                f"{carries} to {np.degrees(left):.1f}°, and with one scale for all axes to "
+                f"{np.degrees(fitted.left_alike):.1f}°",
+                {"axis": axis, "scale": round(factor, 4)},
+                f"Multiply {axis} by {factor:.3f}.",
+            )
+            return np.where(np.arange(3) == odd[0], factor, 1.0)
+        off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else YELLOW if off < 0.05 else RED
-        if not sure or left > np.radians(3):
+        if cut_off or uncertain > 0.03 or left > np.radians(6):
             light = UNKNOWN
         self.say(
             "scale of the gyroscope",
             light,
-            f"{found:.3f} ± {uncertain:.3f}: {carries} to {np.degrees(left):.1f}°",
-            {"scale": round(found, 4), "±": round(uncertain, 4), "poses": len(poses)},
-            f"Multiply what it says by {found:.3f}." if light in (RED, YELLOW) else "",
+            f"{common:.3f} ± {uncertain:.3f}: {carries} to {np.degrees(left):.1f}°",
+            {"scale": round(common, 4), "±": round(uncertain, 4), "poses": len(poses)},
+            f"Multiply what it says by {common:.3f}." if light in (RED, YELLOW) else "",
         )
-        return found if light in (RED, YELLOW) else 1.0
+        return common if light in (RED, YELLOW) else 1.0
 
-    def _drift(self, lying: Sequence[Stretch]) -> bool:
-        """Whether the bias is another one each time it lies still."""
-        if len(lying) < 2 or self.rates is None:
+    def _drift(self, lying: Sequence[Stretch], poses: Sequence[Stretch]) -> bool:
+        """Whether the bias is another one each time it lies still, or, where it is never laid down
+        later on, in the second half of its poses than in the first.
+        """
+        if len(lying) > 1 and lying[-1].last - lying[0].first > len(self.time) / 2:
+            runs = [[one] for one in lying]
+            biases, doubts = (np.array(each) for each in zip(*map(self._resting, runs)))
+            least, when = np.radians(0.1), ("first lies still", "last does")
+        else:
+            runs = [list(poses[: len(poses) // 2 + 1]), list(poses[len(poses) // 2 :])]
+            if self.forces is None:
+                return False
+            fits = [fit_scales(self.time, self.rates, self.forces, run) for run in runs]
+            if any(fit is None or fit.left > 0.15 for fit in fits):
+                return False
+            biases, doubts = (
+                np.array([getattr(fit, name) for fit in fits]) for name in ("bias", "bias_spreads")
+            )
+            least, when = np.radians(0.5), ("is moved", "is moved later")
+        middles = np.array([self.time[(run[0].first + run[-1].last) // 2] for run in runs])
+        slopes, starts = np.polyfit(middles, biases, 1)
+        ends = starts + slopes * middles[[0, -1], None]
+        change, doubt = np.abs(ends[1] - ends[0]), np.max(doubts, axis=0)
+        worst = int(np.argmax(change / doubt))
+        if change[worst] < max((8 if len(runs) > 2 else 5) * doubt[worst], least):
             return False
-        means, doubts = [], []
-        for one in lying:
-            part = self.rates[one.first : one.last]
-            means.append(np.median(part, axis=0))
-            doubts.append(1.25 * part.std(axis=0) / np.sqrt(len(part)))
-        change = np.ptp(means, axis=0)
-        worst = int(np.argmax(change / np.max(doubts, axis=0)))
-        if change[worst] < max(8 * np.max(doubts, axis=0)[worst], np.radians(0.05)):
-            return False
-        first, last = np.degrees([means[0][worst], means[-1][worst]])
+        first, last = np.degrees(ends[:, worst])
         words = (
-            f"the bias about {'xyz'[worst]} is {first:.2f} °/s when it first lies still and "
-            f"{last:.2f} °/s when it last does"
+            f"the bias about {'xyz'[worst]} is {first:.2f} °/s when it {when[0]} and "
+            f"{last:.2f} °/s when it {when[1]}"
         )
         advice = "let the filter estimate the bias, or subtract a line between the still stretches."
         warmth = self.content.temperature
         if warmth is not None:
-            middles = [self.time[(one.first + one.last) // 2] for one in lying]
             at = np.interp(middles, *warmth)
-            biases = np.array(means)[:, worst]
-            if np.ptp(at) > 2 and abs(np.corrcoef(at, biases)[0, 1]) > 0.95:
-                slope = float(np.degrees(np.polyfit(at, biases, 1)[0]))
+            if np.ptp(at) > 2 and abs(np.corrcoef(at, biases[:, worst])[0, 1]) > 0.95:
+                slope = float(np.degrees(np.polyfit(at, biases[:, worst], 1)[0]))
                 words += (
                     f". It follows the temperature, {at.min():.0f} to {at.max():.0f} °C, by "
                     f"{slope:.2f} °/s for each degree"
@@ -581,8 +590,8 @@ class _Bench:
             "drift of the bias",
             RED if change[worst] > np.radians(0.3) else YELLOW,
             words,
-            {"°/s": np.degrees(means).round(3).tolist()},
-            f"One number subtracted from all does not mend that: {advice}",
+            {"°/s": np.degrees(biases).round(3).tolist()},
+            f"Subtracting one number does not cure that: {advice}",
         )
         return True
 
@@ -595,7 +604,8 @@ class _Bench:
         seconds = (one.last - one.first) * step
         if np.isnan(noise.angle_random_walk).any():
             words = (
-                f"the {seconds:.0f} s in which it lies still do not tell white noise from the rest"
+                f"the {seconds:.0f} s in which it lies still are too few to separate white noise "
+                "from the rest"
             )
             self.say("noise of the gyroscope", UNKNOWN, words, {}, "Let it lie for some minutes.")
             return
@@ -603,7 +613,7 @@ class _Bench:
         words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
         evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
         if np.isnan(noise.bias_instability).all():
-            words += f"; how steady its bias is, {seconds:.0f} s do not tell"
+            words += f"; {seconds:.0f} s are too few to measure how steady its bias is"
         else:
             worst = int(np.nanargmax(noise.bias_instability))
             words += (
@@ -637,20 +647,24 @@ class _Bench:
             {"off": round(off, 4)},
             f"Read it as {unit}." if wrong else "",
         )
-        means = np.array([self.forces[one.first : one.last].mean(axis=0) for one in self.still])
-        ways = len(means) and np.linalg.matrix_rank(means, tol=0.5)
-        if len(means) < 6 or ways < 3:
+        lying = [one for one in self.still if one.still]
+        for poses in (lying, self.still):  # a hand that holds it pushes it as well
+            means = np.array([self.forces[one.first : one.last].mean(axis=0) for one in poses])
+            enough = len(means) > 5 and np.linalg.matrix_rank(means, tol=0.5) == 3
+            if enough:
+                break
+        if not enough:
             self.say(
                 "accelerometer",
                 UNKNOWN,
-                f"still poses: {len(means)}, too few or too much alike to tell offset from scale",
+                f"still poses: {len(means)}, too few or too alike to separate offset and scale",
                 {},
                 "Hold it still in nine poses that lean all ways.",
             )
             return
         lengths = np.linalg.norm(means, axis=1)
         uneven = float(np.ptp(lengths))
-        light = RED if uneven > 0.04 else YELLOW if uneven > 0.02 else GREEN
+        light = YELLOW if uneven > 0.04 else GREEN
         words = f"gravity is {lengths.min():.3f} to {lengths.max():.3f} long in {len(means)} poses"
         advice, evidence = "", {"lengths": lengths.round(3).tolist()[:12]}
         cut_off = any(verdict.about == "range of the accelerometer" for verdict in self.verdicts)
@@ -658,8 +672,14 @@ class _Bench:
             words += ", as where it is cut off"
         elif light != GREEN:
             name, offset, scales, left = uneven_lengths(means)
-            words += f". {name} leaves {left:.3f} of that, tried on poses that were not used"
-            if left < 0.5 * uneven:
+            explained = left < 0.5 * uneven
+            words += (
+                f". {name} would leave a range of {left:.3f}, checked on poses left out of the fit"
+                if explained
+                else ", and neither offsets nor scales explain that"
+            )
+            if explained:
+                light = RED if uneven > 0.08 else YELLOW
                 by = offset * gravity
                 subtract = [f"{by[k]:.3g} from {'xyz'[k]}" for k in np.flatnonzero(offset)]
                 divide = [f"{'xyz'[k]} by {scales[k]:.3f}" for k in np.flatnonzero(scales != 1)]
@@ -690,72 +710,58 @@ class _Bench:
         by_lengths = fit is None
         if by_lengths:
             fit = _by_lengths(raw)
-        if fit is None:
-            unit, length = unit_of_field(raw)
-            words = f"{unit}: its values are {length:.3g} long (median)"
-            self.say("unit of the magnetometer", GREEN, words, {"length": round(length, 3)})
-            words = f"neither turns nor lengths suffice for offset and shape{known}"
-            advice = "Turn it slowly through all directions, a figure of eight."
-            self.say("offset of the magnetometer", UNKNOWN, words, {}, advice)
-            self.field = raw / length
-            self.facts["strength of the field"] = length
-            uneven, dips = self._unevenness(self.field), self._dips(raw)
-            if uneven > 0.12 or (dips and dips[1] > 8):
-                words = f"its length varies by {uneven:.0%}" + (
-                    f", its dip by {dips[1]:.0f}°" if dips else ""
-                )
-                words += (
-                    ": by iron that turns with it, or by iron that it passed; its rotations do not "
-                    "show which"
-                )
-                self.say(
-                    "field",
-                    YELLOW,
-                    words,
-                    {},
-                    "Leave the field out, or record a figure of eight far from iron.",
-                )
-            return
-        unit, length = unit_of_field(fit.strength * np.array([[1.0, 0, 0]]))
+        usual = float(np.median(np.linalg.norm(raw, axis=1)))
+        unit, length = unit_of_field(usual if fit is None else fit.strength)
         words = f"{unit}: the field is {length:.3g} long"
         self.say("unit of the magnetometer", GREEN, words, {"length": round(length, 3)})
-        corrected = (raw - fit.offset) @ fit.shape.T / fit.strength
-        self.field = raw / float(np.median(np.linalg.norm(raw, axis=1)))
-        before, uneven = self._unevenness(self.field), self._unevenness(corrected)
-        dips_before, dips = self._dips(raw), self._dips(corrected)
-        # Neither lengths nor dips were used to fit: a correction that mends none of them is none.
-        useless = dips and dips_before and dips[1] > 1.2 * dips_before[1] + 0.5
-        if useless or uneven > 0.8 * before + 0.01:
-            words = (
-                f"the correction that fits best changes the spread of the dip from "
-                f"{dips_before[1]:.1f}° to {dips[1]:.1f}°"
-                if useless
-                else f"the length varies by {before:.0%}, and by {uneven:.0%} with the correction "
-                "that fits best"
+        self.field, self.facts["strength of the field"] = raw / usual, usual
+        before, dips = self._unevenness(self.field), self._dips(raw)
+        uneven, about = before, "offset of the magnetometer"
+        # The length is the field's alone; a dip may also vary with a wrong accelerometer.
+        cause = "Iron was near for a while: do not use the field there."
+        if fit is None:
+            words = f"neither rotations nor lengths determine offset and shape{known}"
+            advice = "Rotate it slowly through all directions, a figure of eight."
+            self.say(about, UNKNOWN, words, {}, advice)
+            cause = (
+                "The cause is iron that moves with it, or iron that it passed, and the rotations "
+                "do not decide which. Do not use the field, or record a figure of eight far from "
+                "iron."
             )
-            advice = "Turn it slowly through all directions, far from iron."
-            about = "offset of the magnetometer"
-            self.say(about, UNKNOWN, f"{words}: it is not applied", {}, advice)
-            uneven, dips = before, dips_before
         else:
-            self.field = corrected
-            self._corrected_field(fit, by_lengths)
+            corrected = (raw - fit.offset) @ fit.shape.T / fit.strength
+            uneven_then, dips_then = self._unevenness(corrected), self._dips(corrected)
+            # Neither lengths nor dips were used to fit: a correction that mends none is none.
+            useless = dips and dips_then and dips_then[1] > 1.2 * dips[1] + 0.5
+            if useless or uneven_then > 0.8 * before + 0.01:
+                words = (
+                    f"the correction that fits best changes the spread of the dip from "
+                    f"{dips[1]:.1f}° to {dips_then[1]:.1f}°"
+                    if useless
+                    else f"the length varies by {before:.0%}, and by {uneven_then:.0%} with the "
+                    "correction that fits best"
+                )
+                advice = "Rotate it slowly through all directions, far from iron."
+                self.say(about, UNKNOWN, f"{words}: it is not applied", {}, advice)
+            else:
+                self.field, uneven, dips = corrected, uneven_then, dips_then
+                self._corrected_field(fit, by_lengths)
         light = GREEN
-        if uneven > 0.06 or (dips and dips[1] > 4):
-            light = RED if uneven > 0.12 or (dips and dips[1] > 8) else YELLOW
+        if uneven > 0.06 or (dips and dips[1] > 6):
+            light = RED if uneven > 0.12 or (dips and dips[1] > 12) else YELLOW
+            light = YELLOW if fit is None else light
         words = f"its length varies by {uneven:.0%}" + (
             f", its dip by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
         )
         evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
-        advice = "Something of iron was near for a while: leave the field out then."
-        self.say("field", light, words, evidence, "" if light == GREEN else advice)
+        self.say("field", light, words, evidence, cause if uneven > 0.06 else "")
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         if dips and dips[0] < -5 and not any("axes" in about for about in trouble):
             self.say(
                 "signs",
                 UNKNOWN,
-                f"the field points up, out of the ground, by {-dips[0]:.0f}°, as it does south of "
-                "the magnetic equator only",
+                f"the field points up, out of the ground, by {-dips[0]:.0f}°, as it does only "
+                "south of the magnetic equator",
                 {},
                 "If you recorded north of it, the accelerometer's three signs are opposite, as in "
                 "iPhones, or those of the magnetometer are.",
@@ -771,14 +777,14 @@ class _Bench:
         )
         about, advice = "axes of the magnetometer", ""
         if by_lengths:
-            light, words = UNKNOWN, "lengths alone fit: they say nothing of its axes"
-            advice = "Turn it slowly about all three axes."
+            light, words = UNKNOWN, "fitted by length alone, which does not determine its axes"
+            advice = "Rotate it slowly about all three axes."
         elif np.allclose(plain, reference) or np.allclose(plain, -reference):
             light, words = GREEN, "those of the others, or all three opposite"
         else:
             axes = written(plain)
             light, words = RED, f"along the axes of the others it measures {axes}, or the opposite"
-            advice = f"Take ({axes}) of the magnetometer for its x, y, z, or the opposite."
+            advice = f"Use ({axes}) of the magnetometer as its x, y, z, or the opposite."
         self.say(about, light, words, {}, advice)
         self.facts |= {
             "axes of the magnetometer": plain,
@@ -796,7 +802,7 @@ class _Bench:
                 hard,
                 0.1,
                 0.05,
-                f"{_along(fit.offset)}, {hard:.0%} of the field: a direction is wrong by up to "
+                f"{_along(fit.offset)}, {hard:.0%} of the field: directions are wrong by up to "
                 f"{aside:.0f}°",
                 {"offset": fit.offset.round(3).tolist()},
                 f"Subtract {_along(fit.offset)}.",
@@ -806,9 +812,9 @@ class _Bench:
                 fit.stretch - 1,
                 0.12,
                 0.06,
-                f"longest and shortest axis are as {fit.stretch:.2f} to 1",
+                f"the longest axis is {fit.stretch:.2f} times the shortest",
                 {"matrix": fit.shape.round(3).tolist()},
-                f"After that multiply by the matrix {rows}.",
+                f"Then multiply by the matrix {rows}.",
             ),
         ):
             light = RED if size > worst + doubt else YELLOW if size > worse else GREEN
@@ -841,9 +847,9 @@ class _Bench:
     def timing(self) -> None:
         """Delays between the sensors, and samples that are missing where time was counted on."""
         steps = np.diff(self.time)
-        if self.rates is None or self.content.counted or len(self.time) < 200:
-            return
         step = float(np.median(steps))
+        if self.rates is None or self.content.counted or len(self.time) * step < 3:
+            return
         seen = {kind: self.raw[kind] for kind in self.raw if kind != "gyroscope"}
         leaps = np.full(len(self.time) - 1, len(seen) > 1)
         for values in seen.values():
@@ -855,30 +861,36 @@ class _Bench:
                 "missing samples",
                 RED,
                 f"at {int(leaps.sum())} places, the first at {self.time[1:][leaps][0]:.2f} s, "
-                "gravity and field leap by more than any turn between two samples: samples are "
-                "missing there, and time was counted on as if none were",
+                "gravity and field jump further than any rotation between two samples: samples "
+                "are missing there, and time was counted on as if none were",
                 {"places": int(leaps.sum())},
-                "Record the instrument's own time with each sample. No filter knows what happened.",
+                "Record the instrument's own time with each sample: no filter can know what was "
+                "lost.",
             )
             return
         # What does not tell the axes tells no delay.
         if "axes of the gyroscope" not in self.facts:
             return
-        late = {kind: lag_of(self.rates, values, step) for kind, values in seen.items()}
-        # A push that comes with each turn looks like a delay of the accelerometer, which
-        # therefore only confirms.
-        lag, other = late.get("magnetometer", 0), late.get("accelerometer", 0)
+        if "magnetometer" not in seen:
+            return
+        lag = lag_of(misfits(self.rates, seen["magnetometer"], step))
         if abs(lag) < max(2, round(0.03 / step)):
             return
-        kind, lag = ("gyroscope", -lag) if abs(lag - other) <= 3 else ("magnetometer", lag)
+        # A push that comes with each turn looks like a delay of the accelerometer, which therefore
+        # only says which of the two others is late.
+        kind = "magnetometer"
+        if "accelerometer" in seen:
+            by_lag = misfits(self.rates, seen["accelerometer"], step).left
+            if by_lag[len(by_lag) // 2 + lag] < by_lag[len(by_lag) // 2]:
+                kind, lag = "gyroscope", -lag
         others = "others" if len(seen) > 1 or kind == "gyroscope" else "gyroscope"
         self.say(
             f"delay of the {kind}",
             RED,
-            f"what it says fits the turns of the {others} best {1000 * abs(lag) * step:.0f} ms "
+            f"its values fit the rotations of the {others} best {1000 * abs(lag) * step:.0f} ms "
             f"{'earlier' if lag > 0 else 'later'}: it comes {'late' if lag > 0 else 'early'}",
             {"seconds": round(lag * step, 3)},
-            f"Move its times {'back' if lag > 0 else 'forward'} by that much, before all else.",
+            f"First of all, shift its times {'back' if lag > 0 else 'forward'} by that much.",
         )
 
     # --- the orientation ------------------------------------------------------------------------
@@ -903,9 +915,9 @@ class _Bench:
                 self.say(
                     kind,
                     UNKNOWN,
-                    "it turns too little to be compared with the gyroscope",
+                    "it rotates too little to be compared with the gyroscope",
                     {},
-                    "Turn it about all axes.",
+                    "Rotate it about all its axes.",
                 )
                 continue
             self._reading(kind, group, candidates, found)
@@ -985,7 +997,7 @@ class _Bench:
             self.say(
                 "level",
                 light,
-                f"up leans by {lean:.1f}° from the ground's {called} axis",
+                f"up is {lean:.1f}° away from the ground's {called} axis",
                 {"°": round(lean, 2)},
                 advice.strip(),
             )
@@ -1020,31 +1032,25 @@ class _Bench:
         field = None if "field" in trouble else self.field
         lying = [one for one in self.still if one.still]
         parts = _parts_to_judge(self.time, self.rates)
-        self.judgements = judge(
-            filter_inputs(self.time, self.rates, self.forces, field, lying, parts), progress
-        )
-        where = ", ".join(f"{one.first:.0f} to {one.last:.0f} s" for one in self.judgements)
+        inputs = filter_inputs(self.time, self.rates, self.forces, field, lying, parts)
+        for number, given in enumerate(inputs):
+            shown = progress and (lambda share, done=number: progress((done + share) / len(inputs)))
+            self.judgements.append(judge(given, shown))
+        where = ", ".join(f"{one.times[0]:.0f} to {one.times[-1]:.0f} s" for one in self.judgements)
         claimed = float(np.sqrt(np.mean([one.claimed**2 for one in self.judgements])))
         found = float(np.sqrt(np.mean([one.found**2 for one in self.judgements])))
         words = (
-            f"from {where}: it claims the tilt to {claimed:.2f}°, and its forward and backward "
-            f"runs differ by {found:.2f}°"
+            f"from {where} it claims to know the tilt to {claimed:.2f}°, and its forward and "
+            f"backward runs differ by {found:.2f}°"
         )
         if self.judgements[0].heading:
             heading = np.sqrt(np.mean([np.square(one.heading) for one in self.judgements], axis=0))
-            words += f"; the heading to {heading[0]:.2f}°, and they differ by {heading[1]:.2f}°"
+            words += f"; for the heading these are {heading[0]:.2f}° and {heading[1]:.2f}°"
         else:
-            words += (
-                "; of the heading it can say nothing, for gravity is the same whichever way one "
-                "faces"
-            )
+            words += "; gravity alone gives it no heading"
         squares = {
             name: round(float(np.mean([one.squares[name] for one in self.judgements])), 2)
             for name in self.judgements[0].squares
-        }
-        alike = {
-            name: round(float(np.mean([one.autocorrelation[name] for one in self.judgements])), 2)
-            for name in self.judgements[0].autocorrelation
         }
         worst, high = too_sure(self.judgements)
         light = RED if worst > 5 or high > 5 else YELLOW if worst > 3 or high > 3 else GREEN
@@ -1052,7 +1058,7 @@ class _Bench:
         if light == RED:
             advice = f"Its errors are {max(worst, np.sqrt(high)):.0f} times what it claims. "
             advice += (
-                f"First mend what is wrong above: {', '.join(sorted(trouble))}."
+                f"First correct what is wrong above: {', '.join(sorted(trouble))}."
                 if trouble
                 else "First rule out lost samples, delays and a wrong clock; only then raise its "
                 "noise."
@@ -1072,10 +1078,6 @@ class _Bench:
             "claimed (°)": round(claimed, 3),
             "found (°)": round(found, 3),
             "innovations": squares,
-            "autocorrelation": alike,
-            "held out (°)": {
-                name: round(off, 1) for name, off in self.judgements[0].held_out.items()
-            },
         }
         self.say("filter", light, words, evidence, advice.strip())
 
@@ -1094,9 +1096,26 @@ class _Bench:
         )
 
 
-def lag_of(rates: Array, vectors: Array, step: float) -> int:
-    """By how many samples vectors that stand still in the world come later than the turns; 0 where
-    that does not show.
+class Misfits(NamedTuple):
+    """How well vectors follow the turns, for each number of samples that they may come later.
+
+    Attributes
+    ----------
+    left : array of shape ``(2 * most + 1,)``
+        Sums of squares, from ``most`` samples early to ``most`` late.
+    whole : float
+        The same sum with nothing explained.
+    alone : float
+        How many values tell as much as all of them, whose neighbours share their noise.
+    """
+
+    left: Array
+    whole: float
+    alone: float
+
+
+def misfits(rates: Array, vectors: Array, step: float) -> Misfits:
+    """Try delays of vectors that stand still in the world, up to 0.4 seconds.
 
     With a constant ``c`` that belongs to the instrument, ``dm/dt = -w x (m - c)``.
     """
@@ -1107,23 +1126,23 @@ def lag_of(rates: Array, vectors: Array, step: float) -> int:
         np.stack([np.convolve(column, window, "valid") for column in values.T], axis=1)
         for values in (rates, vectors)
     )
-    count = len(slopes) - 2 * most
-    if count < 100:
-        return 0
-    lags, left = range(-most, most + 1), []
+    count, left = len(slopes) - 2 * most, []
     inner = slice(most, most + count)
-    for lag in lags:
+    for lag in range(-most, most + 1):
         w = turning[most - lag : most - lag + count]
         rest = slopes[inner] + np.cross(w, mean[inner])
         across = np.cross(w[:, None, :], np.eye(3)).swapaxes(-1, -2).reshape(-1, 3)
         squares, slope = across.T @ across, across.T @ rest.ravel()
         left.append(np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope))
+    return Misfits(np.array(left), float(np.sum(slopes[inner] ** 2)), 3 * count / (2 * half))
+
+
+def lag_of(misfits: Misfits) -> int:
+    """By how many samples vectors come later than the turns; 0 where that does not show."""
+    left, middle = misfits.left, len(misfits.left) // 2
     best = int(np.argmin(left))
-    # Neighbours share their noise: so many values tell as much as if each stood for itself.
-    alone = 3 * count / (2 * half)
-    clear = left[most] > (1 + 60 / alone) * left[best]
-    clear &= left[best] < 0.6 * np.sum(slopes[inner] ** 2)
-    return lags[best] if clear else 0
+    clear = left[middle] > (1 + 60 / misfits.alone) * left[best]
+    return best - middle if clear and left[best] < 0.6 * misfits.whole else 0
 
 
 def _leaps(rates: Array, vectors: Array, step: float) -> Array:
@@ -1134,7 +1153,7 @@ def _leaps(rates: Array, vectors: Array, step: float) -> Array:
     turns = (rates[1:] + rates[:-1]) / 2
     left = np.linalg.norm(np.diff(vectors, axis=0) + step * np.cross(turns, mean), axis=1)
     usual = np.median(np.linalg.norm(vectors, axis=1))
-    return left > np.maximum(8 * np.median(left), 0.06 * usual)
+    return left > np.maximum(5 * np.median(left), 0.06 * usual)
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
@@ -1149,16 +1168,7 @@ def _by_lengths(raw: Array) -> FieldFit | None:
     )
     if after.std() / after.mean() > 0.7 * before.std() / before.mean() + 0.01:
         return None
-    sizes = np.linalg.eigvalsh(fit.shape)
-    return FieldFit(
-        fit.shape,
-        fit.offset,
-        fit.strength,
-        fit.uncertainty,
-        np.empty((0, 3)),
-        np.eye(3),
-        float(sizes[-1] / sizes[0]),
-    )
+    return fit
 
 
 def _at(time: Array, source: Array, values: Array) -> Array:

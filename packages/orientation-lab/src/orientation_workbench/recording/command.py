@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import sys
+from argparse import Namespace
 from pathlib import Path
-from typing import Protocol
 
 from .bench import examine
 from .examined import as_data
@@ -14,20 +14,7 @@ from .report import as_csv, as_html
 BAD_INPUT = 3
 
 
-class Chosen(Protocol):
-    """The options of the command."""
-
-    files: list[str | Path]
-    rate: float | None
-    columns: str
-    quick: bool
-    json: bool
-    html: Path | None
-    csv: Path | None
-    convention: str
-
-
-def run(chosen: Chosen) -> int:
+def run(chosen: Namespace) -> int:
     """Examine a recording, print the findings, and write the files that the options name."""
     shown = sys.stderr.isatty() and not chosen.quick
 

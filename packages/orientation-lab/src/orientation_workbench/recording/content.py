@@ -503,10 +503,9 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
     return f"counts, {middle:.4g} for gravity", middle, 0.0
 
 
-def unit_of_field(values: Array) -> tuple[str, float]:
-    """The unit in which vectors have the length of the Earth's field, and their length in it."""
-    middle = float(np.median(np.linalg.norm(values, axis=1)))
+def unit_of_field(length: float) -> tuple[str, float]:
+    """The unit in which vectors of this length have that of the Earth's field, and the length."""
     for unit, (low, high) in FIELD.items():
-        if low <= middle <= high:
-            return unit, middle
-    return f"a unit of its own, {middle:.4g} for the field", middle
+        if low <= length <= high:
+            return unit, length
+    return f"a unit of its own, {length:.4g} for the field", length

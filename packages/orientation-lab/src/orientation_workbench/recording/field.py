@@ -29,8 +29,6 @@ class FieldFit(NamedTuple):
         Length of the field that is left, in that unit.
     uncertainty : float
         Standard deviation of a direction that is computed with it, radians.
-    fields : array of shape ``(k, 3)``
-        The field in each run, along the axes at its beginning.
     axes : array of shape ``(3, 3)``
         The turn nearest to ``shape``.
     stretch : float
@@ -41,33 +39,11 @@ class FieldFit(NamedTuple):
     offset: Array
     strength: float
     uncertainty: float
-    fields: Array
     axes: Array
     stretch: float
 
 
-class EllipsoidFit(NamedTuple):
-    """What gives a field one length in all poses: ``shape @ (measured - offset)``.
-
-    Attributes
-    ----------
-    shape : array of shape ``(3, 3)``
-        Symmetric, of determinant 1: lengths do not tell a turn.
-    offset : array of shape ``(3,)``
-    strength : float
-        Length of the field that is left.
-    uncertainty : float
-        Standard deviation of a direction that is computed with it, radians, where it is known
-        worst.
-    """
-
-    shape: Array
-    offset: Array
-    strength: float
-    uncertainty: float
-
-
-def fit_ellipsoid(values: Array, most: float = 0.1) -> EllipsoidFit | None:
+def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
 
     First the ten coefficients of the quadric nearest to the values (in the book
@@ -81,8 +57,8 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> EllipsoidFit | None:
 
     Returns
     -------
-    EllipsoidFit or None
-        None where the poses do not suffice.
+    FieldFit or None
+        Its shape is symmetric, for lengths do not tell a turn; None where the poses do not suffice.
 
     Examples
     --------
@@ -156,7 +132,14 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> EllipsoidFit | None:
     if not uncertainty < most or stretches[0] <= 0 or stretches[-1] > 3 * stretches[0]:
         return None
     size = float(np.linalg.det(shape) ** (1 / 3))
-    return EllipsoidFit(shape / size, middle + scale * centre, float(scale / size), uncertainty)
+    return FieldFit(
+        shape / size,
+        middle + scale * centre,
+        float(scale / size),
+        uncertainty,
+        np.eye(3),
+        float(stretches[-1] / stretches[0]),
+    )
 
 
 def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) -> FieldFit | None:
@@ -229,8 +212,8 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     centre = np.linalg.solve(shape, offset) * scale
     means = np.concatenate(outer) / scale
     carried = np.einsum("bijk,jk->bi", means, shape) - np.concatenate(plain) @ offset
-    fields = np.array([carried[runs[::3] == run].mean(axis=0) for run in np.unique(runs)]) * scale
-    strength = float(np.median(np.linalg.norm(fields, axis=1)))
+    fields = [carried[runs[::3] == run].mean(axis=0) for run in np.unique(runs)]
+    strength = float(np.median(np.linalg.norm(fields, axis=1)) * scale)
     # The way in which A is known least, and the noise of a block,
     # give how far a direction can be off.
     spread_a = noise / max(sizes[-2], 1e-12) * np.sqrt(3)
@@ -251,7 +234,6 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
         centre,
         strength,
         float(uncertainty),
-        fields,
         axes,
         float(stretches[0] / stretches[-1]),
     )

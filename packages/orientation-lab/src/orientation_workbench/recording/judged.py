@@ -4,7 +4,7 @@ to see, and by itself run backwards.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -60,8 +60,6 @@ class Judgement(NamedTuple):
 
     Attributes
     ----------
-    first, last : float
-        Seconds between which it was judged.
     claimed : float
         Standard deviation of tilt that it claims, degrees.
     found : float
@@ -70,12 +68,6 @@ class Judgement(NamedTuple):
         The same two of the heading; None without a magnetometer: nothing else sees it.
     squares : dict
         Mean normalised squares of innovations, by sensor, as multiples of what they should be.
-    bounds : dict
-        Between which 95 of 100 honest ones lie.
-    autocorrelation : dict
-        Correlation of successive innovations, by sensor.
-    held_out : dict
-        Degrees (rms) by which each sensor's direction was missed by a filter that did not see it.
     times : array of shape ``(n,)``
         Seconds.
     dcms : array of shape ``(n, 3, 3)``
@@ -84,15 +76,10 @@ class Judgement(NamedTuple):
         By how much the two differ in tilt at each time, and by how much they should, degrees.
     """
 
-    first: float
-    last: float
     claimed: float
     found: float
     heading: tuple[float, float] | None
     squares: dict[str, float]
-    bounds: dict[str, Array]
-    autocorrelation: dict[str, float]
-    held_out: dict[str, float]
     times: Array
     dcms: Array
     apart: Array
@@ -292,103 +279,56 @@ def _lasting(values: Array) -> float:
     return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
-def judge(
-    inputs: Sequence[FilterInput], progress: Callable[[float], None] | None = None
-) -> list[Judgement]:
-    """Run a filter forwards, backwards and with one sensor held out, and compare.
+def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -> Judgement:
+    """Run a filter forwards and backwards, side by side, and compare.
 
     Parameters
     ----------
-    inputs : list of FilterInput
-        All with the field, or all without. Those as long as the first are run side by side, which
-        takes hardly longer than one alone.
+    given : FilterInput
     progress : callable, optional
         Called with the share that is done.
 
     Returns
     -------
-    list of Judgement
+    Judgement
     """
-    count, magnetic = len(inputs[0].time), inputs[0].field is not None
-    if any(len(one.time) != count for one in inputs):
-        return [found for one in inputs for found in judge([one], progress)]
-    runs = 2 + 2 * magnetic  # forwards, backwards; without the field, without the force
-    time, rates, forces = (
-        np.array([getattr(one, name) for one in inputs]) for name in ("time", "rates", "forces")
-    )
-    field = np.array([one.field for one in inputs]) if magnetic else None
-    noise = Noise(*np.array([one.noise for one in inputs]).T[..., None])
-    steps = np.diff(time)
+    time, forces, field, noise = given.time, given.forces, given.field, given.noise
+    count, steps = len(time), np.diff(time)
     lead = max(1, min(count // 10, round(0.5 / np.median(steps))))
     ends = slice(None, lead), slice(-lead, None)
-    starts = np.array(
-        [
-            [
-                _start(forces[k, end], field[k, end] if magnetic else None)
-                for end in (ends * 2)[:runs]
-            ]
-            for k in range(len(inputs))
-        ]
-    )
-    starts[:, 2:] = starts[:, :1]
-    doubt = np.hypot(noise.force, [one.doubt for one in inputs])
-    # Where it moves, the first look is off by some degrees of tilt, and where
-    # the field dips by more of heading.
-    outset = 0.03 + noise.field * magnetic + np.minimum(0.4, 8 * doubt[:, [0, -1, 0, 0][:runs]])
+    starts = [_start(forces[end], None if field is None else field[end]) for end in ends]
+    doubt = np.hypot(noise.force, given.doubt)
+    # Where it moves, the first look is off by some degrees of tilt, and where the field dips by
+    # more of heading.
+    magnetic = noise.field if field is not None else 0.0
+    outset = 0.03 + magnetic + np.minimum(0.4, 8 * doubt[[0, -1]])
     variances = np.stack(
         [outset**2] * 3 + [np.full_like(outset, np.radians(0.5) ** 2)] * 3, axis=-1
     )
     estimate = MultiplicativeKalmanFilter(
-        starts, variances[..., None] * np.eye(6), noise.gyroscope, noise.bias
+        np.array(starts), variances[..., None] * np.eye(6), noise.gyroscope, noise.bias
     )
-    forwards, backwards = np.arange(count), np.arange(count)[::-1]
-    order = np.stack([forwards, backwards, forwards, forwards][:runs])
-    sign = np.array([1.0, -1, 1, 1])[:runs, None]
-    blind = 1e4
-    no_force = np.array([0, 0, 0, blind])[:runs]
-    no_field = np.array([0, 0, blind, 0])[:runs]
-    dcms = np.empty((len(inputs), runs, count, 3, 3))
+    order = np.stack([np.arange(count), np.arange(count)[::-1]])
+    sign = np.array([[1.0], [-1.0]])
+    dcms = np.empty((2, count, 3, 3))
     covariances = np.empty_like(dcms)
-    said: dict[str, list[tuple[Array, Array]]] = {"accelerometer": [], "magnetometer": []}
-    up = np.broadcast_to(UP, (len(inputs), runs, 3))
-    if magnetic:
-        earth = np.array([_earth(*pair) for pair in zip(forces, field, strict=True)])
-        earth = np.broadcast_to(earth[:, None], up.shape)
+    seen: dict[str, list[tuple[Array, Array]]] = {"accelerometer": [], "magnetometer": []}
+    up = np.broadcast_to(UP, (2, 3))
+    earth = None if field is None else np.broadcast_to(_earth(forces, field), (2, 3))
     for k in range(count):
         at = order[:, k]
         if k:
             later = np.maximum(at, order[:, k - 1])  # the same step, forwards and backwards
-            estimate.turn(sign * rates[:, later], steps[:, later - 1])
-        by_force = estimate.observe(forces[:, at], up, doubt[:, at] + no_force)
-        if magnetic:
-            by_field = estimate.observe(field[:, at], earth, noise.field + no_field)
-            said["magnetometer"].append((by_field.difference[:, 0], by_field.covariance[:, 0]))
-        said["accelerometer"].append((by_force.difference[:, 0], by_force.covariance[:, 0]))
-        dcms[:, np.arange(runs), at] = estimate.dcm
-        covariances[:, np.arange(runs), at] = estimate.covariance[..., :3, :3]
+            estimate.turn(sign * given.rates[later], steps[later - 1])
+        by_force = estimate.observe(forces[at], up, doubt[at])
+        if field is not None:
+            by_field = estimate.observe(field[at], earth, noise.field)
+            seen["magnetometer"].append((by_field.difference[0], by_field.covariance[0]))
+        seen["accelerometer"].append((by_force.difference[0], by_force.covariance[0]))
+        dcms[[0, 1], at] = estimate.dcm
+        covariances[[0, 1], at] = estimate.covariance[..., :3, :3]
         if progress and k % 100 == 0:
             progress(k / count)
-    told = {
-        name: [np.array(part)[lead:] for part in zip(*each, strict=True)]
-        for name, each in said.items()
-        if each
-    }
-    return [
-        _compared(
-            one,
-            dcms[k],
-            covariances[k],
-            {name: [part[:, k] for part in each] for name, each in told.items()},
-        )
-        for k, one in enumerate(inputs)
-    ]
-
-
-def _compared(
-    given: FilterInput, dcms: Array, covariances: Array, told: Mapping[str, Sequence[Array]]
-) -> Judgement:
-    """What the runs on one input say of each other, and the innovations of the first of them."""
-    time, forces, field, count = given.time, given.forces, given.field, len(given.time)
     difference = to_rotation_vectors(dcms[0] @ dcms[1].swapaxes(-1, -2))
     claim = covariances[0] + covariances[1]
     ups = dcms[0] @ UP
@@ -402,34 +342,16 @@ def _compared(
         return float(np.degrees(np.sqrt(np.mean(values[inner]) / 2)))
 
     squares: dict[str, float] = {}
-    bounds: dict[str, Array] = {}
-    alike: dict[str, float] = {}
-    held_out: dict[str, float] = {}
-    for name, (differences, claims) in told.items():
-        normal = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])[..., 0]
-        squares[name] = float((normal**2).sum(axis=1).mean() / 2)
-        bounds[name] = chi_square_bounds(2 * len(normal))
-        alike[name] = float((normal[1:] * normal[:-1]).sum() / (normal**2).sum())
-    if field is not None:
-        for name, run, seen in (("magnetometer", 2, field), ("accelerometer", 3, forces)):
-            if run == 3:
-                expected = np.einsum("nij,j->ni", dcms[run, inner], UP)
-                measured = seen[inner] / np.linalg.norm(seen[inner], axis=1, keepdims=True)
-                off = np.linalg.norm(np.cross(measured, expected), axis=1)
-            else:
-                level = np.einsum("nji,nj->ni", dcms[run, inner], seen[inner])
-                off = np.arctan2(level[:, 1], level[:, 0])
-            held_out[name] = float(np.degrees(np.sqrt((off**2).mean())))
+    for name, pairs in seen.items():
+        if pairs:
+            differences, claims = (np.array(part)[lead:] for part in zip(*pairs, strict=True))
+            normal = np.linalg.solve(np.linalg.cholesky(claims), differences[..., None])
+            squares[name] = float((normal**2).sum(axis=(1, 2)).mean() / 2)
     return Judgement(
-        float(time[0]),
-        float(time[-1]),
         rms(claimed_tilt),
         rms((tilt**2).sum(axis=1)),
         (rms(claimed_around), rms(around**2)) if field is not None else None,
         squares,
-        bounds,
-        alike,
-        held_out,
         time,
         dcms[0],
         np.degrees(np.linalg.norm(tilt, axis=1)),

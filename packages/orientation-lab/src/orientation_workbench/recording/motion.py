@@ -108,16 +108,12 @@ class Stretch(NamedTuple):
         Whether what the gyroscope says is white: else something alive holds it.
     deviation : float
         Of the angular velocity, root mean square over the axes, radians per second.
-    autocorrelation : float
-        Root mean square of the correlations of neighbours, one to five samples apart, less what
-        chance gives.
     """
 
     first: int
     last: int
     still: bool
     deviation: float
-    autocorrelation: float
 
 
 #: Radians per second: a hand trembles more than that, and an instrument that is held
@@ -161,10 +157,15 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
     if not calm.any():
         return []
-    usual = np.median(blocks.mean(axis=1)[calm], axis=0)
-    calm &= np.linalg.norm(blocks.mean(axis=1) - usual, axis=1) < np.maximum(
-        3 * spread, np.radians(1.0)
-    )
+    # A bias may drift: calm blocks are compared with those within ten seconds, and less closely
+    # with all.
+    means, places = blocks.mean(axis=1), np.flatnonzero(calm)
+    near = round(10 / seconds)
+    for k in places:
+        others = means[places[np.abs(places - k) <= near]]
+        usual = max(3 * spread[k], np.radians(1.0))
+        calm[k] &= np.linalg.norm(means[k] - np.median(others, axis=0)) < usual
+        calm[k] &= np.linalg.norm(means[k] - np.median(means[places], axis=0)) < QUIET
     found, first = [], None
     for k in range(count + 1):
         inside = k < count and calm[k]
@@ -180,16 +181,8 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     for first, last in found:
         part = rates[first * size : last * size]
         deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
-        alike = autocorrelation(part)
-        result.append(
-            Stretch(
-                first * size,
-                last * size,
-                bool(alike < 0.2 or deviation < TREMBLE),
-                deviation,
-                alike,
-            )
-        )
+        lies = bool(likeness(part) < 0.2 or deviation < TREMBLE)
+        result.append(Stretch(first * size, last * size, lies, deviation))
     return result
 
 
@@ -314,10 +307,39 @@ def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
     return np.stack(found, axis=-3)
 
 
-def fit_scale(
+class ScaleFit(NamedTuple):
+    """Scales and bias of a gyroscope: the true angular velocity is ``scales * (rates - bias)``.
+
+    Attributes
+    ----------
+    scales, spreads : arrays of shape ``(3,)``
+        Of each axis, and their standard deviations.
+    bias, bias_spreads : arrays of shape ``(3,)``
+        Radians per second; zeros as its deviations where it was known.
+    left : float
+        By how much gravity is missed, radians.
+    left_alike : float
+        The same with one scale for all axes.
+    """
+
+    scales: Array
+    spreads: Array
+    bias: Array
+    bias_spreads: Array
+    left: float
+    left_alike: float
+
+    @property
+    def common(self) -> tuple[float, float]:
+        """One scale for all axes, and its standard deviation."""
+        weights = 1 / self.spreads**2
+        return float(self.scales @ weights / weights.sum()), float(weights.sum() ** -0.5)
+
+
+def fit_scales(
     time: Array, rates: Array, forces: Array, poses: Sequence[Stretch], bias: Array | None = None
-) -> tuple[float, float, Array, Array, float] | None:
-    """Scale and bias of a gyroscope: turns must carry gravity from one pose to the next.
+) -> ScaleFit | None:
+    """Scales and bias of a gyroscope: turns must carry gravity from one pose to the next.
 
     Parameters
     ----------
@@ -330,90 +352,53 @@ def fit_scale(
 
     Returns
     -------
-    scale, its standard deviation, bias of shape ``(3,)``, its standard deviations, and what is left
-        The last in radians. The true angular velocity is ``scale * (rates - bias)``. ``None`` if
-        the poses do not suffice.
+    ScaleFit or None
+        None if the poses do not suffice.
     """
-    ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
-    ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
     if len(poses) < 3:
         return None
-    moves = np.linalg.norm(np.cross(ups[1:], ups[:-1]), axis=1)
-    if (moves > 0.2).sum() < 2:
+    ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
+    ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
+    if (np.linalg.norm(np.cross(ups[1:], ups[:-1]), axis=1) > 0.2).sum() < 2:
         return None
-    known = bias is not None
-    middle = np.zeros(3) if bias is None else np.asarray(bias)
+    free = 3 if bias is not None else 6
 
     def residuals(parameters: Array) -> Array:
-        """By how much gravity is missed with scales and biases of shape ``(..., 4)``."""
-        biases = middle if known else parameters[..., None, 1:]
-        found = carried(time, parameters[..., :1, None] * (rates - biases), poses)
-        off = ups[1:] - (found @ ups[:-1, :, None])[..., 0]
+        """By how much gravity is missed with scales and biases of shape ``(..., 6)``."""
+        scales, biases = parameters[..., None, :3], parameters[..., None, 3:]
+        off = (
+            ups[1:] - (carried(time, scales * (rates - biases), poses) @ ups[:-1, :, None])[..., 0]
+        )
         return off.reshape(*off.shape[:-2], -1)
 
     # Several turns have many scales that nearly fit: the best one of a grid is refined.
-    grid = np.geomspace(0.4, 2.5, 47)
-    tried = np.column_stack([grid, np.tile(middle, (len(grid), 1))])
-    parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
-    free = 1 if known else 4
-    # A bias is some degrees per second at most.
-    prior = np.array([1e3, *[np.radians(1.0)] * 3])[:free]
-    for _ in range(12):
-        at, *moved = residuals(parameters + 1e-5 * np.eye(5, 4, -1)[: 1 + free])
+    grid = np.repeat(np.geomspace(0.4, 2.5, 47)[:, None], 3, axis=1)
+    tried = np.column_stack([grid, np.tile(np.zeros(3) if bias is None else bias, (47, 1))])
+    start = parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
+    # Scales of one part are much alike, and a bias is some degrees per second at most.
+    prior = np.diag(np.repeat([0.3 * start[0], np.radians(1.0)], 3)[:free] ** -2.0)
+    for _ in range(8):
+        at, *moved = residuals(parameters + 1e-5 * np.eye(7, 6, -1)[: 1 + free])
         slopes = (np.array(moved) - at).T / 1e-5
         noise = max(np.sqrt(np.median(at**2)) * 1.5, 0.003)
         weights = 1 / np.maximum(noise, np.abs(at)) / noise  # a wild transition counts less
-        information = (slopes * weights[:, None]).T @ slopes + np.diag(prior**-2.0)
-        pull = (slopes * weights[:, None]).T @ -at
-        if not known:
-            pull -= prior**-2.0 * np.concatenate([[0.0], parameters[1:] - middle])
-        change = np.linalg.solve(information, pull)
-        parameters[:free] += change
-        if np.abs(change).max() < 1e-8:
+        information = (slopes * weights[:, None]).T @ slopes + prior
+        pull = (slopes * weights[:, None]).T @ -at - prior @ (parameters - start)[:free]
+        change = np.pad(np.linalg.solve(information, pull), (0, 6 - free))
+        parameters = parameters + change
+        if np.abs(change).max() < 1e-6:
             break
     freedom = max(1.0, len(at) * 2 / 3 - free)
-    spread = np.sqrt(
-        np.diag(np.linalg.inv(information)) * max(1.0, (at**2 * weights).sum() / freedom)
-    )
-    wide = np.concatenate([spread, np.zeros(4 - free)])
-    return (
-        float(parameters[0]),
-        float(wide[0]),
-        parameters[1:],
-        wide[1:],
-        float(np.sqrt((at**2).mean() * 3)),
-    )
+    excess = max(1.0, (at**2 * weights).sum() / freedom)
+    spreads = np.pad(np.sqrt(np.diag(np.linalg.inv(information)) * excess), (0, 6 - free))
+    fit = ScaleFit(parameters[:3], spreads[:3], parameters[3:], spreads[3:], _rms(at), 0.0)
+    alike = residuals(np.concatenate([np.repeat(np.median(fit.scales), 3), fit.bias]))
+    return fit._replace(left_alike=_rms(alike))
 
 
-def fit_one_scale(
-    time: Array, rates: Array, forces: Array, poses: Sequence[Stretch]
-) -> tuple[int, float, float]:
-    """The axis of a gyroscope that, multiplied by a number of its own, carries gravity best.
-
-    Parameters
-    ----------
-    time : array of shape ``(n,)``
-    rates, forces : arrays of shape ``(n, 3)``
-        Along the same axes, rates in radians per second, without their bias.
-    poses : list of Stretch
-
-    Returns
-    -------
-    axis, the number, and what is left in radians
-    """
-    ups = np.array([forces[pose.first : pose.last].mean(axis=0) for pose in poses])
-    ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
-    best = (0, 1.0, np.inf)
-    for axis in range(3):
-        middle, width = 1.0, 0.3
-        for _ in range(4):
-            grid = middle + width * np.linspace(-1, 1, 9)
-            factors = np.where(np.arange(3) == axis, grid[:, None], 1.0)
-            ends = (carried(time, factors[:, None] * rates, poses) @ ups[:-1, :, None])[..., 0]
-            left = np.sqrt(((ups[1:] - ends) ** 2).sum(axis=-1).mean(axis=-1))
-            middle, width = grid[left.argmin()], width / 4
-            best = min(best, (axis, float(middle), float(left.min())), key=lambda one: one[2])
-    return best
+def _rms(off: Array) -> float:
+    """Root mean square length of vectors whose components stand in one row."""
+    return float(np.sqrt((off**2).mean() * 3))
 
 
 # --- the convention of an orientation -------------------------------------------------------------
