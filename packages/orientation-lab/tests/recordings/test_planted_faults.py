@@ -12,6 +12,7 @@ from simulated_faults import KINDS, simulate
 
 from orientation_workbench.recording import examine
 from orientation_workbench.recording.examined import RED, YELLOW
+from orientation_workbench.recording.report import as_code
 
 #: What an answer about the fault is called, and words that must stand in it; in braces what was
 #: planted.
@@ -47,7 +48,9 @@ ALSO = {"magnetometer soft iron": "offset of the magnetometer"}
 def judged(kind, seed, with_filter=False):
     """Return whether the fault was named, and what else was advised or, if honest, lit."""
     text, planted = simulate(kind, seed)
-    verdicts = examine(text, "recording", judged=with_filter).verdicts
+    examined = examine(text, "recording", judged=with_filter)
+    assert as_code(examined)  # also where no correction is known
+    verdicts = examined.verdicts
     about, words = NAMED.get(kind, ("", "$."))
     named = any(
         verdict.about == about
