@@ -348,12 +348,16 @@ class _Bench:
         differ, and find its scale and bias.
         """
         fit, field, plain = fits.get("accelerometer"), fits.get("magnetometer"), np.eye(3)
-        best, words = None, "those of the accelerometer"
+        best, whose, words = None, "accelerometer", "those of the accelerometer"
+        # On a foot pushes drown gravity, which then excludes nothing.
+        if fit is not None and field is not None and fit.shares.min() > 0.8:
+            fit, whose = field, "magnetometer"
+            words = "those of the magnetometer; pushes hide gravity from the accelerometer"
         near = np.flatnonzero(fit.shares <= BELIEVED * fit.shares.min()) if fit is not None else []
         if fit is not None and fit.margin > BELIEVED:
             best = fit.best
             if not np.allclose(best, plain) and field is not None and field.margin > BELIEVED:
-                if np.allclose(field.best, plain):
+                if np.allclose(field.best, plain) and fit is not field:
                     self._odd_accelerometer(best)
                     best = plain
         elif field is not None and field.margin > BELIEVED and field.shares.argmin() in near:
@@ -367,7 +371,7 @@ class _Bench:
                 self.say(
                     "axes of the gyroscope",
                     RED,
-                    f"along the accelerometer's axes it measures {written(best)}{mirrored}",
+                    f"along the {whose}'s axes it measures {written(best)}{mirrored}",
                     {},
                     f"Use ({written(best)}) of the gyroscope as its x, y, z.",
                 )
@@ -1160,7 +1164,7 @@ def _leaps(rates: Array, vectors: Array, step: float) -> Array:
     turns = (rates[1:] + rates[:-1]) / 2
     left = np.linalg.norm(np.diff(vectors, axis=0) + step * np.cross(turns, mean), axis=1)
     usual = np.median(np.linalg.norm(vectors, axis=1))
-    return left > np.maximum(5 * np.median(left), 0.06 * usual)
+    return left > np.maximum(8 * np.median(left), 0.06 * usual)
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
