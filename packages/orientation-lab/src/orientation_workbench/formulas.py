@@ -166,52 +166,6 @@ FUNCTIONS = SimpleNamespace(
 )
 
 
-def derivative(value, by):
-    """The derivative of a value by a variable, by the rules of the operations."""
-    known = {}
-
-    def of(value):
-        if not isinstance(value, Value):
-            return 0
-        if value not in known:
-            known[value] = rule(value.operation, value, *value.parts)
-        return known[value]
-
-    def rule(operation, value, *parts):
-        match operation:
-            case "variable":
-                return int(value is by)
-            case "+":
-                return added(of(parts[0]), of(parts[1]))
-            case "-":
-                return added(of(parts[0]), negative(of(parts[1])))
-            case "*":
-                return added(multiplied(of(parts[0]), parts[1]), multiplied(parts[0], of(parts[1])))
-            case "/":
-                along, across = of(parts[0]), of(parts[1])
-                return divided(added(along, negative(multiplied(value, across))), parts[1])
-            case "negative":
-                return negative(of(parts[0]))
-            case "sin":
-                return multiplied(FUNCTIONS.cos(parts[0]), of(parts[0]))
-            case "cos":
-                return multiplied(-FUNCTIONS.sin(parts[0]), of(parts[0]))
-            case "sqrt":
-                return divided(of(parts[0]), 2 * value)
-            case "abs":
-                change = of(parts[0])
-                return _where(parts[0] < 0, negative(change), change)
-            case "atan2":
-                sine, cosine = parts
-                change = added(multiplied(cosine, of(sine)), negative(multiplied(sine, of(cosine))))
-                return divided(change, sine * sine + cosine * cosine)
-            case "where":
-                return _where(parts[0], of(parts[1]), of(parts[2]))
-        raise TypeError(f"there is no rule for the derivative of {operation}")
-
-    return of(value)
-
-
 def applied(formula, *components):
     """The results of a formula ``formula(f, *components)`` that are recorded."""
     return list(formula(FUNCTIONS, *components))

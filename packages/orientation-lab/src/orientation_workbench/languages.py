@@ -7,7 +7,6 @@ is written down. No formula stands here a second time.
 import math
 from dataclasses import dataclass, field
 
-from . import formulas
 from .formulas import CHOICES, FORMULAS, LISTS, SIZES, Value, formula_of, variable
 
 #: How numbers come and go, the book's own convention first.
@@ -195,8 +194,6 @@ def formula_in(
     language: str,
     name: str,
     choice: str | None = None,
-    *,
-    derivative: bool = False,
     **convention: str,
 ) -> str:
     """A formula of the module as a function in another language.
@@ -210,8 +207,6 @@ def formula_in(
         ``orientation``.
     choice : str, optional
         The sequence of Euler angles, or the axis, where the function takes one.
-    derivative : bool
-        Give the derivatives of the results by the numbers of the first argument, result by result.
     **convention
         ``matrix='transposed'``, ``scalar='last'``, ``unit='degrees'`` where the numbers are to come
         and go so; the book's own convention is the default.
@@ -252,21 +247,15 @@ def formula_in(
         declarations.append(
             (how.several if kind in LISTS else how.single).format(name=argument, count=count)
         )
-        if argument == next(iter(takes)):
-            first = [variable(text) for text in texts]
     results = formula_of(name, components, choice)
     if gives in ("angle", "angles"):
         results = [entry / degree for entry in results]
     results = _in_convention(gives, results, convention)
-    if derivative:
-        results = [formulas.derivative(result, by) for result in results for by in first]
     lines, values = written(how, results, names)
     alone = len(values) == 1
     for k, value in enumerate(values):
         lines.append((how.alone if alone else how.result).format(index=k + how.start, value=value))
-    function = "_".join(
-        [name, *([choice] if choice else []), *(["derivative"] if derivative else [])]
-    )
+    function = f"{name}_{choice}" if choice else name
     frame = how.frame_alone if alone else how.frame
     return frame.format(
         function=function,

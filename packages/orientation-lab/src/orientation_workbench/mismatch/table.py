@@ -331,8 +331,7 @@ def _axes_of(second, first):
 def expected_relation(first, second, kinds):
     """What two programs differ by as their manuals have it.
 
-    A relation, as inverse and the axes of both sides, and whether the second
-    program's rows are the world's axes.
+    A relation, as inverse and the axes of both sides.
 
     Parameters
     ----------
@@ -343,19 +342,19 @@ def expected_relation(first, second, kinds):
         What the numbers of each side are.
     """
     if not (first and second):
-        return False, SAME_AXES, SAME_AXES, False
+        return False, SAME_AXES, SAME_AXES
     axes = _axes_of(second["body"], first["body"]), _axes_of(second["world"], first["world"])
     turned = [kind in side["inverse"] for kind, side in zip(kinds, (first, second))]
     # The second program's matrix is the transpose of what is meant:
     # then world and body change places.
-    return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes), turned[1]
+    return turned[0] != turned[1], *(axes[::-1] if turned[1] else axes)
 
 
 def beyond(relation, expected):
     """A relation that departs from the expected one as ``relation``
     departs from none; its words are kept.
     """
-    inverse, body, world, rows_are_the_worlds = expected
+    inverse, body, world = expected
     if relation["inverse"]:
         body, world = world, body
     return relation | {

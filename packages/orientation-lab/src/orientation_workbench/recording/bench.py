@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -884,14 +884,14 @@ class _Bench:
             return
         if "magnetometer" not in seen:
             return
-        lag = lag_of(misfits(self.rates, seen["magnetometer"], step))
+        lag, _ = lag_of(self.rates, seen["magnetometer"], step)
         if abs(lag) < max(2, round(0.03 / step)):
             return
         # A push that comes with each turn looks like a delay of the accelerometer, which therefore
         # only says which of the two others is late.
         kind = "magnetometer"
         if "accelerometer" in seen:
-            by_lag = misfits(self.rates, seen["accelerometer"], step).left
+            _, by_lag = lag_of(self.rates, seen["accelerometer"], step)
             if by_lag[len(by_lag) // 2 + lag] < by_lag[len(by_lag) // 2]:
                 kind, lag = "gyroscope", -lag
         others = "others" if len(seen) > 1 or kind == "gyroscope" else "gyroscope"
@@ -1107,28 +1107,15 @@ class _Bench:
         )
 
 
-class Misfits(NamedTuple):
-    """How well vectors follow the turns, for each number of samples that they may come later.
-
-    Attributes
-    ----------
-    left : array of shape ``(2 * most + 1,)``
-        Sums of squares, from ``most`` samples early to ``most`` late.
-    whole : float
-        The same sum with nothing explained.
-    alone : float
-        How many values tell as much as all of them, whose neighbours share their noise.
-    """
-
-    left: Array
-    whole: float
-    alone: float
-
-
-def misfits(rates: Array, vectors: Array, step: float) -> Misfits:
-    """Try delays of vectors that stand still in the world, up to 0.4 seconds.
+def lag_of(rates: Array, vectors: Array, step: float) -> tuple[int, Array]:
+    """By how many samples vectors that stand still in the world come later than the turns.
 
     With a constant ``c`` that belongs to the instrument, ``dm/dt = -w x (m - c)``.
+
+    Returns
+    -------
+    lag, and sums of squares of shape ``(2 * most + 1,)``
+        0 where no delay shows; what is left by each delay, from 0.4 seconds early to as much late.
     """
     half, most = max(1, round(0.04 / step)), round(0.4 / step)
     slopes = (vectors[2 * half :] - vectors[: -2 * half]) / (2 * half * step)
@@ -1137,23 +1124,20 @@ def misfits(rates: Array, vectors: Array, step: float) -> Misfits:
         np.stack([np.convolve(column, window, "valid") for column in values.T], axis=1)
         for values in (rates, vectors)
     )
-    count, left = len(slopes) - 2 * most, []
+    count, left = len(slopes) - 2 * most, np.empty(2 * most + 1)
     inner = slice(most, most + count)
-    for lag in range(-most, most + 1):
-        w = turning[most - lag : most - lag + count]
+    for k in range(2 * most + 1):
+        w = turning[2 * most - k : 2 * most - k + count]
         rest = slopes[inner] + np.cross(w, mean[inner])
         across = np.cross(w[:, None, :], np.eye(3)).swapaxes(-1, -2).reshape(-1, 3)
         squares, slope = across.T @ across, across.T @ rest.ravel()
-        left.append(np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope))
-    return Misfits(np.array(left), float(np.sum(slopes[inner] ** 2)), 3 * count / (2 * half))
-
-
-def lag_of(misfits: Misfits) -> int:
-    """By how many samples vectors come later than the turns; 0 where that does not show."""
-    left, middle = misfits.left, len(misfits.left) // 2
-    best = int(np.argmin(left))
-    clear = left[middle] > (1 + 60 / misfits.alone) * left[best]
-    return best - middle if clear and left[best] < 0.6 * misfits.whole else 0
+        left[k] = np.sum(rest**2) - slope @ np.linalg.solve(squares + 1e-9 * np.eye(3), slope)
+    best = int(left.argmin())
+    # Neighbours share their noise: so many values tell as much as if each stood for itself.
+    alone = 3 * count / (2 * half)
+    clear = left[most] > (1 + 60 / alone) * left[best]
+    clear &= left[best] < 0.6 * np.sum(slopes[inner] ** 2)
+    return best - most if clear else 0, left
 
 
 def _leaps(rates: Array, vectors: Array, step: float) -> Array:

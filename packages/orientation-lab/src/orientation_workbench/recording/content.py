@@ -258,7 +258,7 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             return k, time, f"{column} with {table.columns[rest[0]]}, in s", False
     for k, column in enumerate(table.columns):
         values = table.values[:, k]
-        if np.isnan(values).any() or len(values) < 3:
+        if np.isnan(values).any() or len(values) < 3 or _called(column.lower()) in PLAYED:
             continue
         steps = np.diff(values)
         middle = np.median(steps)

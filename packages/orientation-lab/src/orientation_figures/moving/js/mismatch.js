@@ -12,22 +12,23 @@ const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
 // ---- what is pasted ------------------------------------------------------------------------------------
 
-// The patterns of orientation_workbench.mismatch.spelling, made ready once for each table.
-const READY = new WeakMap();
-function spellingOf(table) {
-  if (!READY.has(table)) {
-    const said = table.spelling, made = (pattern, flags = 'gim') => new RegExp(pattern, flags);
-    const pairs = (entries) => entries.map(([pattern, replacement]) => [made(pattern), replacement]);
-    READY.set(table, { ...Object.fromEntries(Object.entries(said).filter(([, pattern]) => typeof pattern === 'string')
-      .map(([name, pattern]) => [name, made(pattern)])), cleaning: pairs(said.cleaning), signs: pairs(said['signs of a sum']),
-    whole: said['cut out'].map(([pattern, words]) => [made(pattern, 'im'), words]), orders: said['orders of angles'].map(([pattern, more]) => [made(pattern, 'im'), more]),
-    parts: said['orders of parts'].map(([pattern, more]) => [made(pattern, 'im'), more]), value: made(said['not turns'] + said.value),
-    names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
-      [{ x: 0, y: 1, z: 2 }, {}]] });
-  }
-  return READY.get(table);
-}
+// What is made of a table, made once for each.
+const onceFor = (make) => {
+  const made = new WeakMap();
+  return (table) => made.get(table) ?? made.set(table, make(table)).get(table);
+};
+
 const PLACE_OF_ANGLE = { yaw: 0, heading: 0, psi: 0, pitch: 1, theta: 1, roll: 2, bank: 2, phi: 2 };
+// The patterns of orientation_workbench.mismatch.spelling.
+const spellingOf = onceFor(({ spelling: said }) => {
+  const made = (pattern, flags = 'gim') => new RegExp(pattern, flags);
+  const pairs = (entries, flags) => entries.map(([pattern, more]) => [made(pattern, flags), more]);
+  return { ...Object.fromEntries(Object.entries(said).filter(([, pattern]) => typeof pattern === 'string').map(([name, pattern]) => [name, made(pattern)])),
+    cleaning: pairs(said.cleaning), signs: pairs(said['signs of a sum']), whole: pairs(said['cut out'], 'im'), orders: pairs(said['orders of angles'], 'im'),
+    parts: pairs(said['orders of parts'], 'im'), value: made(said['not turns'] + said.value),
+    names: [[{ w: 0, x: 1, y: 2, z: 3 }, { order: 'wxyz' }], [PLACE_OF_ANGLE, said['yaw pitch roll']], [{ y: 0, p: 1, r: 2 }, said['yaw pitch roll']],
+      [{ x: 0, y: 1, z: 2 }, {}]] };
+});
 // Whether there is a match; the pattern is a global one.
 const has = (pattern, text) => text.search(pattern) >= 0;
 const firstOf = (pattern, text) => text.match(pattern)?.[0].trim();
@@ -332,7 +333,7 @@ function axesChoice(names, body, table) {
 
 // What two programs differ by as their manuals have it: as expected_relation of the table in Python.
 function expectedRelation(programs, kinds, table) {
-  if (!programs[0] || !programs[1]) return { inverse: false, body: SAME_AXES, world: SAME_AXES, rowsAreTheWorlds: false };
+  if (!programs[0] || !programs[1]) return { inverse: false, body: SAME_AXES, world: SAME_AXES };
   const axes = ['body', 'world'].map((what) => {
     const [one, other] = programs.map((program) => program[what]);
     if (!one || !other) return SAME_AXES;
@@ -340,7 +341,7 @@ function expectedRelation(programs, kinds, table) {
   });
   const turned = programs.map((program, k) => program.inverse.includes(kinds[k]));
   if (turned[1]) axes.reverse();
-  return { inverse: turned[0] !== turned[1], body: axes[0], world: axes[1], rowsAreTheWorlds: turned[1] };
+  return { inverse: turned[0] !== turned[1], body: axes[0], world: axes[1] };
 }
 
 // The axes that come of renaming twice: first as others says, then as names does.
@@ -473,22 +474,22 @@ function gapOf(relation, first, second) {
   return gap;
 }
 
-// The relations as they depart from what is expected, and those of up to so many faults: kept, for they are thousands.
-const KEPT = new WeakMap();
+// The relations of two sides as they depart from what is expected, and those of up to so many faults: kept, for they are
+// thousands.
+const KEPT = onceFor(() => new Map());
 function expectedRelations(mirrored, expected, table) {
-  if (!KEPT.has(table)) KEPT.set(table, new Map());
-  const kept = KEPT.get(table), key = JSON.stringify([mirrored, expected]);
+  const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
+  const kept = KEPT(table), key = JSON.stringify([mirrored, expected]);
   if (!kept.has(key)) {
-    const relations = relationsOf(mirrored, table).map((relation) => beyond(relation, expected));
+    const relations = relationsOf(mirrored !== aside, table).map((relation) => beyond(relation, expected));
     kept.set(key, { relations, exactly: [0, 1, 2, 3].map((count) => relations.filter(({ faults }) => faults === count)) });
   }
   return kept.get(key);
 }
+const isMirrored = (first, second) => (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
 
 function chainsOf(first, second, noise, table, expected, special) {
-  const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
-  const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
-  const { exactly } = expectedRelations(mirrored !== aside, expected, table);
+  const mirrored = isMirrored(first, second), { exactly } = expectedRelations(mirrored, expected, table);
   const fits = [], tried = [0, 0, 0, 0], pairs = [[], [], [], []], most = table['most faults'];
   for (const one of first) {
     one.turned = [];   // made as they are needed: those of few faults come first
@@ -546,19 +547,15 @@ function afterInside([what, read, built, places], given) {
 }
 
 // Those that are no mere renaming of axes, and the known ones that are.
-const DISTINCT = new WeakMap();
-function distinctOf(table) {
-  if (!DISTINCT.has(table)) {
-    const key = (dcm) => dcm.flat().map((entry) => Math.round(entry * 1e6) + 0).join(), [dcm] = SAMPLES;
-    const plain = { inverse: false, body: SAME_AXES, world: SAME_AXES, rowsAreTheWorlds: false };
-    const renamed = new Set(expectedRelations(false, plain, table).relations.map((relation) => key(related(relation, dcm))));
-    DISTINCT.set(table, INNER.filter(({ inside, inside: [what, read, built, places] }) => {
-      const made = key(afterInside(inside, dcm));
-      return made !== key(dcm) && (what === 'quaternion' || (places === '321' && built === [...read].reverse().join('')) || !renamed.has(made));
-    }));
-  }
-  return DISTINCT.get(table);
-}
+const distinctOf = onceFor((table) => {
+  const key = (dcm) => dcm.flat().map((entry) => Math.round(entry * 1e6) + 0).join(), [dcm] = SAMPLES;
+  const plain = { inverse: false, body: SAME_AXES, world: SAME_AXES };
+  const renamed = new Set(expectedRelations(false, plain, table).relations.map((relation) => key(related(relation, dcm))));
+  return INNER.filter(({ inside, inside: [what, read, built, places] }) => {
+    const made = key(afterInside(inside, dcm));
+    return made !== key(dcm) && (what === 'quaternion' || (places === '321' && built === [...read].reverse().join('')) || !renamed.has(made));
+  });
+});
 
 function insideOf(first, second, noise, table, fits, tried, most) {
   const plain = { body: SAME_AXES, world: SAME_AXES, hand: false, left: IDENTITY, right: IDENTITY };
@@ -586,9 +583,7 @@ function insideOf(first, second, noise, table, fits, tried, most) {
 
 // The cheapest chain for each order, scalar first or last, of the quaternions in the best one.
 function withOrders(best, first, second, noise, table, expected) {
-  const mirrored = (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
-  const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
-  const { relations } = expectedRelations(mirrored !== aside, expected, table);
+  const { relations } = expectedRelations(isMirrored(first, second), expected, table);
   const usual = (side, reading) => side.filter((one) => one.reading === reading || (reading.kind === 'quaternion' && one.reading.choices.order in ORDERS));
   return usual(first, best.first).flatMap((one) => usual(second, best.second).flatMap((other) => {
     const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise, both = ofBoth(one.reading, other.reading);
