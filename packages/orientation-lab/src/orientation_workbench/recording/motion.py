@@ -181,7 +181,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     for first, last in found:
         part = rates[first * size : last * size]
         deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
-        lies = bool(likeness(part) < 0.2 or deviation < TREMBLE)
+        lies = bool(autocorrelation(part) < 0.2 or deviation < TREMBLE)
         result.append(Stretch(first * size, last * size, lies, deviation))
     return result
 
@@ -482,10 +482,8 @@ def readings(
             forth, back = dcms[1:], dcms[:-1].swapaxes(-1, -2)
             turn = forth.swapaxes(-1, -2) @ dcms[:-1] if conjugate else forth @ back
             turn = to_rotation_vectors(turn)[use]
-            likeness_of_axes = turn.T @ measured[use]
-            squares = (
-                (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, likeness_of_axes)
-            )
+            products = turn.T @ measured[use]
+            squares = (turn**2).sum() + whole - 2 * np.einsum("kij,ij->k", ASSIGNMENTS, products)
             found += [
                 Reading(float(np.sqrt(max(0.0, square) / whole)), name, conjugate, mounting)
                 for square, mounting in zip(squares, ASSIGNMENTS, strict=True)
