@@ -2,6 +2,7 @@
 
 import pytest
 from engines import ENGINES, Chromium
+from places import PATIENCE
 from playwright.sync_api import expect
 
 CELL = "chapters/simple-orientations.html"
@@ -31,8 +32,9 @@ def test_every_character_stands_in_a_cell_as_it_was_typed(engine, site, address)
     engine.go(site + address)
     engine.wait(SETTLED)
     engine.click(*engine.run(MIDDLE, 1))
-    engine.wait("() => document.activeElement.matches('.cm-content')")
+    # Nobody waits for an editor to come.
     engine.type(WRITTEN)
+    engine.wait("() => document.activeElement.matches('.cm-content')")
     assert WRITTEN in engine.run(CODE)
 
 
@@ -49,6 +51,24 @@ def write_in_a_cell(page, site):
     page.mouse.click(*page.evaluate(MIDDLE, 1))
     expect(page.locator(".cm-editor.cm-focused")).to_be_visible()
     page.keyboard.press("Control+a")
+
+
+def test_what_is_typed_before_the_editor_has_come_goes_into_it(page, site):
+    def late(route):
+        page.wait_for_timeout(1500)
+        route.continue_()
+
+    page.route("**/live.js", late)
+    page.goto(site + CELL)
+    page.wait_for_function(SETTLED)
+    page.mouse.click(*page.evaluate(MIDDLE, 1))
+    assert not page.locator(".cm-editor").count()
+    page.keyboard.press("Control+a")
+    page.keyboard.type("x = 'a/b'\nx * 2")
+    page.keyboard.press("Shift+Enter")
+    cell = page.locator("div.cell", has_text="x * 2")
+    expect(cell.locator(".cm-content")).to_have_text("x = 'a/b'x * 2")
+    expect(cell.locator(".cell_output")).to_contain_text("a/ba/b", timeout=PATIENCE)
 
 
 def test_another_layout_a_dead_key_and_an_input_method(page, site):

@@ -22,6 +22,7 @@ class Page {
     this.cells = boxes.map((box, index) => new Cell(box, index + 1, data.cells[index] ?? {}, this));
     const ids = nameCells(this.cells.map(({ kind, original }) => ({ name: kind.name, original })));
     this.cells.forEach((cell, index) => (cell.id = ids[index]));
+    for (const cell of this.cells) if (cell.box.matches(".tag_takes-file")) this.askForFiles(cell);
     this.queue = [];
     this.buttons = bar.buttons({
       "Run the page": () => this.run(),
@@ -38,12 +39,19 @@ class Page {
     this.askWho();
   }
 
-  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end.
-  write(cell, point) {
+  // Somebody goes to the code of a cell: the cursor stands where they pointed, or at the end. ``keys`` were pressed
+  // before there was an editor.
+  write(cell, point, keys) {
     cell.edit();
     const { editor } = cell;
     editor.focus();
     editor.dispatch({ selection: { anchor: point ? editor.posAtCoords(point, false) : editor.state.doc.length } });
+    for (const { key, altKey, ctrlKey, metaKey, shiftKey } of keys) {
+      const command = (ctrlKey || metaKey) && !altKey;
+      if (key === "Enter" && (shiftKey || command)) this.run(cell);
+      else if (command) editor.dispatch({ selection: { anchor: 0, head: editor.state.doc.length } });
+      else editor.dispatch(editor.state.replaceSelection(key === "Enter" ? "\n" : key));
+    }
   }
 
   // Where a page's questions have variants, it asks once who works here; all pages, and Python, know it then.
@@ -264,8 +272,23 @@ class Page {
     if (!this.busy) this.work();
   }
 
-  // Files of the reader's, for a cell that takes some.
+  // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
+  askForFiles(cell) {
+    const { box } = cell;
+    const field = Object.assign(element("input"), { type: "file", multiple: true });
+    box.prepend(element("label", "takes-file", "Choose a file, or drop it here. It stays in this page: ", field));
+    field.addEventListener("change", () => this.give(cell, [...field.files]));
+    box.addEventListener("dragover", (event) => (event.preventDefault(), box.classList.add("taking")));
+    box.addEventListener("dragleave", () => box.classList.remove("taking"));
+    box.addEventListener("drop", (event) => {
+      event.preventDefault();
+      box.classList.remove("taking");
+      this.give(cell, [...event.dataTransfer.files]);
+    });
+  }
+
   async give(cell, files) {
+    if (!files.length) return;
     this.files = await Promise.all(files.map(async (file) => [file.name, new Uint8Array(await file.arrayBuffer())]));
     if (this.has) this.python?.put(this.files);
     cell.ran = false;

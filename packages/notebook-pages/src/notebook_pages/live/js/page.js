@@ -141,7 +141,20 @@
   });
   // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
   // Python waits for the first run.
-  const write = (number, point) => !apart && open().then((opened) => opened.write(opened.cells[number], point), tools.explain);
+  // What is typed until then goes into it.
+  const write = (number, point) => {
+    if (apart) return;
+    const keys = [];
+    const hold = (event) => {
+      const command = (event.ctrlKey || event.metaKey) && !event.altKey;
+      if (event.key[1] ? event.key !== "Enter" : command && event.key !== "a") return;
+      keys.push(event);
+      event.preventDefault();
+    };
+    addEventListener("keydown", hold, true);
+    open().then((opened) => opened.write(opened.cells[number], point, keys)).catch(tools.explain)
+      .finally(() => removeEventListener("keydown", hold, true));
+  };
   boxes.forEach((box, number) => {
     const code = box.querySelector(".cell_input > div");
     code.tabIndex = 0;
@@ -154,35 +167,8 @@
     });
   });
   const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
-  if (answers.length && !apart) addEventListener("load", () => setTimeout(() =>
+  if ((answers.length || document.querySelector(".tag_takes-file")) && !apart) addEventListener("load", () => setTimeout(() =>
     open().then(({ cells }) => answers.forEach((number) => cells[number].edit()), () => (page = undefined))));
-  // A cell that takes files, by its tag: Python finds them in the folder ``dropped``, and the cell runs. Nothing is sent.
-  const give = async (number, files) => {
-    if (apart) return tools.say(apart);
-    if (!files.length) return;
-    try {
-      const opened = await open();
-      await opened.give(opened.cells[number], files);
-    } catch (error) {
-      page = undefined;
-      await tools.explain(error);
-    }
-  };
-  boxes.forEach((box, number) => {
-    if (!box.classList.contains("tag_takes-file")) return;
-    const field = make("input", { type: "file", multiple: true });
-    const label = make("label", { className: "takes-file" }, "Choose a file, or drop it here. It stays in this page: ");
-    label.append(field);
-    box.prepend(label);
-    field.addEventListener("change", () => give(number, [...field.files]));
-    box.addEventListener("dragover", (event) => (event.preventDefault(), box.classList.add("taking")));
-    box.addEventListener("dragleave", () => box.classList.remove("taking"));
-    box.addEventListener("drop", (event) => {
-      event.preventDefault();
-      box.classList.remove("taking");
-      give(number, [...event.dataTransfer.files]);
-    });
-  });
   const runPage = document.querySelector("button.run-page");
   runPage.addEventListener("click", () => ask(-1));
 
