@@ -110,5 +110,7 @@ class Gimbal(Stop):
         return (
             f'<figure class="orientation-figure painted world" '
             f'data-figure="rotations">'
-            f'<style>{STYLE}{style()}</style><div class="still">{self.svg(_light)}</div></figure>'
+            f'<style>{STYLE}{style()}</style><div class="still">{self.svg(_light)}</div>'
+            '<p class="stands">Here the camera stands still, as each stop has it. On the '
+            "book’s page it moves, and you can take hold of it.</p></figure>"
         )
