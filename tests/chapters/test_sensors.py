@@ -295,10 +295,7 @@ def test_the_bench_warns_of_no_walk_without_a_car():
 def named(word, chapter, *names):
     """Functions and constants that the one cell with the word defines, as the chapter has them."""
     scope = {"np": np, **vars(orientation)}
-    source = found(word, chapter)[0]
-    for printed in ("\n\n\nahead", "\n\ng_A", "\n\n\nprint("):
-        source = source.partition(printed)[0]
-    exec(source, scope)
+    exec(found(word, chapter)[0].partition("\n\n\nahead")[0].partition("\n\ng_A")[0], scope)
     return [scope[name] for name in names]
 
 
@@ -382,7 +379,7 @@ def test_an_error_is_carried_through_a_pose_as_by_differences():
 
 def test_a_camera_on_a_hand_is_as_wrong_as_its_covariance_says():
     """As printed for five seeds; and, alone, the rotation by the formula for directions."""
-    for line in found("def hand_eye", "cases-from-practice")[1].splitlines()[2:]:
+    for line in found("def calibrations", "cases-from-practice")[1].splitlines()[2:]:
         *_, low, high, low_angle, high_angle, low_place, high_place = numbers(line)
         assert 5.4 < low < high < 6.7
         assert 2.6 < low_angle < high_angle < 3.5 and 2.6 < low_place < high_place < 3.6
