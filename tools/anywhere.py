@@ -42,19 +42,19 @@ from notebook_pages.warm_kernels import WarmAsyncKernelManager
 
 from .released import digests_of
 
-#: Kernels of OpenBLAS, oldest first, and what of NumPy's own instructions a
-#: processor has not that is as old as that.
+#: Kernels of OpenBLAS, oldest first, each with those of NumPy's own instructions that a processor
+#: of that age lacks.
 KERNELS = {
     "Prescott": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "Nehalem": ("X86_V3", "X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "Haswell": ("X86_V4", "AVX512_ICL", "AVX512_SPR"),
     "SkylakeX": (),
 }
-#: What SkylakeX needs.
+#: The instructions that SkylakeX needs.
 NEEDED = "X86_V4"
-#: What OpenBLAS calls a kernel that it has under an older processor's name, too.
+#: OpenBLAS reports this kernel under an older processor's name.
 CALLED = {"Prescott": "Katmai"}
-#: Among threads OpenBLAS shares out what it adds up: the sums come in another order.
+#: OpenBLAS divides sums among threads, which adds them in another order.
 THREADS = {"one thread": "1", "four threads": "4"}
 DOCTESTS = (
     "src/orientation",
@@ -99,7 +99,7 @@ def notebooks(only):
 
 
 def moves_of_cells(only):
-    # Each has a process of its own that forks kernels.
+    # Each runs in a process of its own, which forks kernels.
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
 
@@ -135,7 +135,8 @@ def place_of(path, number):
 def in_words(place, found):
     if found is None:
         return [(place, "other outputs than stored", math.inf)]
-    exact = place.startswith(STORED)  # what is released is compared byte by byte
+    # Releases are compared byte by byte.
+    exact = place.startswith(STORED)
     return [(place, str(move), math.inf if exact else move.share) for move in found]
 
 
@@ -180,9 +181,9 @@ def sources(only):
 
 # --- in the Python of browsers ------------------------------------------------------------------
 
-#: Runs each notebook as the page runs it, with the program with which the build finds out what each
-#: cell needs; then makes what is sealed of those sources that need no NumPy. What reads notebooks
-#: is not there: JSON serves.
+#: Run each notebook as the page runs it, with the program by which the build finds out what each
+#: cell needs. Then seal the sources that need no NumPy. The library that reads notebooks is missing
+#: there, so use JSON.
 IN_A_BROWSER = """
 import glob, io, json, shutil, sys, types, zipfile
 for wheel in glob.glob("/wheels/*.whl"):
@@ -330,8 +331,8 @@ def main():
     possible, impossible = machines()
     faults, first = [], None
     print(
-        "| machine | cells that moved | the largest move | doctests that fail | released otherwise "
-        "|"
+        "| machine | cells that moved | the largest move | doctests that fail "
+        "| releases that differ |"
     )
     print("| --- | ---: | --- | ---: | ---: |")
     for name, environment in [*possible.items(), (BROWSERS, None)]:
@@ -351,7 +352,8 @@ def main():
         ]
         faults += [f"{name}: {line}" for line in found["doctests"]]
         faults += [
-            f"{name}: {what} is released otherwise than on this machine as it is" for what in others
+            f"{name}: the release of {what} differs from the one on this machine as it is"
+            for what in others
         ]
     for name, why in impossible.items():
         print(f"| {name} | not tried: {why} | | | |")

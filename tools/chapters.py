@@ -11,7 +11,7 @@ import nbformat
 
 TO_BE_WRITTEN = "TO BE WRITTEN"
 CONTENTS, INDEX = Path("_toc.yml"), Path("exercises/index.md")
-#: On two pages, since one would be heavy; what is added goes into the last.
+#: There are two pages, since one would be too large. New solutions go into the last.
 SOLUTIONS = (Path("appendix/solutions.ipynb"), Path("appendix/solutions-going-further.ipynb"))
 SOURCES = Path("tests/solutions")
 CHAPTERS_SOURCE = SOURCES / "chapters.ipynb"

@@ -43,7 +43,7 @@ from libcst import matchers
 from libcst.metadata import MetadataWrapper, PositionProvider
 from mutmut.mutation.file_mutation import create_mutations
 
-#: What is changed, and the tests that are to notice it.
+#: The packages to change, and the tests that should notice the changes.
 PARTS = {
     "orientation": ("src/orientation", ("tests/orientation",)),
     "coursework.checking": (
@@ -58,10 +58,10 @@ PARTS = {
         ),
     ),
 }
-#: Changes that change nothing, with the reasons.
+#: Changes without an effect, with the reasons.
 KNOWN = Path(__file__).with_name("mutants.txt")
-#: Seconds of the processor, and how many times its own, that a
-#: test has before it counts as endless.
+#: A test counts as endless after this many seconds of processor time, or this many times its usual
+#: time.
 PATIENCE, TIMES = 2.0, 10.0
 MEMORY = 4 << 30
 ORDERS = (cst.LessThan, cst.LessThanEqual, cst.GreaterThan, cst.GreaterThanEqual)
@@ -321,7 +321,8 @@ class Run:
             if not put_in_place(mutant):
                 return NO_FUNCTION
         except Exception:
-            return NOTICED  # it cannot even be defined
+            # The changed function cannot even be defined.
+            return NOTICED
         items = [self.items[test] for test in order]
         for item, following in zip(items, [*items[1:], None]):
             os.write(writing, f"{item.nodeid}\n".encode())

@@ -31,7 +31,7 @@ class Example(NamedTuple):
 
 
 THETA = "an expression in the symbol `theta` (radians)"
-#: One of each kind of question; an author writes another in its place.
+#: One example of each kind of question, which an author replaces.
 EXAMPLES = {
     "expression": Example("height", "height = sm.sin(theta)", THETA, "symbols='theta'"),
     "vector": Example(
@@ -214,8 +214,8 @@ def add_line(path, after, line):
     places = [number for number, text in enumerate(lines) if text.strip() == after]
     if len(places) != 1:
         sys.exit(
-            f"{path}:1: the line `{after}`, after which `{line}` belongs, stands there "
-            f"{len(places)} times"
+            f"{path}:1: the line `{after}`, which `{line}` should follow, occurs {len(places)} "
+            "times, not once"
         )
     indent = lines[places[0]][: len(lines[places[0]]) - len(lines[places[0]].lstrip())]
     lines.insert(places[0] + 1, indent + line)
@@ -226,13 +226,13 @@ def new_chapter(name, title, after):
     """Make a chapter and its exercises, and enter both wherever the book lists them."""
     if not re.fullmatch(NAME, name) or not title.strip():
         sys.exit(
-            f"A chapter has a NAME in small letters and hyphens and a TITLE; these are {name!r} "
+            f"Give a chapter a NAME in lower-case letters and hyphens and a TITLE, not {name!r} "
             f"and {title!r}."
         )
     chapter, source = Path("chapters", f"{name}.ipynb"), source_of(name)
     for path in (chapter, source):
         if path.exists():
-            sys.exit(f"{path} is there already; nothing was changed.")
+            sys.exit(f"{path} already exists; nothing was changed.")
     listed = re.findall(r"^ *- file: chapters/(\S+)$", Path("_toc.yml").read_text("utf8"), re.M)
     after = after or listed[-1]
     if after not in listed:
@@ -281,7 +281,7 @@ def new_question(name, title, kind):
     notebook, _, question = name.partition("/")
     if not re.fullmatch(f"{NAME}/{NAME}", name) or notebook == "chapters":
         sys.exit(
-            "The NAME of a question is CHAPTER/QUESTION, in small letters and hyphens; this is "
+            "The NAME of a question is CHAPTER/QUESTION, in lower-case letters and hyphens, not "
             f"{name!r}."
         )
     if kind not in EXAMPLES:

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    #: What comes out for numbers, and what for symbols; where the question has one number for an
-    #: answer, the second two: one of them, or those of a batch.
+    #: Results for numbers and for symbols. If the result is one number for each item, it has one of
+    #: the last two types: for one item, or for a batch.
     Array: TypeAlias = NDArray[numpy.float64]
     Matrix: TypeAlias = sympy.MutableDenseMatrix
     Scalars: TypeAlias = float | Array
-    #: Numbers, one or several: whatever NumPy makes an array of.
+    #: One number or several, in any form that NumPy can turn into an array.
     Numbers: TypeAlias = ArrayLike
-    #: What comes of a comparison: of numbers, of a batch, of symbols.
+    #: The result of a comparison of numbers, of a batch or of symbols.
     Relation: TypeAlias = sympy.core.relational.Relational
     Truth: TypeAlias = bool | NDArray[numpy.bool] | Relation
 
@@ -62,25 +62,27 @@ class Expression(Symbolic, Protocol):
     @property
     def free_symbols(self) -> AbstractSet[Expression]: ...
     @property
-    def name(self) -> str: ...  # of a symbol, and of a function of time
+    # Symbols and functions of time have a name.
+    def name(self) -> str: ...
 
 
-#: The unit vectors that a simple rotation leaves alone, and the twelve sequences of Euler angles.
+#: The axes of simple rotations, and the twelve sequences of Euler angles.
 Axis: TypeAlias = Literal["x", "y", "z"]
 AxisSequence: TypeAlias = Literal[
     "zxz", "xyx", "yzy", "zyz", "xzx", "yxy", "xyz", "yzx", "zxy", "xzy", "zyx", "yxz"
 ]  # fmt: skip
-#: A component of one item that is read; and of a batch, too.
+#: A component of one item, and a component of an item or a batch.
 Entry: TypeAlias = "float | Expression"
 Column: TypeAlias = "Entry | Array"
-#: Symbols, one or several, with numbers among them.
+#: One symbol or several, possibly mixed with numbers.
 Symbols: TypeAlias = "Symbolic | Sequence[Symbolic] | Sequence[Sequence[Symbolic]]"
 Values: TypeAlias = (
     "Array | Numbers | Symbols | Sequence[Symbolic | float] | Sequence[Sequence[Symbolic | float]]"
 )
 
-#: What a formula computes with. A type checker reads each formula three times: for a number, for a
-#: batch, for symbols; twice, if it is for numbers only, since it chooses its branch by their sizes.
+#: The type that a formula computes with. A type checker reads each formula three times: for a
+#: number, for a batch and for symbols. It reads a formula for numbers only twice, because such a
+#: formula chooses its branch by their sizes.
 Component = TypeVar("Component", float, "Array", Expression)
 Number = TypeVar("Number", float, "Array")
 
@@ -106,7 +108,7 @@ class NumberFunctions(Functions[Number], Protocol[Number]):
     ) -> Sequence[Number]: ...
 
 
-#: As many components as the shapes say that stand beside a formula: no type can count them.
+#: As many components as the shapes beside a formula say. No type can express that number.
 Components: TypeAlias = Any  # type: ignore[explicit-any]
 
 

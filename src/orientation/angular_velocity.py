@@ -351,8 +351,8 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
         turning = angle > 0
         length = f.where(turning, angle, 1.0)
         half = length / 2
-        # The digits that the difference loses at small angles are
-        # multiplied by squares of small numbers.
+        # The difference loses digits at small angles, but it is multiplied by squares of small
+        # numbers, so the loss does not matter.
         factor = f.where(turning, (1 - half * f.cos(half) / f.sin(half)) / length / length, 0.0)
         a, b, c = y * r - z * q, z * p - x * r, x * q - y * p
         return (

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
         Values,
     )
 
-#: Shortest axis whose direction can be computed; the longest is its inverse.
+#: The shortest axis whose direction can be computed. Its inverse is the longest.
 SHORTEST = 1e-150
 
 
 def _length_missing(f: NumberFunctions[Number], x: Number, y: Number, z: Number) -> Number:
-    # 1, which is more than the tolerance, where no direction can be computed: beyond these limits
-    # the square of the length is no longer a number with all its digits.
+    # This is 1, more than the tolerance, if no direction can be computed: beyond these limits the
+    # square of the length loses digits, overflows or vanishes.
     square = x * x + y * y + z * z
     return f.where((square > SHORTEST**2) & (square < SHORTEST**-2), 0, 1)
 

@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 
 #: The components of an answer at each point.
 Answers: TypeAlias = Sequence[Sequence[complex]]
-#: What is said of a mix-up, and what the answer would be at each point.
+#: The name of a mix-up, and the answer that it would give at each point.
 Mixup: TypeAlias = tuple[str, Iterable[Sequence[complex]]]
-#: The three angles at each point, and the sequence; None if the answer is not known to be made so.
+#: The three angles at each point, and the sequence, or None if the answer need not come from Euler
+#: angles.
 Turned: TypeAlias = tuple[Sequence[Sequence[float]], str] | tuple[None, None]
 Match: TypeAlias = Callable[[Sequence[complex], Sequence[complex]], bool]
 
@@ -244,9 +245,9 @@ def diagnose(
         _sequence_mixups(turned, sequence, given=turns is not None, symbols=bool(names)),
     )
     causes = [cause for cause, values in mixups if all(map(match, answers, values))]
-    # Report the fault of a matrix that is not orthogonal. Symbols that obey a condition, as the
-    # four of a quaternion do, miss it at random values, so nothing is reported of them. Entries
-    # that are off by the tolerance make lengths and products that are off by some four times it.
+    # Report the fault of a matrix that is not orthogonal. Symbols may have to obey a condition, as
+    # the four of a quaternion do, and random values violate it, so report nothing for them. Entries
+    # that are off by the tolerance make lengths and products off by about four times as much.
     fault = None if causes else _fault(answers, 4 * tolerance)
     if fault and not _fault(truths, 4 * tolerance):
         causes = [fault]
@@ -345,7 +346,8 @@ def _sequence_mixups(
         _body_fixed(back, sequence[::-1]),
     )
     if not given and 0 in values[0]:
-        return  # two turns are recognised as part of several sequences
+        # Two rotations are part of several sequences.
+        return
     yield REVERSED, _body_fixed(back, sequence)
     for other in SEQUENCES:
         if other != sequence:

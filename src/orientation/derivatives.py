@@ -37,13 +37,14 @@ from .numbers_and_symbols import (
 if TYPE_CHECKING:
     from ._types import Array, Conversion, Matrix, NumberFormula, Numbers, Symbols, Truth, Values
 
-#: Standard deviation from which a first-order covariance says little: the result bends within it.
+#: Above this standard deviation a first-order covariance means little, because the result is no
+#: longer linear over such a range.
 LARGE = 0.5
 
-#: A slope that is larger comes from a singularity and from rounding.
+#: A larger slope is the effect of a singularity and of rounding.
 STEEP = 1e10
 
-#: Components of :math:`-[\hat e_k]_\times`, which turns a matrix by a little about axis k.
+#: Components of :math:`-[\hat e_k]_\times`, the derivative of a rotation about axis k at zero.
 TURNS = (
     ((0, 0, 0), (0, 0, 1), (0, -1, 0)),
     ((0, 0, -1), (0, 0, 0), (1, 0, 0)),
@@ -57,7 +58,7 @@ class Dual:
     """A batch of numbers with their slopes, of shape ``(count, ...)``: one for each variable."""
 
     __slots__ = ("value", "slopes")
-    # NumPy leaves operations of an array with this to the methods below.
+    # With this attribute NumPy leaves operations with an array to the methods below.
     __array_ufunc__ = None
 
     def __init__(self, value: Array, slopes: Array) -> None:
@@ -136,7 +137,7 @@ class DualFunctions:
     def norm(self, *components: Dual | float) -> Dual:
         values, slopes = zip(*map(parts, components))
         length = self.plain.norm(*values)
-        # A length has no slope at zero. Formulas use there only what does not depend on it.
+        # The length has no slope at zero. There formulas use only results that do not depend on it.
         safe = self.plain.where(length > 0, length, 1.0)
         return Dual(length, sum(value / safe * by for value, by in zip(values, slopes)))
 
@@ -195,7 +196,7 @@ class _Numbers(Variable):
             )
         count = max(len(entry.slopes) for entry in components if isinstance(entry, Dual))
         with numpy.errstate(divide="ignore", invalid="ignore"):
-            # No type says that a formula works with whatever has these operations.
+            # No type can express that a formula works with anything that has these operations.
             result = map(parts, formula(DualFunctions(), *components))  # type: ignore[arg-type]
             ones = numpy.ones((count, len(columns[0])))
             values, slopes = zip(*((value * ones[0], by * ones) for value, by in result))
@@ -234,7 +235,7 @@ class _Numbers(Variable):
         matrix = numpy.stack(values, axis=-1).reshape(-1, 3, 3)
         rates = numpy.stack(slopes, axis=-1).reshape(len(slopes[0]), -1, 3, 3)
         back = matrix.swapaxes(-1, -2)
-        # Either way this is -[delta] x, with the components along the frame that is asked for.
+        # Either way this is -[delta] x, with the components along the chosen frame.
         skew = rates @ back if self.along == "target" else back @ rates
         return [skew[..., 1, 2], skew[..., 2, 0], skew[..., 0, 1]]
 
@@ -294,7 +295,7 @@ def jacobian(
 
     result = conversion(_Numbers(value, along), *further)
     parts = result if isinstance(result, tuple) else (result,)
-    # Axis and angle come apart: the angle has an axis of the array less.
+    # Axis and angle are two results: the angle has one axis of the array less.
     most = max(part.ndim for part in parts)
     joined = numpy.concatenate(
         [part if part.ndim == most else part[..., None] for part in parts], axis=-1

@@ -192,7 +192,8 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     """
     rows = {"x": entries[:3], "y": entries[3:6], "z": entries[6:]}
     names = list(rows)
-    # Added in this order by every Python and in the page: sum() rounds otherwise since 3.12.
+    # This order gives the same rounding in every Python and in the page. Since Python 3.12 sum()
+    # rounds differently.
     products = {
         (p, q): rows[p][0] * rows[q][0] + rows[p][1] * rows[q][1] + rows[p][2] * rows[q][2]
         for k, p in enumerate(names)
@@ -213,7 +214,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
     else:
         fault = f"rows {p} and {q} have dot product {products[p, q]:.6g}, not 0"
     squares = [products[name, name] for name in names]
-    # A scale closer to 1 than that cannot be told from rounding.
+    # A scale that is closer to 1 than this cannot be distinguished from rounding.
     scaled = (
         abs(worst) > 1e-5
         and max(squares) - min(squares) <= 1e-6 * max(squares)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
         Values,
     )
 
-#: The places of the three axes of a sequence, the third of them for the one that a proper sequence
-#: leaves out, and whether they follow each other as x, y, z do: 1, or else -1.
+#: The positions of the three axes of a sequence, where the third is the axis that a proper sequence
+#: leaves out; and 1 if they follow each other as x, y, z do, or else -1.
 Layout: TypeAlias = tuple[int, int, int, int]
 
 #: Sequences whose first and last axes are the same.
@@ -196,11 +196,10 @@ def body_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
         else:
             psi = f.atan2(0.0 - c(k, j), c(k, k) + 0.0)
         sine, cosine = f.sin(psi), f.cos(psi)
-        # What remains once the first turn is undone: column j of the matrix of the last two turns.
+        # Undo the first rotation. This is column j of the matrix of the last two.
         jj = c(j, j) * cosine + c(j, k) * sine
         if proper:
-            # The sine has the sign of the order, and the size alone
-            # keeps the middle angle in [0, pi].
+            # The sine has the sign of the order. Its magnitude keeps the middle angle in [0, pi].
             theta = sign * f.atan2(abs(c(i, j) * sine - c(i, k) * cosine), c(i, i))
             phi = f.atan2(-c(k, j) * cosine - c(k, k) * sine, jj)
         else:

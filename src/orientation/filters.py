@@ -265,7 +265,7 @@ class MultiplicativeKalmanFilter:
         # 9
         square = (nu * numpy.linalg.solve(S, nu[..., None])[..., 0]).sum(axis=-1)
         accepted = square <= gate
-        # 10: without a gain nothing is corrected below.
+        # 10: components without a gain are not corrected below.
         K = numpy.where(accepted[..., None, None], PH @ numpy.linalg.inv(S), 0.0)
         # 11
         x = (K @ nu[..., None])[..., 0]

@@ -64,7 +64,7 @@ class _MatrixTurn(NamedTuple):
     words: str
 
     def dcm(self) -> Array | Matrix:
-        # A copy: what a reader does with the result must not change the frames.
+        # Return a copy, so that changes to the result do not change the frames.
         return self.matrix.copy()
 
     def is_symbolic(self) -> bool:
@@ -130,7 +130,7 @@ class Frames:
 
     def __init__(self) -> None:
         self._edges: tuple[_Edge, ...] = ()
-        # The edges at each frame, walked away from it: they make a path quick to find.
+        # The edges at each frame, directed away from it, so that a path is quick to find.
         self._leaving: dict[str, tuple[_Edge, ...]] = {}
 
     @property
@@ -209,7 +209,7 @@ class Frames:
         """
         dcm_from_space_fixed(angles, sequence)  # refuses what is not valid, before it is stored
         own = _own(angles, (3,), "angles", is_symbolic(angles))
-        # Turns about axes that stay are body fixed turns in the other order.
+        # Rotations about axes that stay are body fixed rotations in reverse order.
         turns = zip(sequence[::-1], own[::-1])
         return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in turns))
 
@@ -369,7 +369,7 @@ class Frames:
             for edge in self._edges
         )
 
-    # Equality is by numbers that may differ by rounding, so there is no hash that agrees with it.
+    # Frames are equal if their numbers agree up to rounding, and no hash agrees with that.
     __hash__ = None  # type: ignore[assignment]
 
     def _zero(self) -> Angle:
@@ -406,8 +406,8 @@ class Frames:
             if root in done:
                 continue
             for target in names:
-                # SymPy forgets a frame's earlier orientations when it is oriented again, so each
-                # frame is oriented once, on the way out from the root.
+                # SymPy forgets a frame's earlier orientations when the frame is oriented again, so
+                # orient each frame once, starting from the root.
                 for edge in self._walk(target, root) or ():
                     if edge.frame not in done:
                         _orient(frames[edge.frame], frames[edge.reference], edge)

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from ._types import Array, Number, NumberFunctions, Scalars, Values
 
 METRICS = ("entries", "angle")
-#: The mean by angle is looked for from so many of the orientations, if they are
-#: spread too far to be sure of one.
+#: Start the search for the mean by angle from this many orientations if they are spread too far for
+#: one start to be sure.
 STARTS = 100
-#: Steps towards a mean after which it is taken as it is; a few are enough unless
-#: orientations lie half a turn apart.
+#: Accept the mean after this many steps. A few are enough unless orientations lie half a turn
+#: apart.
 MOST_STEPS = 200
 
 
@@ -169,7 +169,7 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
             guess = dcm_from_rotation_vector(step) @ guess
             if numpy.linalg.norm(step) < 1e-14:
                 break
-        # Rounding may have brought it a little off, in hundreds of products.
+        # Hundreds of products may have accumulated rounding errors.
         guess = nearest_dcm(guess).dcm
         return guess, numpy.asarray(angle_between(dcms, guess))
 
@@ -177,12 +177,13 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     try:
         guess, angles = settled(nearest_dcm(average).dcm)
         if angles[weights > 0].max() < numpy.pi / 2:
-            return guess  # the only one there is, by the theorem
+            # By the theorem this is the only mean.
+            return guess
         begun = [(guess, angles)]
     except ValueError:
         pass  # no one place to begin
-    # From places between them too: from one that is half a turn from
-    # another, rounding would choose the way.
+    # Start from random orientations too: between orientations that are half a turn apart, rounding
+    # would choose the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
     found = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
     least = min(cost for cost, _ in found)

@@ -35,19 +35,19 @@ if TYPE_CHECKING:
         Values,
     )
 
-#: What a caller was given, with its name, and the shape of one item of it.
+#: An argument of a function: its name, its value, and the shape of one item of it.
 Argument: TypeAlias = "tuple[str, Values, tuple[int, ...]]"
 Given = TypeVar("Given")
 #: One number, or numbers in tuples of any depth.
 Nested: TypeAlias = "float | tuple[Nested, ...]"
 
-#: Largest departure from orthogonality, or from unit length, that still counts as rounding.
+#: The largest deviation from orthogonality, or from unit length, that counts as rounding.
 TOLERANCE = 1e-9
-#: The same for numbers of a narrower type, in units of their last place.
+#: The same for numbers of a narrower type, in units in their last place.
 ROUNDINGS = 32
 
-#: Items of a batch that are worked on together, so that their components stay in the cache, and
-#: what is set free after them is too little to be handed back to the system and fetched again.
+#: Number of items of a batch to work on together. Their components then stay in the cache, and the
+#: memory they free is too small to be returned to the system and fetched again.
 BLOCK = 4096
 
 
@@ -190,7 +190,7 @@ def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None
     elif _is_array(value) and value.shape == item and value.dtype.char == "d":
         entries = value.ravel().tolist()
     try:
-        # The difference is not zero where a number is infinite or missing, or the sum is too large.
+        # The difference is not zero if a number is infinite or missing, or if the sum overflows.
         return entries if entries and (total := math.fsum(entries)) - total == 0 else None
     except (OverflowError, ValueError):
         return None
@@ -215,7 +215,8 @@ def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | N
     try:
         return as_list(number_tuples(value, item, name))
     except WrongShape:
-        return None  # a batch, or a mistake, which number_array explains
+        # This is a batch, or a mistake that number_array explains.
+        return None
 
 
 def as_list(value: Nested) -> list[float]:
@@ -251,7 +252,7 @@ def _evaluate_what_is_read(
     else:
         read = [(name, number_array(value, item, name), item) for name, value, item in arguments]
         result = _evaluate_batch(formula, shape, read, guard, tolerance)
-    # What passed as valid to a few digits only is valid to no more, and its type says so.
+    # A value that is valid to only a few digits keeps its narrower type, which shows that.
     return result.astype(kind) if kind and hasattr(result, "astype") else result
 
 
@@ -289,7 +290,8 @@ def _guard_exact_numbers(components: Sequence[Expression], guard: Guard) -> None
     try:
         numbers = [float(entry) for entry in components[: guard.size]]
     except TypeError:
-        return  # symbols: whether they are valid depends on what will be put in for them
+        # Whether symbols are valid depends on the values to be substituted for them.
+        return
     if not guard.excess(NUMBERS, *numbers) <= TOLERANCE:
         guard.explain(numbers, "")
 
@@ -398,7 +400,8 @@ def demand(
     """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
     import numpy
 
-    with numpy.errstate(over="ignore", invalid="ignore"):  # told below, as an error
+    # The error below reports this.
+    with numpy.errstate(over="ignore", invalid="ignore"):
         size = guard.excess(array_functions(), *components[: guard.size])
     if numpy.count_nonzero(size <= tolerance) < len(size):
         worst = int(numpy.argmax(size))
@@ -510,7 +513,7 @@ def _demand_finite(value: Nested, name: str, index: tuple[int, ...] = ()) -> Non
 
 
 def _unmasked(value: Given) -> Given | Array:
-    # A masked array: what is masked is missing.
+    # The masked entries of a masked array are missing.
     if hasattr(value, "filled") and hasattr(value, "astype"):
         filled: Array = value.astype(float).filled(math.nan)
         return filled
@@ -526,7 +529,7 @@ def _not_numbers(name: str, value: object) -> TypeError:
 def _not_finite(name: str, index: tuple[int, ...], value: float) -> ValueError:
     where = f"[{', '.join(map(str, index))}]" if index else ""
     return ValueError(
-        f"{name}{where} is {value}: a number is missing or a division by zero happened before"
+        f"{name}{where} is {value}: a number is missing, or there was a division by zero"
     )
 
 
@@ -589,7 +592,7 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
             )
         if entry.has(sympy.nan, sympy.zoo, sympy.oo, -sympy.oo):
             raise ValueError(
-                f"{name} holds {entry} (entry {position}): a division by zero happened before"
+                f"{name} holds {entry} (entry {position}): there was a division by zero"
             )
     return components
 
@@ -645,7 +648,8 @@ def array_functions() -> NumberFunctions[Array]:
                     functools.reduce(operator.add, (entry * entry for entry in components))
                 )
             if numpy.count_nonzero(numpy.isinf(length)):
-                # The squares are too large: slower, but with the result that one item has.
+                # The squares overflow. This way is slower, but gives the same result as for one
+                # item.
                 length = functools.reduce(numpy.hypot, components, numpy.zeros(()))
             return length
 
@@ -678,7 +682,7 @@ def _symbol_functions() -> Functions[Expression]:
         def where(
             condition: Truth, yes: Expression | float, no: Expression | float, /
         ) -> Expression:
-            # Symbols take the general branch; an exact number may decide for the special one.
+            # Symbols take the general branch. An exact number may take the special one.
             chosen: Expression = sympy.sympify(no if condition == False else yes)  # noqa: E712
             return chosen
 

@@ -16,9 +16,9 @@ from .numbers_and_symbols import number_array
 if TYPE_CHECKING:
     from ._types import Array, Numbers, Values
 
-#: Sine of the angle below which two directions count as one.
+#: Two directions count as one if the sine of their angle is below this.
 PARALLEL = 1e-6
-#: Share of the largest singular value below which another one is rounding.
+#: A singular value below this fraction of the largest is rounding.
 ROUNDING = 1e-13
 
 
@@ -155,9 +155,9 @@ def dcm_from_directions(
 
     observed, reference, weights = _weighted(observed, reference, deviations)
     fitted, scales, gap = nearest_by_scales((weights * observed).swapaxes(-1, -2) @ reference)
-    # How far the least of the three turns would have to be wrong before another orientation fits as
-    # well, as a share of what these weights allow: beside a star tracker, a magnetometer counts for
-    # a millionth, and fixes the turn around the star all the same.
+    # How far the worst-determined of the three rotations would have to be wrong before another
+    # orientation fits as well, as a fraction of what these weights allow. Beside a star tracker, a
+    # magnetometer counts for a millionth, but it still fixes the rotation about the star.
     allowed = weights.sum() - weights.max()
     margin = gap / max(allowed, sys.float_info.min)
     if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):

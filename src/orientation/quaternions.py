@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 def _length_excess(
     f: NumberFunctions[Number], scalar: Number, x: Number, y: Number, z: Number
 ) -> Number:
-    # The rows of the matrix are |q|^2 long: what passes here makes a matrix that passes as well.
+    # The rows of the matrix have the length |q|^2, so a quaternion that passes here gives a matrix
+    # that passes as well.
     square = scalar * scalar + x * x + y * y + z * z
     return abs(square * square - 1)
 
@@ -117,7 +118,7 @@ def dcm_components_from_quaternion(
     """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
     ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
     first, second = ss + xx, ss - xx
-    # Doubling loses nothing; of these products each stands in two entries.
+    # Doubling is exact. Each of these products stands in two entries.
     x2, y2, s2 = 2 * x, 2 * y, 2 * scalar
     xy, xz, yz, sx, sy, sz = x2 * y, x2 * z, y2 * z, s2 * x, s2 * y, s2 * z
     return (
@@ -146,7 +147,8 @@ def quaternion_components_from_dcm(
     zz: Number,
 ) -> tuple[Number, Number, Number, Number]:
     """Formula of :func:`quaternion_from_dcm`, shared with the axis and angle."""
-    # Each row is the quaternion times four of its own components; the longest loses no digits.
+    # Each row is the quaternion times four times one of its components. The longest row loses no
+    # digits.
     above, below = 1 + xx, 1 - xx
     scores = [above + yy + zz, above - yy - zz, below + yy - zz, below - yy + zz]
     si, sj, sk, ij, ik, jk = yz - zy, zx - xz, xy - yx, xy + yx, xz + zx, yz + zy

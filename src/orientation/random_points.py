@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
     from ._types import Array, Column, Entry, Expression
 
-#: The symbols that go by each name, as theta and theta(t).
+#: The symbols that share a name, such as theta and theta(t).
 Names: TypeAlias = "dict[str, set[Expression]]"
 #: A value for each name.
 Point: TypeAlias = dict[str, float]
 
-#: Quarter turns in which each symbol is given a random value. All four quadrants, both signs, and
-#: two values beyond half a turn: the root of a square is then not taken for the cosine of the
-#: angle, nor for that of half the angle.
+#: Each symbol gets a random value in one of these quarter turns. They cover all four quadrants,
+#: both signs, and two values beyond half a turn, so that the root of a square is not mistaken for
+#: the cosine of the angle or of half the angle.
 QUARTERS = (-3, -1, 0, 2)
 
 
@@ -39,7 +39,7 @@ def unknowns(components: Iterable[Column]) -> Names:
         from sympy.core.function import AppliedUndef
 
         functions = expression.atoms(AppliedUndef)
-        # The time inside theta(t) is no unknown of its own, unless it stands outside as well.
+        # The time inside theta(t) is not an unknown of its own unless it also stands outside.
         rest = expression.xreplace({function: sympy.Dummy() for function in functions})
         for atom in functions | (rest.free_symbols & expression.free_symbols):
             names.setdefault(atom.name, set()).add(atom)

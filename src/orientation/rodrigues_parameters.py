@@ -160,8 +160,8 @@ def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     def formula(
         f: Functions[Component], x: Component, y: Component, z: Component
     ) -> Sequence[Component]:
-        # Beyond this length, whose square is no number any more, no digit of the matrix differs
-        # from that of no rotation.
+        # Beyond this length, whose square overflows, every digit of the matrix is that of no
+        # rotation.
         ordinary = f.norm(x, y, z) < 1e150
         x, y, z = f.where(ordinary, x, 0), f.where(ordinary, y, 0), f.where(ordinary, z, 0)
         square = x**2 + y**2 + z**2
@@ -248,7 +248,7 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, which is no rotation, so its shadow would be "
+            f"vector{where} is {components}, which means no rotation, so its shadow would be "
             "infinitely long"
         )
 

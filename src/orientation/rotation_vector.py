@@ -70,13 +70,13 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     ) -> Sequence[Component]:
         angle = f.norm(x, y, z)
         turning = angle > 0
-        # The square of a length has neither the digits of a very small one nor those of a very
-        # large one, so each component is divided by itself.
+        # The square of a very small or a very large length loses digits, so divide each component
+        # by the length itself.
         length = f.where(turning, angle, 1.0)
         cosine = f.cos(angle)
         return turn_components(
             cosine,
-            # In a batch the length of a vector below 1e-162 is 0, whose components are not.
+            # In a batch a vector below 1e-162 has the length 0, although its components are not 0.
             f.where(turning, f.sin(angle), 1.0),
             1 - cosine,
             x / length,
@@ -117,7 +117,8 @@ def rotation_vector_from_dcm(dcm: Values) -> Array:
     def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
         scalar, x, y, z = quaternion_components_from_dcm(f, *entries)
         sine = f.norm(x, y, z)
-        # Twice the vector part, at rest and wherever its length is 0 but its components are not.
+        # Use twice the vector part at rest, and wherever its length is 0 although its components
+        # are not.
         share = f.where(sine > 0, 2 * f.atan2(sine, scalar) / f.where(sine > 0, sine, 1.0), 2.0)
         return share * x, share * y, share * z
 

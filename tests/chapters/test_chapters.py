@@ -143,7 +143,7 @@ def test_a_new_chapter_has_all_its_parts(book):
         if "check(" not in cell.source and cell.cell_type == "code":
             exec(cell.source, {})
     again = make("chapter", "chapter-of-the-tests", "Chapter of the tests")
-    assert again.returncode != 0 and "there already; nothing was changed" in again.stderr
+    assert again.returncode != 0 and "already exists; nothing was changed" in again.stderr
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,7 @@ def test_a_new_chapter_has_all_its_parts(book):
     [
         (
             ("chapter", "Chapter of the tests", "Chapter of the tests"),
-            "NAME in small letters and hyphens",
+            "NAME in lower-case letters and hyphens",
         ),
         (("chapter", "chapter-of-the-tests", ""), "a TITLE"),
         (

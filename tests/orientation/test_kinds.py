@@ -397,12 +397,12 @@ def test_missing_numbers_are_found(function, batches):
             spoilt[place].reshape(COUNT, -1)[7, -1] = bad
             with pytest.raises(
                 ValueError,
-                match=rf"^{name}\[7.*\] is (nan|inf|-inf): a number is missing or a division",
+                match=rf"^{name}\[7.*\] is (nan|inf|-inf): a number is missing, or there was a",
             ):
                 function(*spoilt)
             with pytest.raises(
                 ValueError,
-                match=rf"^{name}(\[.*\])? is (nan|inf|-inf): a number is missing or a division",
+                match=rf"^{name}(\[.*\])? is (nan|inf|-inf): a number is missing, or there was a",
             ):
                 function(*(batch[7] for batch in spoilt))
 
@@ -519,7 +519,7 @@ def test_what_is_no_expression_is_told(function, batches):
                 )
     for wrong in (sm.nan, sm.oo, -sm.oo, sm.zoo, psi + sm.oo):
         entries = [psi] * (count - 1) + [wrong]
-        with pytest.raises(ValueError, match=f"^{name} .*a division by zero happened before"):
+        with pytest.raises(ValueError, match=f"^{name} .*there was a division by zero"):
             function(
                 wrong if item == () else entries if len(item) == 1 else sm.Matrix(3, 3, entries),
                 *rest,

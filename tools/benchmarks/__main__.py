@@ -10,9 +10,9 @@ from importlib.metadata import version
 from . import conversions, symbols
 
 SYMBOLIC = ("SciPy", "pytransform3d", "SymPy")
-#: How much slower than the fastest a row may be before it is said why.
+#: A row that is slower than the fastest by more than this factor needs a reason.
 ALLOWED = 1.5
-#: Why, up to which size.
+#: The reasons, each with the size up to which it holds.
 REASONS = {
     1: "the input may be of any kind and is checked; the other takes floats as they are",
     1000: "dozens of calls of NumPy, half a microsecond each, and checks, against compiled code",
@@ -24,8 +24,8 @@ def main():
     packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "scipy", "sympy"))
     print(f"Python {platform.python_version()}, {packages}, {platform.machine()}.")
     print(
-        "Times are the least processor time of one item; behind each stands the largest error, in "
-        "units of the last place of 1. Below a ratio of 1 the module is the fastest.\n"
+        "Each time is the shortest processor time for one item. The largest error follows it, in "
+        "units in the last place of 1. If the ratio is below 1, the module is the fastest.\n"
     )
     others = list(conversions.PEERS)
     print(f"| conversion | N | orientation | {' | '.join(others)} | to the fastest | why |")
@@ -38,10 +38,10 @@ def main():
         ratio = seconds["orientation"] / min(seconds[name] for name in seconds if name in others)
         why = next(why for most, why in REASONS.items() if size <= most) if ratio > ALLOWED else ""
         print(f"| {what} | {size:,} | {' | '.join(cells)} | {ratio:.2g} | {why} |", flush=True)
-    print("\nWhat no such library can be faster than, at N = 1,000,000:")
+    print("\nA lower limit for the time of any such library, at N = 1,000,000:")
     for what, seconds in conversions.limits():
         print(f"{what}: {_in_words(seconds / 1_000_000)} an item")
-    print("\nHow many times as long the others take (below 1 they are faster):\n")
+    print("\nTime relative to the module (below 1 the others are faster):\n")
     print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in SYMBOLIC)} |")
     print(f"|---|---|---|{'---|' * len(SYMBOLIC)}")
     for what, size, seconds in symbols.rows():

@@ -19,7 +19,7 @@ from orientation.numbers_and_symbols import Variable, array_functions
 
 from .timing import seconds_per_call
 
-#: Sizes, and how many rounds of each.
+#: Sizes, and the number of rounds for each.
 SIZES = {1: 25, 10: 25, 100: 25, 1000: 15, 10_000: 9, 1_000_000: 3}
 PEERS = {
     "SciPy": ("scipy.spatial.transform",),
@@ -57,7 +57,7 @@ def rows():
             functions, errors = {"orientation": lambda: convert(*given)}, {}
             exact = convert(*map(_Exact, given))
             for name, call in {"orientation": functions["orientation"], **contestants}.items():
-                # A library that is not here, or has nothing for it, takes no part.
+                # Leave out a library that is not installed or lacks the function.
                 with suppress(AttributeError):
                     errors[name] = _error(call(), exact, what, name)
                     functions[name] = call
@@ -120,7 +120,7 @@ def _conversions(size):
         for library, function in ((numpy_q, "as_quat_array"), (quaternionic, "array"))
         for given in (quaternion, other)
     )
-    # For one item only: AttributeError, as for what a library has not, where there are more.
+    # A function for one item only raises AttributeError for more, as a missing one does.
     single = SimpleNamespace(transforms3d=transforms3d, sm=sm, pyq=pyq) if one else None
     return {
         "Euler angles zxy to matrix": (

@@ -45,7 +45,7 @@ new MutationObserver((_, observer) => {
   seen.ready = performance.now();
 }).observe(document, { subtree: true, childList: true, attributeFilter: ['data-ready'] });
 """
-# Takes hold of the camera and drags it to and fro, one move for each picture.
+# Drag the camera to and fro, with one move for each picture.
 DRAG = """async (pictures) => {
   const { world } = document.querySelector('.world'), { canvas } = world;
   const box = canvas.getBoundingClientRect();

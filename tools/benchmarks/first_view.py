@@ -168,7 +168,7 @@ def seen_on_a_slow_line(browser, address):
     line.send("Network.enable")
     line.send("Network.emulateNetworkConditions", SLOW)
     page.goto(address)
-    # a busy machine paints after all has come
+    # A busy machine paints only after everything has arrived.
     seconds = page.wait_for_function(SEEN).json_value() / 1000
     context.close()
     return seconds

@@ -28,7 +28,8 @@ def _seconds(function, count):
 
 
 def _calls_for_one_sample(function):
-    function()  # what is done once only, such as filling a cache, is no part of the time
+    # Work that is done only once, such as filling a cache, does not count.
+    function()
     count = 1
     while _seconds(function, count) < SHORTEST_SAMPLE:
         count *= 2

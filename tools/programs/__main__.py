@@ -27,11 +27,11 @@ from .converter import converted, sides
 HERE = Path(__file__).parent
 PLACE = REPOSITORY / "_build" / "programs"
 STORED = REPOSITORY / "packages" / "orientation-lab" / "tests" / "workbench" / "answers.json"
-#: Two orientations of which nothing special can be said: unit vector and radians.
+#: Two orientations without any special property, each by a unit vector and radians.
 ORIENTATIONS = (((0.48, -0.6, 0.64), 1.1), ((-0.36, 0.48, 0.8), -2.0))
-#: Read by three.js, which npm brings.
+#: npm installs three.js, which reads this.
 BY_NODE = ("three.js", "glTF", "BVH")
-#: Single precision is what some of them have.
+#: Some of them compute in single precision.
 ROUNDING = 1e-5
 
 

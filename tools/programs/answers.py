@@ -69,7 +69,7 @@ def eigen(axis, angle):
     turn = eigenpy.AngleAxis(angle, axis)
     yield "AngleAxis(angle, axis).toRotationMatrix()", MATRIX, turn.toRotationMatrix()
     yield "Quaternion(AngleAxis(angle, axis)).coeffs()", XYZW, eigenpy.Quaternion(turn).coeffs()
-    # The first angle from 0 to pi, whatever that does to the others: the chapter warns of it.
+    # The first angle is from 0 to pi, whatever that does to the others. The chapter warns of it.
     yield (
         "R.eulerAngles(2, 0, 1)",
         angles("zxy"),
@@ -96,16 +96,16 @@ def opencv(axis, angle):
     yield "cv2.Rodrigues(m)[0]", VECTOR, cv2.Rodrigues(cv2.Rodrigues(angle * axis)[0])[0]
 
 
-#: Corners that a camera looks at, each at its own depth, along its x
-#: (right), y (down) and z (forward).
+#: Corners in front of a camera, each at its own depth, along its x (right), y (down) and z
+#: (forward).
 CORNERS = np.array([(x, y, 5 + x * y + 0.3 * x) for x in (-1, 0.2, 1) for y in (-1, 0.4, 1)])
 
 
 def solve_pnp(axis, angle):
     cv2 = import_module("cv2")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
-    # A point that lies right of the camera's line of sight is seen to the right:
-    # no program has been asked so far.
+    # A point to the right of the line of sight is seen on the right. No program has been asked
+    # about this yet.
     seen = CORNERS[:, :2] / CORNERS[:, 2:]
     _, vector, _ = cv2.solvePnP(CORNERS @ rows + place, seen, np.eye(3), None)
     yield "cv2.solvePnP(points, seen, K, None)[1]", VECTOR, vector
@@ -183,7 +183,8 @@ def kornia(axis, angle):
 
 
 def blender(axis, angle):
-    import_module("bpy")  # Blender itself, which brings the other
+    # This is Blender itself, which includes the other.
+    import_module("bpy")
     turned = import_module("mathutils").Quaternion(axis.tolist(), float(angle))
     yield "Quaternion(axis, angle)", WXYZ, turned
     yield "Quaternion(axis, angle).to_matrix()", MATRIX, turned.to_matrix()
@@ -341,8 +342,8 @@ def matrix_by(program, line, names):
     return made
 
 
-#: For each program, as the table of programs calls it, the package of PyPI that brings it, what
-#: else that takes, and what asks it.
+#: For each program, by its name in the table of programs: its package on PyPI, what else that
+#: needs, and the function that asks it.
 PROGRAMS = {
     "SciPy": ("scipy", (), scipy),
     "pytransform3d": ("pytransform3d", (), pytransform3d),

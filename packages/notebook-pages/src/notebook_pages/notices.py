@@ -1,4 +1,4 @@
-"""The page ``licences.html``: other people's works that the site holds, with their licences.
+"""The page ``licences.html``: third-party works in the site, with their licences.
 
 The names, versions and texts are those that the works themselves bring: packages of npm, wheels
 for browsers, and the distributions of Python whose styles and scripts are copied into the site.
@@ -116,7 +116,7 @@ def works() -> list[Work]:
 def add_page(app):
     yield (
         "licences",
-        {"title": "Licences of other people's works", "works": works()},
+        {"title": "Licences of third-party works", "works": works()},
         "licences.html",
     )
 
