@@ -166,8 +166,8 @@ class _Bench:
         self.say(
             "time",
             GREEN,
-            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, {1 / step:.4g} a "
-            "second",
+            f"{self.content.clock}; {len(time)} samples in {time[-1]:.1f} s, {1 / step:.4g} "
+            "per second",
             evidence,
         )
         back = int((steps <= 0).sum())
@@ -460,10 +460,10 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
-                f"still poses: {len(poses)}, "
-                f"{'too few' if len(poses) < 4 else 'too alike'} to follow gravity by them",
+                f"{len(poses)} still pose{'s' * (len(poses) != 1)}: "
+                f"{'too few' if len(poses) < 4 else 'too alike'} to follow gravity through",
                 {},
-                "Hold it still in poses that lean well away from each other, four or more.",
+                "Hold it still in four poses or more that lean well away from each other.",
             )
         if bias is None:
             self.say(
@@ -514,7 +514,7 @@ class _Bench:
             self.say(
                 "unit of the gyroscope",
                 RED if _said_unit(self.content.groups["gyroscope"].names) else YELLOW,
-                f"raw counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
+                f"counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
                 f"± {np.degrees(uncertain * unit):.1g} °/s, since then {carries}",
                 {"rad/s": unit},
                 f"Multiply by {np.degrees(unit):.4g} to have °/s.",
@@ -537,7 +537,7 @@ class _Bench:
             return np.where(np.arange(3) == odd[0], factor, 1.0)
         off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else YELLOW if off < 0.05 else RED
-        if cut_off or uncertain > 0.03 or left > np.radians(6):
+        if cut_off or uncertain > 0.03 or left > np.radians(3 if off < 0.05 else 6):
             light = UNKNOWN
         self.say(
             "scale of the gyroscope",
@@ -555,31 +555,32 @@ class _Bench:
         later on, in the second half of its poses than in the first.
         """
         if len(lying) > 1 and lying[-1].last - lying[0].first > len(self.time) / 2:
-            runs = [[one] for one in lying]
-            biases, doubts = (np.array(each) for each in zip(*map(self._resting, runs)))
-            least, when = np.radians(0.1), ("first lies still", "last does")
+            runs: list[Sequence[Stretch]] = [[one] for one in lying]
+            known = [self._resting(run) for run in runs]
+            sure, least = 8, np.radians(0.1)
         else:
-            runs = [list(poses[: len(poses) // 2 + 1]), list(poses[len(poses) // 2 :])]
+            runs = [poses[: len(poses) // 2 + 1], poses[len(poses) // 2 :]]
             if self.forces is None:
                 return False
             fits = [fit_scales(self.time, self.rates * scale, self.forces, run) for run in runs]
-            if any(fit is None or fit.left > 0.15 for fit in fits):
+            known = [(fit.bias, fit.bias_spreads) for fit in fits if fit and fit.left < 0.15]
+            if len(known) < 2:
                 return False
-            biases, doubts = (
-                np.array([getattr(fit, name) for fit in fits]) for name in ("bias", "bias_spreads")
-            )
-            least, when = np.radians(0.5), ("is moved", "is moved later")
+            if lying:
+                runs, known = [lying, *runs], [self._resting(lying), *known]
+            sure, least = 5, np.radians(0.5)
+        biases, doubts = (np.array(each) for each in zip(*known, strict=True))
         middles = np.array([self.time[(run[0].first + run[-1].last) // 2] for run in runs])
         slopes, starts = np.polyfit(middles, biases, 1)
         ends = starts + slopes * middles[[0, -1], None]
         change, doubt = np.abs(ends[1] - ends[0]), np.max(doubts, axis=0)
         worst = int(np.argmax(change / doubt))
-        if change[worst] < max((8 if len(runs) > 2 else 5) * doubt[worst], least):
+        if change[worst] < max(sure * doubt[worst], least):
             return False
         first, last = np.degrees(ends[:, worst])
         words = (
-            f"the bias about {'xyz'[worst]} is {first:.2f} °/s when it {when[0]} and "
-            f"{last:.2f} °/s when it {when[1]}"
+            f"the bias about {'xyz'[worst]} is {first:.2f} °/s at {middles[0]:.0f} s and "
+            f"{last:.2f} °/s at {middles[-1]:.0f} s"
         )
         advice = "let the filter estimate the bias, or subtract a line between the still stretches."
         warmth = self.content.temperature
@@ -663,9 +664,10 @@ class _Bench:
             self.say(
                 "accelerometer",
                 UNKNOWN,
-                f"still poses: {len(means)}, too few or too alike to separate offset and scale",
+                f"{len(means)} still pose{'s' * (len(means) != 1)}: too few or too alike to "
+                "separate offset and scale",
                 {},
-                "Hold it still in nine poses that lean all ways.",
+                "Hold it still in nine poses, each leaning another way.",
             )
             return
         lengths = np.linalg.norm(means, axis=1)
@@ -678,11 +680,13 @@ class _Bench:
             words += ", as where it is cut off"
         elif light != GREEN:
             name, offset, scales, left = uneven_lengths(means)
-            explained = left < 0.5 * uneven
+            spread = float(np.std(lengths))
+            explained = left < 0.5 * spread
             words += (
-                f". {name} would leave a range of {left:.3f}, checked on poses left out of the fit"
+                f". {name} would take their deviation from {spread:.3f} to {left:.3f}, checked on "
+                "poses left out of the fit"
                 if explained
-                else ", and neither offsets nor scales explain that"
+                else ", and no offset or scale halves their deviation"
             )
             if explained:
                 light = RED if uneven > 0.08 else YELLOW
@@ -888,11 +892,12 @@ class _Bench:
         if abs(lag) < max(2, round(0.03 / step)):
             return
         # A push that comes with each turn looks like a delay of the accelerometer, which therefore
-        # only says which of the two others is late.
+        # only says which of the two others is late. That one is early is rare.
         kind = "magnetometer"
         if "accelerometer" in seen:
             _, by_lag = lag_of(self.rates, seen["accelerometer"], step)
-            if by_lag[len(by_lag) // 2 + lag] < by_lag[len(by_lag) // 2]:
+            middle = len(by_lag) // 2
+            if by_lag[middle + lag] < (1.03 if lag < 0 else 0.97) * by_lag[middle]:
                 kind, lag = "gyroscope", -lag
         others = "others" if len(seen) > 1 or kind == "gyroscope" else "gyroscope"
         self.say(

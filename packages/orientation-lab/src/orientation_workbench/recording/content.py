@@ -167,7 +167,7 @@ def read_content(
     )
     if counted and said and not rate:
         rate = float(said[1])
-        clock += f", at {rate:g} a second as the lines above the numbers say"
+        clock += f", at {rate:g} per second as the lines above the numbers say"
     if counted:  # the samples of the first instrument are the clock, one by one
         ticks = first.time
         kinds = {
@@ -258,17 +258,16 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             return k, time, f"{column} with {table.columns[rest[0]]}, in s", False
     for k, column in enumerate(table.columns):
         values = table.values[:, k]
-        if np.isnan(values).any() or len(values) < 3 or _called(column.lower()) in PLAYED:
+        called = re.search(TIME, column.lower()) or _unit(column) in UNITS_OF_TIME
+        if not called or _called(column.lower()) in PLAYED or np.isnan(values).any():
             continue
         steps = np.diff(values)
         middle = np.median(steps)
         if middle > 0 and np.mean(steps >= 0) > 0.97:
             even = np.mean(np.abs(steps - middle) < 0.5 * middle)
-            called = bool(re.search(TIME, column.lower()))
-            if even > 0.6 or called:
-                precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
-                counts = bool(re.search(COUNTS, column.lower()))
-                candidates.append((float(called + precise + 0.5 * even - counts - 0.01 * k), k))
+            precise = "elapsed" in column.lower() or _unit(column) in UNITS_OF_TIME
+            counts = bool(re.search(COUNTS, column.lower()))
+            candidates.append((float(precise + 0.5 * even - counts - 0.01 * k), k))
     if not candidates:
         words = "there is no column of time"
         for k, column in enumerate(table.columns):
@@ -500,7 +499,7 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
     unit = min(GRAVITY, key=lambda one: abs(np.log(middle / GRAVITY[one])))
     if abs(np.log(middle / GRAVITY[unit])) < 0.2:
         return unit, GRAVITY[unit], middle / GRAVITY[unit] - 1
-    return f"counts, {middle:.4g} for gravity", middle, 0.0
+    return f"counts, {middle:.4g} to one g", middle, 0.0
 
 
 def unit_of_field(length: float) -> tuple[str, float]:
@@ -508,4 +507,4 @@ def unit_of_field(length: float) -> tuple[str, float]:
     for unit, (low, high) in FIELD.items():
         if low <= length <= high:
             return unit, length
-    return f"a unit of its own, {length:.4g} for the field", length
+    return "a unit of its own", length

@@ -252,7 +252,7 @@ def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
 
     Returns
     -------
-    name, offset of shape ``(3,)``, scales of shape ``(3,)``, and the range of lengths that is left
+    name, offset of shape ``(3,)``, scales of shape ``(3,)``, and the deviation of lengths then
         True is ``(measured - offset) / scales``.
     """
     axes = np.eye(3, dtype=bool)
@@ -275,7 +275,7 @@ def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
             scale[scales] *= 1 + found[offsets.sum() :]
         return offset, scale
 
-    best = ("Nothing", np.zeros(3), np.ones(3), float(np.ptp(np.linalg.norm(means, axis=1))))
+    best = ("Nothing", np.zeros(3), np.ones(3), float(np.std(np.linalg.norm(means, axis=1))))
     for name, (offsets, scales) in faults.items():
         if offsets.sum() + scales.sum() > len(means) - 3:
             continue
@@ -283,8 +283,8 @@ def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:
         for k, mean in enumerate(means):
             offset, scale = fitted(np.delete(means, k, axis=0), offsets, scales)
             lengths.append(np.linalg.norm((mean - offset) / scale))
-        left = float(np.ptp(lengths))
+        left = float(np.std(lengths))
         # What needs more numbers comes after what explains nearly all.
-        if left < best[3] and (offsets.sum() + scales.sum() == 1 or best[3] > 0.025):
+        if left < best[3] and (offsets.sum() + scales.sum() == 1 or best[3] > 0.008):
             best = name, *fitted(means, offsets, scales), left
     return best
