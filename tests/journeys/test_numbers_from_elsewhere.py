@@ -191,6 +191,17 @@ def test_a_trajectory_is_taken_for_no_instrument_and_the_answer_to_the_question_
     assert code == 3 and "a vector has three" in answer
 
 
+def test_of_a_walking_leg_no_axes_are_named_that_are_not_its_own():
+    """Pushes drown gravity there, and no magnetometer stands beside it."""
+    legs = REPOSITORY / "packages" / "orientation-lab" / "src" / "orientation_recordings" / "data"
+    for leg in ("lower_leg.csv", "upper_leg.csv"):
+        code, answer = bench(
+            legs / leg, "--quick", "--rate", "120", "--columns", "gyroscope=5-7:rad/s"
+        )
+        told = " ".join(answer.partition("axes of the gyroscope")[2].partition("ok  ")[0].split())
+        assert code == 0 and ("x, y, z" in told or "pushes hide gravity" in told), answer
+
+
 @pytest.mark.long
 def test_of_the_public_disagreements_none_is_named_falsely():
     done = subprocess.run(

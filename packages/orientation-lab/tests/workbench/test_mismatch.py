@@ -33,14 +33,14 @@ from orientation_workbench.mismatch import explanation, mend, search, table
 from orientation_workbench.mismatch.meaning import dcms_from_numbers, numbers_from_dcms
 from orientation_workbench.mismatch.text import read_poses
 
-#: Every day a few of each; among the long tests five hundred.
+#: Every day a few of each; among the long tests many.
 FEW_AND_ALL = pytest.mark.parametrize(
     "count, piece",
     [(40, 0), pytest.param(500, 1, marks=pytest.mark.long)],
 )
 FEW_AND_MANY = pytest.mark.parametrize(
     "count, piece",
-    [(10, 0), pytest.param(500, 1, marks=pytest.mark.long)],
+    [(10, 0), pytest.param(100, 1, marks=pytest.mark.long)],
 )
 
 

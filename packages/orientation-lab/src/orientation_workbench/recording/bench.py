@@ -285,7 +285,7 @@ class _Bench:
                 self.say(
                     "unit of the gyroscope",
                     UNKNOWN,
-                    "no heading gives it, and the instrument rotates too little to find it",
+                    "no heading gives it, and its rotations do not determine it",
                     {},
                     "Give it: --columns 'gyroscope=2-4:deg/s', or rotate it about all its axes.",
                 )
@@ -294,7 +294,7 @@ class _Bench:
             self.say(
                 "unit of the gyroscope",
                 UNKNOWN,
-                f"{names[unit]} by its heading; it rotates too little to check that",
+                f"{names[unit]} by its heading, which its rotations neither confirm nor refute",
                 {},
                 "Rotate it about all its axes.",
             )
@@ -379,10 +379,13 @@ class _Bench:
             rates = rates @ best.T
         elif fit is not None:
             ways = [written(ASSIGNMENTS[k]) for k in near[np.argsort(fit.shares[near])]]
+            words = f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}"
             self.say(
                 "axes of the gyroscope",
                 UNKNOWN,
-                f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}",
+                "pushes hide gravity, and nothing else determines them"
+                if fit.shares.min() > 0.8
+                else words,
                 {"margin": round(fit.margin, 2)},
                 "Rotate the instrument slowly about all three axes.",
             )
