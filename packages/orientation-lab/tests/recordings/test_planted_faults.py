@@ -38,7 +38,7 @@ NAMED = {
     "magnetometer soft iron": ("shape of the magnetometer", "multiply by the matrix"),
     "magnetometer axis reversed": ("axes of the magnetometer", "Use"),
     "magnetometer axes exchanged": ("axes of the magnetometer", "Use"),
-    "magnetic disturbance": ("field", "for a while"),
+    "magnetic disturbance": ("field", "for a while|that it passed"),
     "samples lost": ("missing samples", "missing"),
 }
 #: Soft iron moves the middle as well; a small bias or offset is there in many honest instruments.

@@ -731,21 +731,21 @@ class _Bench:
         before, dips = self._unevenness(self.field), self._dips(raw)
         uneven, about = before, "offset of the magnetometer"
         # The length is the field's alone; a dip may also vary with a wrong accelerometer.
-        cause = "Iron was near for a while: do not use the field there."
+        passed = "Iron was near for a while: do not use the field there."
+        undecided = (
+            "The cause is iron that moves with it, or iron that it passed, and the rotations do "
+            "not decide which. Do not use the field, or record a figure of eight far from iron."
+        )
+        useless = fit is None
         if fit is None:
             words = f"neither rotations nor lengths determine offset and shape{known}"
             advice = "Rotate it slowly through all directions, a figure of eight."
             self.say(about, UNKNOWN, words, {}, advice)
-            cause = (
-                "The cause is iron that moves with it, or iron that it passed, and the rotations "
-                "do not decide which. Do not use the field, or record a figure of eight far from "
-                "iron."
-            )
         else:
             corrected = (raw - fit.offset) @ fit.shape.T / fit.strength
             uneven_then, dips_then = self._unevenness(corrected), self._dips(corrected)
             # Neither lengths nor dips were used to fit: a correction that mends none is none.
-            useless = dips and dips_then and dips_then[1] > 1.2 * dips[1] + 0.5
+            useless = bool(dips and dips_then and dips_then[1] > 1.2 * dips[1] + 0.5)
             if useless or uneven_then > 0.8 * before + 0.01:
                 words = (
                     f"the correction that fits best changes the spread of the dip from "
@@ -767,11 +767,12 @@ class _Bench:
         light = GREEN
         if uneven > 0.06 or (dips and dips[1] > 6):
             light = RED if uneven > 0.12 or (dips and dips[1] > 12) else YELLOW
-            light = YELLOW if fit is None else light
+            light = YELLOW if useless else light
         words = f"its length varies by {uneven:.0%}" + (
             f", its dip by {dips[1]:.0f}° about {dips[0]:.0f}°" if dips else ""
         )
         evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
+        cause = undecided if useless else passed
         self.say("field", light, words, evidence, cause if uneven > 0.06 else "")
         trouble = {verdict.about for verdict in self.verdicts if verdict.light == RED}
         if dips and dips[0] < -5 and not any("axes" in about for about in trouble):
