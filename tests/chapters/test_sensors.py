@@ -283,13 +283,10 @@ def walk(seed, car):
     return "\n".join(["t,wx,wy,wz,ax,ay,az,mx,my,mz", *lines])
 
 
-@pytest.mark.long
-def test_the_bench_warns_of_no_walk_without_a_car():
-    """The chapter has twenty of its own; of half of these it had warned, once."""
-    assert (
-        sum(examine(walk(seed, False), "walk").light("filter") == "wrong" for seed in range(20))
-        <= 1
-    )
+def test_the_bench_finds_nothing_wrong_with_walks_without_a_car():
+    """Of half of such walks it had warned, once."""
+    lights = {examine(walk(seed, False), "walk").light("filter") for seed in range(3)}
+    assert lights == {"as it should be"}
 
 
 def named(word, chapter, *names):
