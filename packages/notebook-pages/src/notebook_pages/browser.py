@@ -7,14 +7,15 @@ import shutil
 import sys
 from contextlib import contextmanager
 
-# The first is the same engine without windows; it opens a page with a third less work.
+# The first is the same engine without windows, which opens a page with a third less work.
 NAMES = (
     "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome",
     "google-chrome-stable", "/Applications/Google "
     "Chrome.app/Contents/MacOS/Google Chrome", "/Applications/Chromium.app/Contents/MacOS/Chromium",
 )  # fmt: skip
 FLAGS = (
-    "--no-sandbox",  # for containers, where everything runs as root
+    # In containers everything runs as root.
+    "--no-sandbox",
     # The others keep the browser from talking to its maker.
     "--disable-background-networking",
     "--disable-component-update",

@@ -57,7 +57,8 @@ def make_pages():
         jupyter_book(["build", ".", *options], prog_name="jupyter-book")
     except SystemExit as end:
         return end.code
-    except Exception:  # what goes wrong within Sphinx, it raises
+    # Sphinx raises its own errors.
+    except Exception:
         traceback.print_exc()
         return 1
 
@@ -68,11 +69,11 @@ def main():
     if unchanged.is_unchanged(made_from):
         print(f"Nothing has changed since the last build: {HTML / 'index.html'}")
         return
-    # With these comes Sphinx: where all is built, nobody waits for it.
+    # These imports load Sphinx, so do them only if there is something to build.
     from . import install, lite, whole_book
 
     print("Building the book ...", flush=True)
-    # What was fetched for browsers is byte-compiled while the pages are read one by one.
+    # Byte-compile the wheels for browsers while the pages are being read.
     compiling = [sys.executable, "-c", "from notebook_pages import lite; lite.compile_ahead()"]
     ahead = None if lite.is_compiled() else subprocess.Popen(compiling)
     code = make_pages()
@@ -82,7 +83,7 @@ def main():
         print("These pages are missing from the build:", ", ".join(missing), file=sys.stderr)
         code = 1
     if code:
-        # Sphinx warns of a page only when it reads it: without this, a second try would find
+        # Sphinx warns about a page only when it reads it. Without this, a second try would find
         # nothing to do and call the same faulty book built.
         forget_site()
         sys.exit("The book could not be built: see the warnings above.")

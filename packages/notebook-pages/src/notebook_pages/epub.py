@@ -18,7 +18,7 @@ from .spoken import spoken
 
 STYLE = WEBSITE / "epub.css"
 MATHML, SVG = "http://www.w3.org/1998/Math/MathML", "http://www.w3.org/2000/svg"
-#: A parser of HTML writes all names in small letters; in XML these have capitals.
+#: An HTML parser writes all names in lower case, but in XML these have capitals.
 CAPITALS = {
     name.lower(): name
     for name in """
@@ -30,7 +30,7 @@ CAPITALS = {
 }
 BOLD = {ord(sign): 0x1D400 + k for k, sign in enumerate(ascii_uppercase + ascii_lowercase)}
 BOLD |= {ord(sign): 0x1D7CE + k for k, sign in enumerate(digits)}
-#: What needs a script or a form.
+#: Elements that need a script or a form.
 ALIVE = (
     "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, "
     ".progress-bar"
@@ -89,7 +89,7 @@ def as_mathml(formula):
     """A formula for reading programs: its MathML, and its words for those that know none."""
     math = formula.select_one("math").extract()
     math["alttext"] = spoken(math)
-    # Of bold letters reading programs know those that are signs of their own.
+    # Of the bold letters, reading programs know only those that are characters of their own.
     for letter in math.select("[mathvariant=bold]"):
         letter.string = letter.get_text().translate(BOLD)
         del letter["mathvariant"]
@@ -117,7 +117,8 @@ def in_xml(text):
         style.decompose()  # book.css has it
     for path in text.find_all("path"):
         if not path.get("d"):
-            path.decompose()  # a line that a script would draw
+            # Only a script would draw this line.
+            path.decompose()
     for label in text.find_all("label"):
         label.name, label.attrs = "span", {}
     for element in text.find_all(True):
@@ -127,7 +128,7 @@ def in_xml(text):
         kept = {}
         for name, value in element.attrs.items():
             words = " ".join(value) if isinstance(value, list) else value
-            # What scripts and the styles of the site ask for.
+            # Attributes that only scripts and the site's styles use.
             if name.startswith(("data-", "on")) or name in (
                 "tabindex",
                 "translate",
@@ -166,7 +167,8 @@ def files(site, title, author):
             elif home[name] != page:
                 link["href"] = f"{place(home[name])}.xhtml#{name}"
             elif name not in here:
-                link.unwrap()  # what it led to was for a screen
+                # Its target was for a screen only.
+                link.unwrap()
         body = str(text)
         properties = [
             kind for kind, mark in (("mathml", "<math "), ("svg", "<svg ")) if mark in body
@@ -224,7 +226,8 @@ def make(site, title, author):
             entry.compress_type, entry.create_system, entry.external_attr = kind, 3, 0o644 << 16
             archive.writestr(entry, text)
 
-        add("mimetype", "application/epub+zip", zipfile.ZIP_STORED)  # first, and as it is
+        # The standard requires this file first and uncompressed.
+        add("mimetype", "application/epub+zip", zipfile.ZIP_STORED)
         add("META-INF/container.xml", CONTAINER)
         for name, text in sorted(files(site, title, author).items()):
             add(f"book/{name}", text)

@@ -16,7 +16,8 @@ from .paths import exam_edition, is_solutions
 
 #: Between two sentences of a paragraph.
 BETWEEN = re.compile(r"(?<=[.!?])\s+")
-#: The label of a worked solution begins so, and that of a page of them is so.
+#: The label of a worked solution begins like this. The whole label of a page of them looks like
+#: this.
 LABEL = re.compile(r"solutions?(?:-|$)")
 
 
@@ -69,7 +70,8 @@ def strip(app: Sphinx, doctree: nodes.document) -> None:
 
 def begin(app: Sphinx, config: Config) -> None:
     if exam_edition():
-        app.connect("doctree-read", strip, priority=100)  # before others note what a page refers to
+        # Do this before other extensions record the references of a page.
+        app.connect("doctree-read", strip, priority=100)
 
 
 def setup(app: Sphinx) -> None:

@@ -18,16 +18,16 @@ from .paths import WEBSITE, fingerprint
 from .used import fingerprint_of_used, notebook_of
 from .warm_kernels import WarmAsyncKernelManager
 
-#: Notebooks that are shown as they were released and run by the
-#: tests; see ``execute`` in _config.yml.
+#: These notebooks are shown as they were released, and the tests run them; see ``execute`` in
+#: _config.yml.
 STORED = "exercises/"
-#: Beside the cache: what each notebook used when it was run.
+#: This file beside the cache lists the files that each notebook used when it ran.
 NOTES = "made-with.json"
 
 
 def name_cache(app, config):
     config.nb_execution_cache_path = str(Path(app.outdir).parent / "jupyter_cache")
-    # Pages are read again when the code that makes them changes.
+    # Read the pages again when the code that makes them changes.
     config.website_fingerprint = fingerprint(WEBSITE)
 
 
@@ -46,7 +46,8 @@ def throw_away_old_runs(paths, folder):
         if record.uri in changed:
             cache.remove_cache(record.pk)
     notes.parent.mkdir(parents=True, exist_ok=True)
-    # After the runs are gone: a break leaves none that is old.
+    # Write this only after deleting the runs, so that an interruption leaves none that is out of
+    # date.
     notes.write_text(json.dumps(made_with | now), "utf8")
     return changed
 
@@ -86,7 +87,8 @@ class Executor(JupyterExecutorLocalMproc):
 
     def __init__(self, cache):
         logger = logging.getLogger(__name__)
-        logger.setLevel(logging.WARNING)  # that a process begins or ends is no news
+        # Ignore messages about the start and end of a process.
+        logger.setLevel(logging.WARNING)
         super().__init__(cache, logger)
 
 

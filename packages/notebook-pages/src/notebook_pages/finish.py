@@ -22,14 +22,15 @@ VERSIONED = re.compile(
     r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
 )
 INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
-#: Programs and what a reader writes in, which stay; and where a line begins with blanks.
+#: Code, and fields that a reader writes in, keep their blanks; then the blanks at the beginning of
+#: a line.
 INDENTED = re.compile(r"(<(pre|textarea)\b.*?</\2>)|\n\s+", re.DOTALL)
 CHARSET = re.compile(
     r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?'
 )
-#: Styles stand in the text because KaTeX and the drawings place their parts by them. Scripts do
-#: not, except for those that the build has written, each known by its fingerprint; `blob:` is what
-#: a cell shows that the reader has run.
+#: Allow styles in the HTML because KaTeX and the drawings place their parts with them. Allow only
+#: the scripts that the build has written, each by its fingerprint. `blob:` is for results of cells
+#: that the reader has run.
 POLICY = {
     "default-src": "'self'",
     "script-src": "'self' 'wasm-unsafe-eval' blob:",

@@ -12,14 +12,14 @@ from docutils import nodes
 from sphinx import addnodes
 
 LATER = "later"
-#: How a block that is so marked begins; the word also stands in sentences.
+#: The start of a block with this mark. The word alone also occurs in sentences.
 MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
-#: More text than the first view of a large screen holds, in characters; and
-#: how many a large block counts for.
+#: More characters than the first view of a large screen can show, and the number that a large block
+#: counts for.
 FIRST_VIEW, LARGEST = 3200, 800
-#: A line of a column, which even the shortest block takes.
+#: The characters of one line, the least that a block counts for.
 LINE = 80
-#: What has no box of its own, or one that cannot be left empty.
+#: Elements without a box of their own, or whose box cannot be left empty.
 WITHOUT_BOX = (
     nodes.title,
     nodes.raw,

@@ -22,14 +22,14 @@ from .paths import NODE_MODULES, fingerprint
 KATEX = NODE_MODULES / "katex" / "dist"
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-#: Signs of the text: those that the book has, and a few more; with one of the
-#: others a page fetches the whole face.
+#: Characters of the text: those that the book uses, and a few more. A page with any other character
+#: fetches the whole face.
 LATIN = (
     "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
     "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
 )
 SELDOM = "U+A1-FF,U+131,U+152-153,U+2BC,U+2C6,U+2DA,U+2DC,U+200A-200B,U+2010-2026,U+20AC"
-#: Signs of formulas: letters, Greek, operators, brackets and accents.
+#: Characters of formulas: letters, Greek, operators, brackets and accents.
 GREEK = "U+3B1-3B9,U+3BB,U+3BC,U+3C0,U+3C1,U+3C3,U+3C4,U+3C6-3C9,U+3D5,U+3F5"
 FORMULAS = (
     "U+20-7E,U+A0,U+A8,U+AF-B1,U+B4,U+B7,U+D7,U+2C6,U+2C9,U+2D9,U+2DC,U+394,U+398,U+3A3,U+3A6,U+3A9,U+2013-2014,"
@@ -48,7 +48,7 @@ def _katex(face):
 
 
 FACES = (
-    # family, weight, style, file, signs, whether the whole file stands by
+    # Family, weight, style, file, characters, and whether the whole file is available as well.
     ("Source Serif 4", "400", "normal", _serif("400-normal"), LATIN, True),
     ("Source Serif 4", "400", "italic", _serif("400-italic"), LATIN, True),
     ("Source Serif 4", "600", "normal", _serif("600-normal"), LATIN, True),
@@ -61,8 +61,8 @@ FACES = (
     *((f"KaTeX_Size{n}", "400", "normal", _katex(f"Size{n}-Regular"), None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
-#: The reader's own typefaces until the book's are there: each as
-#: wide, on the average of English text.
+#: Use the reader's own typefaces until the book's have arrived, scaled to the same average width of
+#: English text.
 UNTIL_THEN = {
     "Georgia": 106.7, "Noto Serif": 98.9, "DejaVu Serif": 92.9, "Times New Roman": 117,
     "Roboto": 94, "Arial": 93.8, "DejaVu Sans": 82.5,
@@ -98,7 +98,7 @@ def cut(file, signs, weights):
     from fontTools.varLib import instancer
 
     font = TTFont(file)
-    # Without their hints, browsers that set whole pixels would set the letters of a formula wider.
+    # Without hints, browsers that round to whole pixels would make the letters of a formula wider.
     options = subset.Options(layout_features=FEATURES, hinting=True, notdef_outline=True)
     cutter = subset.Subsetter(options)
     cutter.populate(unicodes=list(codes(signs)) if signs else list(font.getBestCmap()))
@@ -110,7 +110,8 @@ def cut(file, signs, weights):
         font = instancer.instantiateVariableFont(
             TTFont(whole), {"wght": tuple(map(int, weights.split()))}
         )
-    font["head"].modified = font["head"].created  # the same bytes each time
+    # Make the same bytes each time.
+    font["head"].modified = font["head"].created
     font.recalcTimestamp = False
     font.flavor = "woff2"
     made = io.BytesIO()
@@ -207,7 +208,7 @@ def katex_rules(folder):
     rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
     if any(name.startswith("KaTeX") for name in known):
         raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
-    # KaTeX has not set these for years.
+    # KaTeX has not used these for years.
     return re.sub(r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules)
 
 
@@ -226,8 +227,8 @@ def write(app):
             shutil.copyfile(source, folder / name)
 
 
-#: How one sees in the HTML of a part of a page that it is set in a face; the faces that are not
-#: named here are on every page.
+#: Marks in the HTML of a part of a page which show that it uses a face. Faces that are not listed
+#: here are on every page.
 SEEN_BY = {
     ("Source Serif 4", "400", "italic"): r"<(?:em|cite|dfn)\b",
     ("KaTeX_Main", "400", "normal"): r"class=katex\b",
@@ -254,7 +255,7 @@ def add_to_head(app, pagename, templatename, context, doctree):
     context["first_fonts"] = [
         f"{folder}/{name_of(cut_faces() / face[3].name)}" for face in faces_in(first_part(body))
     ]
-    # As a style sheet says it, so that a script can ask for it.
+    # The format of a style sheet, so that a script can ask for the font.
     for name, html in (("first_faces", first_part(body)), ("all_faces", body)):
         context[name] = [
             f'{style} {weight.split()[0]} 1em "{family}"'

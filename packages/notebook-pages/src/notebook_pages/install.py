@@ -20,8 +20,8 @@ LIST = "offline.json"
 LASTING = "lasting.json"
 WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
-#: A path that names its content: in our folders, and as the makers of
-#: JupyterLite name the parts of its scripts.
+#: A path that contains a hash of the content, in our folders and in the names that JupyterLite
+#: gives to its scripts.
 BY_CONTENT = re.compile(
     r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
 )
@@ -112,8 +112,8 @@ def write_list(site):
     (site / LASTING).write_text(
         json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8"
     )
-    # The service worker of a book at the root of an address is asked for its neighbours' pages,
-    # too: it is told what belongs to the book. (The build writes the script anew each time.)
+    # The service worker of a book at the root of an address also gets requests for other pages
+    # there, so tell it which belong to the book. (The build writes the script again each time.)
     ours = sorted({path.partition("/")[0] for path in (*paths, LASTING)} - {"lite", WORKER})
     script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
     (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
@@ -135,5 +135,5 @@ def finish(app, exception):
 
 def setup(app):
     app.connect("html-page-context", add_to_head)
-    # After page.py, which takes away what no page uses.
+    # Run after page.py, which removes what no page uses.
     app.connect("build-finished", finish, priority=960)

@@ -34,7 +34,7 @@ MARK = re.compile(r"\s*<!--\s*step:\s*(?P<line>.*?)(?:\n\s*\n(?P<notes>.*?))?\s*
 SHOWS = re.compile(r"^shows:(.*)$", re.MULTILINE)
 LECTURES = "chapters/"
 STOP = re.compile(r"\bdata-stop=")
-#: What is to be seen in a hall, rather than heard.
+#: Parts that an audience sees rather than hears.
 SHOWN = (
     nodes.figure, nodes.math_block, nodes.Admonition, nodes.table, nodes.container,
     nodes.literal_block, nodes.image, nodes.enumerated_list, nodes.bullet_list, question,

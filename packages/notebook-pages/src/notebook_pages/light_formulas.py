@@ -15,16 +15,16 @@ from html import escape
 from .paths import NODE_MODULES, WEBSITE
 
 KATEX_STYLES = NODE_MODULES / "katex" / "dist" / "katex.css"
-#: The spaces of a formula, by their width in em.
+#: The spaces in a formula, by their width in em.
 SPACES = {"0.1667em": "s", "0.2222em": "u", "0.2778em": "q"}
-SMALL = 0.7  # size of letters that are raised or lowered
+# The size of raised or lowered letters.
+SMALL = 0.7
 SMALLER = ["katex-sizing", "reset-size6", "size3"]
-#: What book.css says of every such box.
+#: The style that book.css gives to every such box.
 USUAL = {"frac-line": ("border-bottom-width", "0.04em"), "arraycolsep": ("width", "0.5em")}
-#: Boxes that hold letters side by side, so that a group within them, which has no
-#: style of its own, changes nothing.
+#: Boxes with letters side by side, in which a group without a style of its own changes nothing.
 ROWS = {"katex-html", "katex-sizing", "tight", "delimcenter"}
-#: Operators that are what these attributes say without them.
+#: Operators that have these attributes by default.
 FENCES = set("()[]{},")
 
 

@@ -68,7 +68,7 @@ class MarkdownWriter:
         if isinstance(node, nodes.literal):
             ticks = "``" if "`" in node.astext() else "`"
             inner = all(isinstance(child, nodes.Text) for child in node.children)
-            # A number that Sphinx sets as code ("Exercise 2.1") is not code.
+            # A number that Sphinx marks up as code ("Exercise 2.1") is not code.
             is_reference = isinstance(node.parent, nodes.reference)
             return (
                 ticks + node.astext() + ticks if inner and not is_reference else self.inline(node)

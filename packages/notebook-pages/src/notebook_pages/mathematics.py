@@ -24,12 +24,12 @@ SCRIPT = WEBSITE / "katex.mjs"
 KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 
 PUNCTUATION = tuple(".,;:!?)")
-#: What the end of a line may not part from a formula: after it, and before it.
+#: Characters that a line break must not separate from a formula: after it, and before it.
 CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
-# signs, as a reader sees them, of a formula that need not be broken:
-# half a line of the narrowest page
+# The length, in visible characters, of a formula that need not be broken: half a line of the
+# narrowest page.
 SHORT = 18
-#: What TeX needs and nobody sees, or sees above or around another sign.
+#: Commands that TeX needs but that show nothing, or show it above or around another character.
 UNSEEN = re.compile(
     r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]"
 )
@@ -84,7 +84,7 @@ def katex(process):
 @cache
 def to_html(tex, display):
     """KaTeX's HTML for ``tex``; raises ValueError with KaTeX's own words."""
-    # KaTeX sets the rows of a matrix so close that fractions in them would touch.
+    # KaTeX puts the rows of a matrix so close together that fractions in them would touch.
     answer = katex(os.getpid())(tex, display, "1.6" if r"\frac" in tex else "1.15")
     if "fault" in answer:
         raise ValueError(answer["fault"].replace("\u0332", ""))

@@ -8,18 +8,18 @@ before it is added. What a cell prints may move by that, and by no more.
 import re
 from typing import NamedTuple
 
-#: What a number in a text may move by, as a share of its size, or absolutely if it is below 1.
+#: The largest change allowed in a printed number, relative to its size, or absolute below 1.
 ALLOWED = 1e-13
-#: What the coordinates of a drawing may move by, in its pixels: they are written to a tenth, and
-#: steps between two points are as wrong as both.
+#: The largest change allowed in the coordinates of a drawing, in its pixels. They are written to
+#: one decimal, and the step between two points is wrong by the errors of both.
 ALLOWED_IN_DRAWINGS = 0.21
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-#: A number that is no part of a word: neither of a name nor of a colour.
+#: A number that is not part of a name or a colour.
 FREE = re.compile(rf"(?<![\w#])(?<![\w#][.])(?:{NUMBER})(?![\w])")
-#: What places the lines and the letters of a drawing.
+#: The attributes that place the lines and the letters of a drawing.
 PLACING = re.compile(r'(?<= )(d|x|y|x1|x2|y1|y2|cx|cy|r|rx|ry|points|transform)="([^"]*)"')
-#: The name of a part of a drawing, which follows from the whole of it.
+#: The ID of a part of a drawing, which is a hash of the whole drawing.
 PART = re.compile(r"\b(?:g[0-9a-f]{10}|p[0-9a-f]{8})(?=-\d)")
 TOKEN = re.compile(rf"[A-Za-z]+|{NUMBER}")
 

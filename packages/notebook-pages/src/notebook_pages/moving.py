@@ -61,7 +61,7 @@ def scripts_and_styles(kinds):
         later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
     for kind in set(kinds) & set(bundle.BUILT):
         script = built(bundle.BUILT[kind])
-        # no older page meets a newer world
+        # An older page never loads a newer script.
         name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"
         later[name] = script
         texts |= {
@@ -131,7 +131,7 @@ def bring(app, exception):
         return
     target = Path(app.outdir) / "_static" / "moving"
     shutil.copytree(written, target, dirs_exist_ok=True)
-    # A loader names the script that it fetches; those that earlier builds have written go.
+    # A loader contains the name of the script that it fetches, so delete those of earlier builds.
     loaders = "".join(
         path.read_text("utf8")
         for kind in named(REGISTERED["figures"]).BUILT

@@ -35,7 +35,8 @@ def normalise(notebook):
         cell["id"] = f"cell-{position}"
         cell.metadata = {key: cell.metadata[key] for key in KEPT_IN_CELLS if key in cell.metadata}
         for output in cell.get("outputs", []):
-            output.get("data", {}).pop(WIDGET, None)  # it names a model in a kernel that is gone
+            # It refers to a model in a kernel that no longer exists.
+            output.get("data", {}).pop(WIDGET, None)
         cell.source = "\n".join(line.rstrip() for line in cell.source.strip().splitlines())
     return notebook
 
@@ -64,7 +65,8 @@ def run(path):
 
 def main():
     paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
-    with ThreadPoolExecutor(max_workers=2) as pool:  # each has a kernel of its own
+    # Each has its own kernel.
+    with ThreadPoolExecutor(max_workers=2) as pool:
         faults = [fault for fault in pool.map(run, paths) if fault]
     sys.exit("\n".join(faults) or 0)
 

@@ -10,8 +10,7 @@ import zipfile
 from .paths import LICENCES_SAID, WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
-#: What a page asks for ahead of its turn: from a disk nothing is,
-#: and browsers complain of the hint.
+#: A page from a disk preloads nothing, and browsers complain about the hints.
 AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 README = """{title}
 {line}

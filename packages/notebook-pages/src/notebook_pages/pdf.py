@@ -24,9 +24,9 @@ from .paths import LICENCES_SAID, NODE_MODULES, WEBSITE, edition, moment_of_sour
 from .spoken import spoken
 
 FACES = (
-    # The typefaces of the site that are variable fonts, here in fixed weights: a PDF holds variable
-    # ones as drawings. And one for code, which on a screen is the reader's own, with the Greek
-    # letters that code puts out.
+    # Fixed weights of the site's variable fonts, which a PDF would store as drawings; and a
+    # typeface for code, which on a screen is the reader's own, with the Greek letters that the
+    # output of code contains.
     ("Source Sans", "source-sans-3", "latin", 400),
     ("Source Sans", "source-sans-3", "latin", 600),
     ("Source Code Pro", "source-code-pro", "latin", 400),
@@ -51,8 +51,8 @@ NOTE = (
 )
 SMALLEST = 0.6  # of the size of the text; what is still too wide then stops the printing
 
-# Make what is wider than its column smaller; return what is still too wide. A page is as wide as
-# the document in a window of the same width, so both are laid out alike.
+# Shrink elements that are wider than their column, and return those that are still too wide. A page
+# is as wide as the document in a window of the same width, so both have the same layout.
 FIT = """smallest => {
   for (const box of document.querySelectorAll(".math-box")) {
     const formula = box.querySelector(".katex");
@@ -176,7 +176,7 @@ def tell_numbers(text):
             words = (
                 f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
             )
-            # Within it, brackets would be drawings of it.
+            # Inside it, a PDF would draw the brackets.
             figure.insert_after(BeautifulSoup(words, "html.parser"))
 
 
@@ -189,7 +189,8 @@ def article(site, page, set_formula=as_picture):
     for element in text.select(ONLY_ON_SCREEN):
         element.decompose()
     for heading in text.select("section > :is(h2, h3):only-child"):
-        heading.parent.decompose()  # all that stood under it was for the screen
+        # Everything under this heading was for the screen.
+        heading.parent.decompose()
     move_answers(text)
     tell_numbers(text)
     for formula in text.select(".katex"):
@@ -197,7 +198,7 @@ def article(site, page, set_formula=as_picture):
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
-        # A sentence that goes on below it, and a remark in italics right under a heading.
+        # A sentence that continues below, and a remark in italics directly under a heading.
         words, before = paragraph.get_text().strip(), paragraph.find_previous_sibling()
         remark = paragraph.em and paragraph.em.get_text() == words
         if words.endswith((":", ",")) or (remark and before and before.name in ("h1", "h2", "h3")):
@@ -207,16 +208,18 @@ def article(site, page, set_formula=as_picture):
             code["class"].append("long")
     for element in text.find_all(True):
         if element.get("role", "").startswith("doc-"):
-            del element["role"]  # in a PDF a link with such a role would be none
+            # With this role it would not be a link in a PDF.
+            del element["role"]
         if element.name == "figure":
-            # In a PDF it would be heard by that name alone.
+            # A PDF would read out only that name.
             element.attrs.pop("aria-labelledby", None)
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):
             if name == "href" and not re.match(r"\w+:", value):
                 if (found := target(page, value)) is None:
-                    element.unwrap()  # a download that does not come with the PDF
+                    # This download is not part of the PDF.
+                    element.unwrap()
                 else:
                     element["href"] = f"#{found}"
             elif name in NAMES_OF_OTHERS:
@@ -396,10 +399,11 @@ def finish(printed, headings, title, author):
         }
         pdf.trailer.Info = pdf.make_indirect(pikepdf.Dictionary(facts))
         with pdf.open_outline() as outline:
-            # Chromium makes the bookmarks, and some of their words twice.
+            # Chromium makes the bookmarks, with some of their words twice.
             for bookmark, words in zip(in_order(outline.root), headings, strict=True):
                 bookmark.title = words
-        pdf.Root.PageMode = pikepdf.Name.UseOutlines  # opened with the bookmarks beside it
+        # Open with the bookmarks beside the page.
+        pdf.Root.PageMode = pikepdf.Name.UseOutlines
         tagged.mend(pdf, printed)
         describe(pdf, title, author)
         pdf.save(
@@ -420,7 +424,8 @@ def print_document(browser, file, numbers):
     """
     page = browser.new_page(viewport={"width": WIDTH, "height": 900})
     page.emulate_media(media="print", color_scheme="light")
-    page.goto(file.resolve().as_uri(), timeout=0)  # as long as a slow machine needs
+    # A slow machine needs this long.
+    page.goto(file.resolve().as_uri(), timeout=0)
     page.evaluate("document.fonts.ready.then(() => true)")
     if faults := page.evaluate(FIT, SMALLEST):
         raise RuntimeError("too wide for the page of the PDF:\n" + "\n".join(faults))
@@ -436,8 +441,8 @@ def make(site, file, title, author):
     """The PDF of the built book in ``site``, printed from the document ``file``."""
     file.parent.mkdir(exist_ok=True)
     file.write_text(document(site, title), "utf8")
-    # The list of contents needs the page numbers: print, read them,
-    # print again, until they are true.
+    # The table of contents needs the page numbers, so print, read them, and print again until they
+    # no longer change.
     with open_browser() as browser:
         numbers = None
         for _ in range(4):

@@ -14,14 +14,15 @@ from types import SimpleNamespace
 from .paths import REGISTERED, fingerprint, named
 
 FOLDER = "pictures"
-#: The style sheet of the book's figures, and its colours on a light page, by name.
+#: The style sheet of the book's figures, and its colours on a light page by their names.
 FIGURES = (
     named(REGISTERED["style"])
     if "style" in REGISTERED
     else SimpleNamespace(STYLE="", LIGHT={"ink": "#000000"})
 )
 WIDTH, HEIGHT, MARGIN = 1200, 630, 40
-LARGEST = 300_000  # bytes: some who show pictures take no larger ones
+# In bytes. Some sites that show previews accept no larger pictures.
+LARGEST = 300_000
 FIGURE = re.compile(
     r'<svg (?=[^>]*viewBox="([^"]*)")(?=[^>]*role="img")'
     r'(?=[^>]*aria-label="([^"]*)")[^>]*>.*?</svg>',
@@ -73,7 +74,7 @@ def first_figure(body):
     found = FIGURE.search(body or "")
     if not found:
         return None
-    # Outlines that several figures of a page share may stand outside of it.
+    # Outlines that several figures of a page share may be stored outside the figure.
     shared = "".join(
         re.search(rf'<path [^>]*id="{name}"[^>]*>', body)[0]
         for name in dict.fromkeys(re.findall(r'<use [^>]*href="#([^"]+)"', found[0]))

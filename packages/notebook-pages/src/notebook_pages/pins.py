@@ -30,9 +30,9 @@ from .paths import REPOSITORY, WEBSITE
 from .set_up import IN_BROWSERS, LOCK, PACKAGE, WHEELS, npm
 
 CONSTRAINTS = REPOSITORY / "constraints.txt"
-#: Packages of npm that stay as they are, and why.
+#: npm packages that are not updated, with the reasons.
 HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
-#: What wheels for browsers ask for and do not get: front ends, which JupyterLite brings itself.
+#: Front ends, which wheels for browsers require and do not get, since JupyterLite has its own.
 NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
 

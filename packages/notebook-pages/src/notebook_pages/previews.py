@@ -115,5 +115,5 @@ def finish(app, exception):
 
 def setup(app):
     app.add_js_file("previews.js", loading_method="defer")
-    # When all pages are written, before their files are listed.
+    # Run after all pages are written and before their files are listed.
     app.connect("build-finished", finish, priority=965)

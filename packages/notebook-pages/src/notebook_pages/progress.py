@@ -19,8 +19,7 @@ from .paths import parts
 from .questions import question
 
 CHECK = re.compile(r"^check\(\s*[\"']([^\"']+)", re.MULTILINE)
-# What is counted, in the order of the columns: heading, and the
-# explanation in the foot of the table.
+# The columns in order: what each counts, its heading, and the explanation below the table.
 COLUMNS = {
     "read": "Sections read",
     "predictions": "Predictions",
@@ -127,7 +126,8 @@ def add_scripts(app, pagename, templatename, context, doctree):
         str(app.env.doc2path(pagename)).endswith(".ipynb") and pagename != app.config.root_doc
     )
     if has_table or is_notebook or cells_with_code(doctree):
-        app.add_js_file("progress.js", loading_method="defer", priority=400)  # before what uses it
+        # This script must come before those that use it.
+        app.add_js_file("progress.js", loading_method="defer", priority=400)
     if has_table:
         app.add_js_file("my-progress.js", loading_method="defer")
 

@@ -21,9 +21,10 @@ from .execution import STORED
 from .paths import LICENCES, LICENCES_SAID, edition
 from .take_away import notebook_address
 
-LONGEST = 200  # characters of a description: more is not shown anywhere
+# In characters. No site shows a longer description.
+LONGEST = 200
 SHORTEST = 50
-#: What stands beside the text.
+#: Elements beside the text.
 ASIDE = (nodes.Admonition, nodes.figure, nodes.list_item, nodes.table)
 
 
@@ -81,7 +82,7 @@ def plain_title(context):
 def write_head(app, pagename, templatename, context, doctree):
     """Give the page's template what it says of the page, and to whom readers write."""
     book = app.config.html_title
-    # The theme brings a tag for the size of the screen; docutils brings it once more.
+    # Both the theme and docutils add a tag for the size of the screen.
     context["metatags"] = re.sub(
         r'<meta[^>]*name="viewport"[^>]*>\s*', "", context.get("metatags") or ""
     )
@@ -147,8 +148,8 @@ def in_order(env):
     return [*found, *sorted(env.found_docs - set(found))]
 
 
-#: It stands in for any address, so nothing in it is relative: where no address is
-#: set, the script looks for the book.
+#: This page is shown at any address, so its links must not be relative. If no address is set, the
+#: script looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8" />
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -187,9 +188,9 @@ def write_files(app, exception):
     if exception or app.builder.format != "html":
         return
     site, address = Path(app.outdir), app.config.html_baseurl or ""
-    # GitHub Pages would leave out the folders that begin with an underscore.
+    # GitHub Pages would otherwise leave out folders whose names begin with an underscore.
     (site / ".nojekyll").touch()
-    # The page stands in for any address: only the path from the server's root leads away from it.
+    # This page is shown at any address, so only the path from the server's root works in its links.
     front = urlsplit(address).path or "/"
     (site / "404.html").write_text(
         NOT_FOUND.format(title=html.escape(app.config.html_title), front=front), "utf8"
@@ -197,7 +198,8 @@ def write_files(app, exception):
     robots = "User-agent: *\nAllow: /\n"
     sitemap = site / "sitemap.xml"
     sitemap.unlink(missing_ok=True)
-    if address:  # a sitemap holds whole addresses, or nothing
+    # A sitemap needs complete addresses.
+    if address:
         robots += f"Sitemap: {address}sitemap.xml\n"
         pages = "".join(
             f"<url><loc>{html.escape(address + quote(page))}.html</loc></url>\n"

@@ -14,7 +14,7 @@ from sphinx.util.docutils import SphinxDirective
 
 from .paths import where
 
-# The reply to a number that no other reply names.
+# The reply to a number that has no reply of its own.
 ANY_OTHER = "anything else"
 LETTERS = "ABCDEFGH"
 

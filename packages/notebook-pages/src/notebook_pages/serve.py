@@ -25,8 +25,8 @@ class Handler(SimpleHTTPRequestHandler):
         ".svg": "image/svg+xml",
     }
 
-    # Only an isolated page may share memory with its Python, which can then be interrupted and keep
-    # its names. Other servers may not send these headers; the page does without.
+    # Only an isolated page may share memory with its Python, which can then be interrupted without
+    # losing its variables. On servers that do not send these headers, the page does without.
     isolated = True
 
     def end_headers(self):

@@ -16,7 +16,7 @@ from .paths import FETCHED, NODE, NODE_MODULES, WEBSITE
 
 PACKAGE, LOCK = WEBSITE / "package.json", WEBSITE / "package-lock.json"
 WHEELS = [WEBSITE / place / "wheels.txt" for place in ("live", "lite")]
-#: For wheels that run in browsers. The Python that matters is not the one that asks.
+#: These wheels run in browsers, so the Python that downloads them does not matter.
 IN_BROWSERS = (
     "--python-version",
     "3.14",
@@ -41,7 +41,7 @@ def fetch_packages():
     with tempfile.TemporaryDirectory(dir=FETCHED) as folder:
         for file in (PACKAGE, LOCK):
             shutil.copy(file, folder)
-        # npm prints its own errors. Its cache lies here, since not every home can be written.
+        # npm prints its own errors. Its cache is here because some home folders are read-only.
         quietly = ("--loglevel=error", "--no-progress", "--no-audit", "--no-fund")
         npm("ci", "--ignore-scripts", *quietly, "--cache", Path(folder, "cache"), cwd=folder)
         shutil.rmtree(NODE_MODULES, ignore_errors=True)

@@ -29,7 +29,7 @@ def fold(soup):
         caption.insert_before(part)
         summary.append(caption.extract())
         part.extend([summary, pages.extract()])
-    # What no rule asks for at the side is said some fifty times on each page.
+    # Attributes of the sidebar that no rule uses are repeated some fifty times on each page.
     for entry in soup.select("li, a.internal"):
         entry["class"] = [name for name in entry["class"] if name not in UNUSED]
         if not entry["class"]:
@@ -54,5 +54,5 @@ def fold_contents(app, pagename, templatename, context, doctree):
 
 
 def setup(app):
-    # After the theme has put its function there.
+    # Run after the theme has put its function there.
     app.connect("html-page-context", fold_contents, priority=960)

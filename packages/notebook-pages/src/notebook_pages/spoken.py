@@ -11,7 +11,7 @@ import unicodedata
 
 from bs4 import NavigableString
 
-#: Signs that are said by another word than their name in Unicode.
+#: Characters that are read out by another word than their Unicode name.
 WORDS = {
     "=": "equals", "+": "plus", "−": "minus", "-": "minus", "±": "plus or minus",
     "∓": "minus or plus", "(": "open bracket", ")": "close bracket", "[": "open square bracket",
@@ -45,7 +45,7 @@ POWERS = {
     "∘": "degrees",
 }
 POWERS |= {"−1": "inverse", "′": "prime", "′′": "double prime", "⊤": "transpose"}
-#: What reaches over something, and how that is said when it is one thing.
+#: Operators with limits, and the word before the limit if there is only one.
 LIMITED = {"∑": "over", "∫": "over", "lim": "as", "min": "over", "max": "over"}
 BARS = "∣|∥‖"
 SCRIPTS = ("msup", "msub", "msubsup")
@@ -66,7 +66,8 @@ def parts(node):
 
 def bare(node):
     """The signs of ``node`` without blanks."""
-    return re.sub("[\u2061-\u2064]", "", "".join(node.get_text().split()))  # signs that nobody sees
+    # Characters that are invisible.
+    return re.sub("[\u2061-\u2064]", "", "".join(node.get_text().split()))
 
 
 def is_simple(node):
@@ -212,7 +213,8 @@ def row(nodes):
         elif text in ("×", "⋅"):
             words.append(product(text, before, after))
         elif text in ("[", "(") and after is not None and after.name == "mtable":
-            continue  # a table says itself where it begins and ends
+            # A screen reader announces the beginning and end of a table.
+            continue
         elif text in ("]", ")") and before is not None and before.name == "mtable":
             continue
         elif after_function and argument(node) is not None:

@@ -17,7 +17,7 @@ from .publish import in_order
 
 GLOSSARY, NOTATION = "appendix/glossary", "appendix/notation"
 REFERENCE = ("appendix/reference", "appendix/reference-going-further")
-#: Pages that speak of everything.
+#: Pages that mention everything.
 NOT_LISTED = (GLOSSARY, NOTATION, *REFERENCE, "index")
 MOST = 6  # pages of a term that is said and nowhere referred to
 
@@ -34,7 +34,8 @@ class SubjectIndex(SphinxDirective):
 
 def section_of(node):
     """The name of the section in which ``node`` stands."""
-    # The text of an exercise is a section whose name goes later: what counts is what holds it.
+    # The text of an exercise is a section whose name is removed later, so use the section around
+    # it.
     unnamed = ([], ["exercise-content"], ["solution-content"])
     while node is not None and not (isinstance(node, nodes.section) and node["ids"] not in unnamed):
         node = node.parent

@@ -17,15 +17,15 @@ import pypdfium2
 import pypdfium2.raw as pdfium
 from pikepdf import Array, Dictionary, Name, String
 
-#: What stands before the words of a formula, so that it is told from a picture.
+#: Words before those of a formula, which distinguish it from a picture.
 FORMULA = "\ue000"
-#: Types that PDF 1.7 does not know, and what they are of those that it knows.
+#: Types that PDF 1.7 lacks, and the types that replace them.
 ROLES = {"Strong": "Span", "Em": "Span"}
 GROUPS = ("Document", "Art", "Sect", "Div")
 INLINE = ("Span", "Strong", "Em", "Code", "Link", "Formula", "Lbl")
-#: Elements in which only other elements stand.
+#: Elements that contain only other elements.
 BARE = ("L", "Table", "TR")
-#: Elements that are heard by their words, not by what is in them.
+#: Elements that a screen reader reads by their description and not by their content.
 WORDED = ("Figure", "Formula")
 PATH = {"m", "l", "c", "v", "y", "h", "re", "W", "W*"}
 PAINT = {"f", "F", "f*", "S", "s", "B", "B*", "b", "b*", "n"}
@@ -184,7 +184,7 @@ class Stream:
                     raise RuntimeError(
                         f"page {self.page + 1} of the PDF has a marked sequence within another"
                     )
-                # What a sequence stands for is left as it is where it stands within another.
+                # Leave the replacement text of a sequence alone if it is inside another sequence.
                 is_kept = int(number[1]) in kept if number else bool(open_sequences)
                 open_sequences.append(bool(number))
                 out.append(line if is_kept else "/Artifact BMC")
@@ -192,8 +192,8 @@ class Stream:
             if operator == "EMC":
                 open_sequences.pop()
             elif not open_sequences:
-                # A path becomes an artifact when it is painted, not when
-                # it only cuts off what follows.
+                # A path becomes an artifact when it is painted, but not when it only clips what
+                # follows.
                 if operator in PATH and path is None:
                     path = len(out)
                 elif operator in PAINT:
@@ -251,7 +251,7 @@ def boxes(printed, pages):
                     continue
                 left, bottom, right, top = (side.value for side in sides)
                 least = found.setdefault(Piece(number, (), mark), [width, height, 0, 0])
-                # What is cut off by the edge of the page is not seen.
+                # Nobody sees what the edge of the page cuts off.
                 least[:2] = max(0, min(least[0], left)), max(0, min(least[1], bottom))
                 least[2:] = min(width, max(least[2], right)), min(height, max(least[3], top))
             page.close()

@@ -18,7 +18,7 @@ from .paths import LICENCES_SAID, REGISTERED, REPOSITORY, named, pages
 
 FOLDER = "take-away"
 ARCHIVE = "exercises.zip"
-#: What is measured, say, and comes beside the notebooks that import its package.
+#: Extra files such as measurements, which come with the notebooks that import their package.
 DATA = REGISTERED.get("data", {})
 EXERCISES = REPOSITORY / "exercises"
 KERNEL = {"name": "python3", "display_name": "Python 3", "language": "python"}
@@ -96,7 +96,8 @@ def make_notebook(app, docname, doctree):
     title, _, rest = cells[0].source.partition("\n\n")
     cells[0].source = "\n\n".join(filter(None, [title, note, rest]))
     for position, cell in enumerate(cells):
-        cell["id"] = f"cell-{position}"  # not random, so that builds are the same
+        # Do not use random IDs, so that builds are equal.
+        cell["id"] = f"cell-{position}"
     return nbformat.v4.new_notebook(
         cells=cells, metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
     )

@@ -14,9 +14,9 @@ from pathlib import Path
 from .paths import BUILD, HTML, REPOSITORY
 
 STAMP = BUILD / "built-from"
-#: Folders that no page is made from, beside those whose names begin with a dot.
+#: Folders that no page depends on, besides those whose names begin with a dot.
 NO_SOURCES = ("_build", "node_modules", "__pycache__", "tests")
-#: What sets up changes these when it has set up something else.
+#: The set-up changes these when it has set up something else.
 SET_UP = (".venv/ready-book", ".venv/runtime/ready", "node_modules/ready")
 
 
@@ -47,7 +47,7 @@ def of_sources() -> str:
     commit = subprocess.run(
         ["git", "-C", REPOSITORY, "rev-parse", "HEAD"], capture_output=True, text=True
     )
-    # The version of the package for students follows from the commit.
+    # The version of the students' package depends on the commit.
     said += [sys.version, commit.stdout]
     return fingerprint(said)
 

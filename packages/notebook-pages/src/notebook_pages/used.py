@@ -19,10 +19,10 @@ from .paths import PACKAGES, REGISTERED, REPOSITORY
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-#: What ``coursework`` finds by its entry point, which no import shows.
+#: The package that ``coursework`` finds through its entry point, which no import shows.
 PLUGIN = REGISTERED.get("plugin", "")
 SEALED = PACKAGES.get(PLUGIN, REPOSITORY) / "sealed"
-#: Versions of everything else that is imported.
+#: The versions of everything else that is imported.
 PINS = REPOSITORY / "constraints.txt"
 _PARSING = threading.Lock()
 
@@ -137,7 +137,7 @@ def package_of(path: Path) -> Path:
     return next(folder for folder in path.parents if (folder / "__init__.py").is_file())
 
 
-#: A new version by itself changes nothing of what a cell gives.
+#: A new version alone does not change the result of a cell.
 VERSION = re.compile(rb"^__version__ = .*$", re.MULTILINE)
 
 

@@ -29,7 +29,8 @@ LOADED = (
     "matplotlib.pyplot",
     "anywidget",
 )
-SETTINGS = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}  # as in every kernel
+# Every kernel does this.
+SETTINGS = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
 
 
 # ---- in the warm process
@@ -41,7 +42,8 @@ def main():
         importlib.import_module(name)
     assert threading.active_count() == 1, "a process with threads must not fork"
     gc.collect()
-    gc.freeze()  # what is loaded stays shared
+    # Keep the loaded modules in memory that the forks share.
+    gc.freeze()
     signal.signal(signal.SIGCHLD, reap)
     for line in sys.stdin:
         if (process := os.fork()) == 0:
@@ -119,7 +121,7 @@ class WarmProvisioner(LocalProvisioner):
 
 class FromWarmProcess:
     def start_kernel(self, **settings):
-        # Elsewhere a process that has loaded NumPy may not fork: a kernel is started.
+        # On other systems a process that has loaded NumPy cannot fork safely, so start a kernel.
         if sys.platform == "linux":
             self.kernel_id = str(uuid.uuid4())
             self.provisioner = WarmProvisioner(

@@ -30,10 +30,10 @@ from .paths import (
 NAME = REGISTERED.get("name", "book")
 FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
-STAMPS = BUILD / "whole-book.json"  # what they were made from
+# A fingerprint of their sources.
+STAMPS = BUILD / "whole-book.json"
 FRONT = "index.html"
-# The place on the front page: a comment in its source, and what
-# stands between it and the second mark.
+# The place on the front page: a comment in its source, and the text between it and the second mark.
 PLACE = re.compile(r"<!-- whole-book -->(?:.*?<!-- /whole-book -->)?", re.DOTALL)
 LINK = '<a href="take-away/{name}">{title}<small>{note}, {size:.1f} MB</small></a>'
 
@@ -129,7 +129,8 @@ def write_front_page():
     if after != before:
         new = BUILD / FRONT
         new.write_text(after, "utf8")
-        os.replace(new, HTML / FRONT)  # at once: nobody meets half a page
+        # Replace the file at once, so that nobody gets half a page.
+        os.replace(new, HTML / FRONT)
 
 
 def withdraw_outdated():

@@ -43,7 +43,8 @@ EXTENSIONS = (
 LABEXTENSIONS = Path(sys.prefix) / "share" / "jupyter" / "labextensions"
 KERNEL_WHEELS = LABEXTENSIONS / EXTENSIONS[0] / "static" / "pypi"
 KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
-STARTUP = "stand_in.ipy"  # what IPython runs first
+# IPython runs this first.
+STARTUP = "stand_in.ipy"
 NOTE = (
     "> This page of *{title}* runs in your browser. What you change is kept in this browser, on "
     "this machine; "
@@ -202,13 +203,13 @@ def write_workshop(site, settings, names):
         path.write_text(notebook_for(site, page, settings), "utf8")
     lock = sha256((site / runtime.FOLDER / LOCK).read_bytes()).hexdigest()[:12]
     version = runtime.official_lock()["info"]["python"].rpartition(".")[0]
-    # Of an address, JupyterLite takes only one that begins with "./" as relative to its own folder.
+    # JupyterLite takes an address as relative to its own folder only if it begins with "./".
     kernel = {
-        # The kernel takes it for a module by the end of the address,
-        # servers by the name of the file.
+        # The kernel recognises a module by the end of its address, and servers by the name of the
+        # file.
         "pyodideUrl": f"./../{runtime.FOLDER}/{runtime.pyodide_folder()}/pyodide.js?as=.mjs",
         "disablePyPIFallback": True,
-        # The name is the same in every version of the book: what follows it tells them apart.
+        # The name is the same in every version of the book, so a suffix distinguishes them.
         "loadPyodideOptions": {
             "lockFileURL": f"../{runtime.FOLDER}/{LOCK}?{lock}",
             "packages": names,
@@ -245,9 +246,9 @@ def bring_answers_first(target):
     before = page.read_text("utf8")
     start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
     script = f"../../{scripts.folder_name()}/notebook.js"
-    # Asked for by another name, a script that did not come is fetched once more; without it, or
-    # where nothing comes at all, the notebook opens as it is kept here, and the page's answers come
-    # into it another time. What it asks the reader may take as long as it likes.
+    # If a script did not arrive, fetch it once more under another name. Without it the notebook
+    # opens as it is stored here, and receives the page's answers another time. A question to the
+    # reader may stay open for any time.
     wait = (
         f"await Promise.race([import('{script}').catch(() => import('{script}?again')), "
         "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('it does not come')))])"
@@ -305,9 +306,9 @@ def write(site):
 
 def build_interface(target):
     """Build the interface with all that lies in the workshop, and put it in its place."""
-    # It drops local settings without a word if it finds the notes of an older run: the workshop is
-    # new each time. It dates all that lies beside its own folder, too, which were all pages of the
-    # site: the next build would take them for older than their sources.
+    # It silently drops local settings if it finds the notes of an older run, so make a new workshop
+    # each time. It also dates everything beside its own folder. If that were all pages of the site,
+    # the next build would take them for older than their sources.
     apart = WORKSHOP / "site" / FOLDER
     command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", apart.resolve()]
     environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}

@@ -62,7 +62,8 @@ def add_live_code(app, pagename, templatename, context, doctree):
     context["live_data"] = json.dumps(
         {
             "page": pagename,
-            "bytes": 0,  # finish.py puts in how many it takes to start Python
+            # finish.py fills in the number of bytes that it takes to start Python.
+            "bytes": 0,
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
             "pyodide": f"{runtime.pyodide_folder()}/",
             "lock": "",  # finish.py puts in where the packages of this edition are listed,
@@ -99,5 +100,5 @@ def setup(app):
     app.add_directive("cells-that-need-more", NeedsMore)
     app.connect("builder-inited", write_scripts)
     app.connect("html-page-context", add_live_code, priority=970)
-    # After take_away.py has built the wheel.
+    # Run after take_away.py has built the wheel.
     app.connect("build-finished", write_runtime, priority=900)

@@ -29,7 +29,7 @@ from ..used import fingerprint_of_used, names_imported, notebook_of, parse
 PYTHON = Path(__file__).parent / "python"
 PRETTY = Path(find_spec("IPython").submodule_search_locations[0], "lib", "pretty.py")
 RESULTS = REPOSITORY / "_build" / "runtime"
-#: MyST-NB's tags of cells whose code a page does not hold.
+#: MyST-NB's tags for cells whose code is not shown.
 HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
 ALONE = """
 import asyncio, json, sys
@@ -188,7 +188,7 @@ def classify(cells):
     kinds = []
     for position, (cell, told) in enumerate(zip(cells, run_alone(codes))):
         outcome = told["outcome"]
-        # A cell that was never run has nothing to compare: what it gives here is taken for right.
+        # A cell that never ran has no stored result to compare, so accept its result here.
         known = cell.execution_count is not None
         same = outcome["status"] == "ok" and (
             not known or alike(outputs_of_messages(told["messages"]), stored_outputs(cell))
@@ -199,7 +199,7 @@ def classify(cells):
             if outcome["status"] == "missing":
                 needs.add(outcome["package"])
             if outcome.get("plain"):
-                # What plain Python makes of it is not what the book prints, to the last digit.
+                # The result of plain Python differs from the book's in the last digit.
                 needs.add("numpy")
             if not needs and known:
                 raise RuntimeError(
@@ -216,7 +216,8 @@ def classify(cells):
                 "numpy": imports_numpy(cell.source),
             }
         )  # fmt: skip
-    wanted = set()  # the names that the cells below take, those that are left out not counted
+    # The names that the cells below use, without the cells that are left out.
+    wanted = set()
     for code, kind in zip(reversed(codes), reversed(kinds)):
         kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)
         if not kind["skip"]:

@@ -17,14 +17,14 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = tuple(f"{name}/" for name in Path("/wheels/ours.txt").read_text("utf8").split())
-# The sealed variants are fetched one by one: a reader needs few of
-# them. This file says where they are.
+# The sealed variants are fetched one by one, because a reader needs few of them. This file lists
+# where they are.
 APART = "/sealed/variants/"
 ELSEWHERE = "/sealed/elsewhere.txt"
-# What nobody needs in a browser: tests, and what Jedi, which
-# completes names, knows of 200 packages.
+# Files that no browser needs: tests, and Jedi's data on 200 packages for completing names.
 LEFT_OUT = (APART, "/tests/", "jedi/third_party/typeshed/stubs/", "jedi/third_party/django-stubs/")
-THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)  # the same sources give the same bytes
+# The same sources give the same bytes.
+THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def compiled(name, source):
@@ -75,6 +75,7 @@ def compile_wheel(path, target):
             wheel.writestr(zipfile.ZipInfo(name, THE_SAME_DATE), content, zipfile.ZIP_DEFLATED, 9)
 
 
-warnings.simplefilter("ignore", SyntaxWarning)  # told to the packages' authors, not to us
+# These warnings are for the packages' authors.
+warnings.simplefilter("ignore", SyntaxWarning)
 for path in sorted(Path("/wheels/in").glob("*.whl")):
     compile_wheel(path, Path("/wheels/out") / path.name)

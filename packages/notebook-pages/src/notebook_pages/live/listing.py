@@ -72,7 +72,8 @@ class NeedsMore(SphinxDirective):
             "|---|---|" + "---|" * len(COLUMNS),
             *(row(page, pages[page]) for page in sorted(some, key=order.index)),
         ]
-        self.env.note_reread()  # what a cell needs follows from our packages, too
+        # The needs of a cell depend on our packages, too.
+        self.env.note_reread()
         container = nodes.Element()
         self.state.nested_parse(StringList(lines, self.env.docname), self.content_offset, container)
         return container.children

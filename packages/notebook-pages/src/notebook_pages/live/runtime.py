@@ -25,13 +25,14 @@ from ..paths import NODE, NODE_MODULES, PACKAGES, REPOSITORY, fingerprint
 from ..take_away import FOLDER as TAKE_AWAY
 
 HERE = Path(__file__).parent
-# Where the set-up puts the wheels of wheels.txt.
+# The folder in which the set-up puts the wheels of wheels.txt.
 FETCHED = paths.FETCHED / ".venv" / "runtime" / "live"
-FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")  # and those of lite/wheels.txt
+# The folder for the wheels of lite/wheels.txt.
+FETCHED_FOR_NOTEBOOKS = FETCHED.with_name("lite")
 COMPILED = REPOSITORY / "_build" / "runtime"
 PYODIDE = NODE_MODULES / "pyodide"
-# Names in the site, by those in npm's package: servers that do not know
-# .mjs would send no script that runs.
+# Names in the site, with the names in npm's package. A server that does not know .mjs would not
+# send it as a script.
 PYODIDE_FILES = {
     "pyodide.js": "pyodide.mjs",
     "pyodide.asm.js": "pyodide.asm.mjs",
@@ -42,10 +43,11 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
-#: The book's own package, or SymPy alone: it leads to all that a page's Python starts with.
+#: The book's own package, or SymPy alone. Its dependencies are everything that a page's Python
+#: starts with.
 DISTRIBUTION = PROJECTS[-1].name if PROJECTS else "sympy"
-#: What moving figures talk with their Python through: wheels that the
-#: notebook interface needs as well.
+#: Wheels for the communication between moving figures and their Python, which the notebook
+#: interface needs as well.
 WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
 DEPENDS = {
     "sympy": ["mpmath"],
@@ -56,7 +58,8 @@ DEPENDS = {
     "anywidget": list(WIDGETS),
     "ipywidgets": ["comm", "traitlets"],
 }
-NUMERICAL = ("numpy", "matplotlib")  # not on PyPI for browsers; see the setting numpy_in_the_page
+# PyPI has no versions of these for browsers; see the setting numpy_in_the_page.
+NUMERICAL = ("numpy", "matplotlib")
 
 
 def pyodide_folder():
@@ -225,7 +228,7 @@ def write_variants(wheels, compiled, target):
                     kept.add((target / address).resolve())
                     for name in whole.namelist():
                         file = target / address / name.removeprefix(folder)
-                        # Named by what is in them.
+                        # Their names contain a hash of the content.
                         if name.startswith(f"{folder}variants/") and not file.is_file():
                             file.parent.mkdir(parents=True, exist_ok=True)
                             file.write_bytes(whole.read(name))

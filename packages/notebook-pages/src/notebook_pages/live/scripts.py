@@ -14,8 +14,8 @@ from .cells import PRETTY, PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-#: What a moving figure and its widget share; the figures of the build and
-#: those of the page's Python have one.
+#: The script that a moving figure and its widget share. The figures of the build and of the page's
+#: Python use one.
 MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
 
 
@@ -36,7 +36,9 @@ def write(site):
     for outdated in (site / FOLDER).glob("scripts-*"):
         if outdated != target:
             shutil.rmtree(outdated)
-    if not (target / "live.css").exists():  # the last of them, in a folder named by its sources
+    # live.css is written last, so it shows that this folder is complete. The name of the folder is
+    # a hash of the sources.
+    if not (target / "live.css").exists():
         write_loaded(target)
     static = site / "_static"
     static.mkdir(exist_ok=True)
@@ -47,7 +49,7 @@ def write(site):
         "--global-name=progress",
         f"--outfile={static / 'progress.js'}",
     )
-    # A service worker may act for the pages below it only.
+    # A service worker may control only the pages below it.
     put_together(JS / "service-worker.js", "--bundle", f"--outfile={site / 'service-worker.js'}")
 
 
@@ -72,7 +74,7 @@ def write_loaded(target):
             "--loader:.py=text",
             f"--outdir={target}",
         )
-    # What Python puts out is set in the page, in KaTeX's own words. Its rules are a
-    # layer: those of the page go before.
+    # KaTeX typesets the output of Python in the page. Its rules form a layer below those of the
+    # page.
     rules = f"@layer katex {{{katex_rules(f'../../{FONTS_FOLDER.as_posix()}')}}}\n"
     (target / "live.css").write_text((JS / "live.css").read_text("utf8") + rules, "utf8")

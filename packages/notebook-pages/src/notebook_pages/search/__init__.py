@@ -170,7 +170,8 @@ def entries_of_page(page, article):
         }
     for name in article.select("dl.py > dt.sig[id]"):
         words = name["id"].partition(".")[2]
-        if name["id"].count(".") <= 2:  # no methods of classes within modules
+        # Leave out methods of classes within modules.
+        if name["id"].count(".") <= 2:
             yield {
                 "kind": "function",
                 "title": words,
@@ -219,7 +220,7 @@ def index(site):
     for question, (place, *_) in questions(QUESTIONS):
         page, _, anchor = place.partition("#")
         asked.setdefault(page, {}).setdefault(anchor, []).append(question)
-    # Reading them takes most of the time, and few pages change between two builds.
+    # Reading the pages takes most of the time, and few of them change between two builds.
     memory = (
         site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
     )
@@ -228,7 +229,7 @@ def index(site):
         page = path.relative_to(site).with_suffix("").as_posix()
         if page in ("search", "404", "appendix/subject-index"):
             continue
-        # Drawings and programs are most of a page, and say nothing to the search.
+        # Drawings and code are most of a page, but no help in a search.
         text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
         key = sha256(f"{page}\n{text[text.find('<article') :]}".encode()).hexdigest()
         if key in kept:
@@ -253,8 +254,8 @@ def index(site):
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
-    # Equations are found by what stands in them, and figures are many and seldom
-    # what is looked for: they come later.
+    # Equations are found by their content, and figures are many but seldom looked for, so load both
+    # later.
     first = [one for one in entries if one["kind"] not in LATER]
     last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
     words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
@@ -318,7 +319,8 @@ def write(site):
 
 
 def begin(app):
-    app.builder.search = False  # Sphinx's own, which finds the words of a page and leads to its top
+    # Sphinx's own search finds the words of a page but leads only to its top.
+    app.builder.search = False
 
 
 def add_page(app):
@@ -338,5 +340,5 @@ def setup(app):
     app.connect("builder-inited", begin)
     app.connect("html-collect-pages", add_page)
     app.connect("html-page-context", add_address)
-    # When all pages are written, before they name its version.
+    # Run after all pages are written and before they state its version.
     app.connect("build-finished", finish, priority=970)

@@ -48,7 +48,8 @@ def handed_on(value):
         return value.__array__()
     if isinstance(value, Scalar):
         return value.__array__()[()]
-    if isinstance(value, (list, tuple)):  # one with names is made of its parts one by one
+    # A tuple with names takes its parts one by one.
+    if isinstance(value, (list, tuple)):
         return getattr(value, "_make", type(value))(map(handed_on, value))
     return value
 
@@ -109,14 +110,15 @@ class Part(types.ModuleType):
 
     def __init__(self, name, offered):
         super().__init__(name)
-        # For those who look whether there is a NumPy.
+        # For code that checks whether NumPy is installed.
         self.__spec__ = importlib.machinery.ModuleSpec(name, None)
         self.offered = offered
 
     def __getattr__(self, name):
         if name in self.offered:
             return self.offered[name]
-        if name.startswith("__") and name != "__version__":  # what Python asks of any module
+        # Python asks this of any module.
+        if name.startswith("__") and name != "__version__":
             raise AttributeError(name)
         found = real()
         for part in self.__name__.split(".")[1:]:
@@ -143,7 +145,7 @@ def step_aside(names):
     for part in (STAND_IN, *PARTS.values()):
         del sys.modules[part.__name__]
     numpy = importlib.import_module("numpy")
-    # Not here: this module knows by its own names which is the real one.
+    # Leave this module out, because its own names tell the real NumPy from the stand-in.
     others = [module for module in sys.modules.values() if isinstance(module, types.ModuleType)]
     for space in (names, *(vars(module) for module in others if module.__name__ != __name__)):
         for name, value in list(space.items()):
@@ -175,7 +177,8 @@ def is_fetched():
     """Whether the real NumPy could be imported."""
     try:
         return any(finder.find_spec("numpy", None) for finder in sys.meta_path)
-    except ModuleNotFoundError:  # in the words of whoever knows where it could come from
+    # A finder raises this, with its own message about where NumPy could come from.
+    except ModuleNotFoundError:
         return False
 
 
@@ -270,7 +273,8 @@ class Scalar:
         return as_array(self, dtype)[()]
 
     def __getattr__(self, name):
-        if name not in METHODS:  # others ask anything for its ``free_symbols``
+        # Other libraries ask every object for its ``free_symbols``.
+        if name not in METHODS:
             raise AttributeError(f"'numpy.{self.dtype}' object has no attribute {name!r}")
         return getattr(real().asarray(self.tolist())[()], name)
 
@@ -336,7 +340,7 @@ SCALARS = {"f": Number, "i": Integer, "b": Truth}
 OFFERED.update({"float64": Number, "int64": Integer, "bool_": Truth, "generic": Scalar})
 
 
-#: What the real array has; some of it is offered here, for the rest that is asked.
+#: The attributes of the real array. Some exist here, and the rest need the real NumPy.
 METHODS = set(
     """
     T all any argmax argmin argpartition argsort astype base byteswap choose clip compress conj
@@ -371,7 +375,8 @@ class Array:
     order; the shape; and their kind.
     """
 
-    __array_priority__ = -1  # where it meets the real one, that decides
+    # In an operation with an array of the real NumPy, the real one decides.
+    __array_priority__ = -1
     __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, entries, shape, kind, places=None):
@@ -1746,7 +1751,7 @@ def inv(a):
 @within("linalg")
 def det(a):
     stack_of, batch, n = matrices(a)
-    # Which digits it has next to zero differs between processors, with NumPy too.
+    # Its digits next to zero differ between processors, with NumPy too.
     return result([eliminated(rows, [[]] * n, careful=False)[1] for rows in stack_of], batch, "f")
 
 
@@ -1801,7 +1806,7 @@ def symmetric(a):
 def eigh(a):
     stack_of, batch, n = symmetric(a)
     found = [of_symmetric(rows) for rows in stack_of]
-    # A vector and its opposite are both right, and no rule says which LAPACK gives.
+    # A vector and its opposite are both right, and LAPACK does not say which it returns.
     vectors = [entry for _, rows in found for column in zip(*rows) for entry in column]
     sizes = Array([value for values, _ in found for value in values], (*batch, n), "f")
     return EighResult(sizes, Array(vectors, (*batch, n, n), "f"))
@@ -1874,8 +1879,8 @@ def svd(a, full_matrices=True, compute_uv=True):
         columns, own, right = singular(rows)
         if compute_uv:
             columns = orthonormal(columns, own)
-            # Which signs the vectors have no rule says, and they differ between processors with
-            # NumPy, too; the product of the factors is the matrix.
+            # No rule determines the signs of the vectors, and they differ between processors with
+            # NumPy, too. The product of the factors is the matrix.
             lefts += [entry for row in zip(*columns) for entry in row]
             rights += [entry for row in right for entry in row]
         sizes += own
@@ -1973,8 +1978,8 @@ def seeded(seed):
     return first << 64 | second, third << 64 | fourth
 
 
-#: NumPy's table of widths was made with rounded numbers: so far it is from the exact
-#: ones, in units in the last place.
+#: NumPy's table of widths was computed with rounding. This is its largest error, in units in the
+#: last place.
 ROUNDED = """
     -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7
     -8 -8 -8 -7 -8 -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4
@@ -2197,7 +2202,7 @@ def written_array(value, between, prefix):
     return lines(value, " " * (len(prefix) + 1), 1)
 
 
-# Whatever the methods of an array or a number cannot answer, those of the real ones can.
+# The real array or number can answer whatever these methods cannot.
 _OWN = {
     "__init__",
     "__getattr__",

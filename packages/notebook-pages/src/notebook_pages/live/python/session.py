@@ -63,7 +63,8 @@ class Absent(types.ModuleType):
     """Stands for a missing package until it is used: many a cell imports NumPy for later ones."""
 
     def __getattr__(self, attribute):
-        if attribute in ("__path__", "__file__", "__wrapped__"):  # what others ask of any module
+        # Other libraries ask this of any module.
+        if attribute in ("__path__", "__file__", "__wrapped__"):
             raise AttributeError(attribute)
         return getattr(importlib.import_module(self.__name__), attribute)
 
@@ -140,7 +141,7 @@ class Printed(io.TextIOBase):
         self.dropped += len(text) - len(kept)
         if kept:
             self.parts.append(kept)
-            # A few lines are sent at once, so that they are read while the cell works on.
+            # Send a few lines at once, so that they can be read while the cell works on.
             soon = self.messages < FIRST_LINES and kept.endswith("\n")
             if soon or time.monotonic() - self.sent > PAUSE:
                 self.flush()
@@ -177,7 +178,8 @@ class Events:
 class Shell:
     """One run of Python for one page: its names, and how its values are shown."""
 
-    colors = "neutral"  # SymPy asks, to choose a colour for pictures that nobody draws here
+    # SymPy asks for this to choose a colour for pictures that nobody draws here.
+    colors = "neutral"
 
     def __init__(self, send):
         self.send = lambda message: send(json.dumps(message))
@@ -236,7 +238,8 @@ class Shell:
                     )
                 self.send({"type": msg_type, "id": line.comm_id, "data": data})
 
-            def handle_msg(line, message):  # its own would tell the events of IPython's shell
+            # The original would report to the events of IPython's shell.
+            def handle_msg(line, message):
                 line._msg_callback(message)
 
         comm.create_comm = Line
@@ -349,7 +352,8 @@ class Shell:
         told = traceback.TracebackException.from_exception(error, compact=True)
         shorten(told)
         if isinstance(error, SyntaxError) and error.filename == name:
-            told.stack.clear()  # the parser's own lines say nothing of the cell's
+            # The parser's own lines do not belong to the cell's traceback.
+            told.stack.clear()
         return {
             "status": "error",
             "name": type(error).__name__,
@@ -406,7 +410,8 @@ def shorten(told):
     while told is not None:
         frames = [frame for frame in told.stack if frame.filename != __file__]
         own = [frame for frame in frames if frame.filename.startswith("cell ")]
-        if len(own) > 12:  # infinite recursion
+        # This is an infinite recursion.
+        if len(own) > 12:
             own = own[:4] + own[-4:]
         told.stack = traceback.StackSummary.from_list(own or frames[-1:])
         told = told.__cause__ or (None if told.__suppress_context__ else told.__context__)
