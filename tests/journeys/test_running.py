@@ -50,7 +50,7 @@ def test_a_book_kept_without_python_says_so_offline(page, site):
     page.locator("details.take-away summary").click()
     page.locator("button.keep-book").click()
     page.locator(".live-choices button").first.click()
-    said(page, "is kept in this browser")
+    said(page, "is stored in this browser")
     page.context.set_offline(True)
     page.reload()
     page.locator("button.run-cell:visible").first.click()

@@ -626,7 +626,7 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
     )
     tab = Tab(context, site).edit()
     tab.write(ANSWER, "mine = 1")
-    assert "forbids this page to keep anything" in tab.words() and "Take away" in tab.words()
+    assert "does not let this page store anything" in tab.words() and "Take away" in tab.words()
     path = tab.take().path()
     assert "mine = 1" in path.read_text("utf8")
     assert tab.errors == []

@@ -173,7 +173,7 @@ def test_forgotten_book_is_gone(engine, editions):
     with network(editions(1)) as (net, address):
         keep(engine, address, editions(1))
         engine.go(f"{address}index.html")
-        assert "no longer kept" in engine.run(KEEP, scripts_of(editions(1)), "Forget")
+        assert "no longer stored" in engine.run(KEEP, scripts_of(editions(1)), "Forget")
         assert engine.run("() => caches.has('book /')") is False
 
 

@@ -1012,7 +1012,7 @@ def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
     page.page.click("button.run-cell >> nth=2")
     page.wait()
     text = stop(page, 4, ENDLESS)
-    assert "Stopped." in text and "starts anew" in text
+    assert "Stopped." in text and "restarts" in text
     # The cells above run again first, so that their names are there.
     text = page.try_code(4, "theta, kept if 'kept' in globals() else 'new'")
     assert "new" in text and page.errors == []
@@ -1066,7 +1066,7 @@ def test_a_failure_is_named_and_the_next_run_tries_again(page_that_has_run):
             "broken",
             dict(body=b"\0asm, but broken", content_type="application/wasm"),
         ),
-        ("**/sympy*.whl", "not the file that this edition names", dict(body=b"no wheel")),
+        ("**/sympy*.whl", "not the file of this edition", dict(body=b"no wheel")),
     ],
 )
 def test_other_failures_are_named_and_the_next_run_tries_again(
@@ -1089,7 +1089,7 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
     )
     page.page.route(f"**/{QUIET}", lambda route: route.fulfill(body=text, content_type="text/html"))
     page.page.click("button.run-cell >> nth=2")
-    page.page.wait_for_selector("#live-words:has-text('published anew')")
+    page.page.wait_for_selector("#live-words:has-text('has been updated')")
     page.page.unroute_all()
     with page.page.expect_navigation():
         page.page.click(".live-choices button:has-text('Reload')")
@@ -1220,7 +1220,7 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
     page.page.reload()
     page.page.wait_for_selector(".cm-content", state="attached")
     assert "print('mine')" in page.cell(3).locator(".cm-content").inner_text()
-    assert "Your edits are here again" in page.words()
+    assert "Your edits are restored" in page.words()
     assert not [url for url in page.asked[-20:] if url.endswith(".wasm")], (
         "only the editor is loaded"
     )

@@ -125,7 +125,7 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         choice = page.locator(".live-choices button").first
         assert choice.inner_text() == f"The pages, {bytes_of['book'] / 1e6:.0f} MB"
         choice.click()
-        page.wait_for_selector("#live-words:has-text('is kept in this browser')")
+        page.wait_for_selector("#live-words:has-text('is stored in this browser')")
         assert page.faults == []
     # The server is gone.
     for other in ("chapters/euler-angles.html", "", "exercises/index.html?from=elsewhere"):

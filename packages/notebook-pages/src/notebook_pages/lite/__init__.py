@@ -57,7 +57,7 @@ NUMERICAL = (
 )
 PLACES = {
     "official": "`cdn.jsdelivr.net`, where Pyodide's makers serve them",
-    "folder": "the place of these pages",
+    "folder": "the server of these pages",
 }
 
 

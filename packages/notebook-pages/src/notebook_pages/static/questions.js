@@ -131,7 +131,7 @@
 
     const before = progress.here().answers[box.id];
     const covered = Number(box.dataset.covers) && !before ? cover(box) : null;
-    if (covered) box.append(make("p", { className: "cover-note", textContent: "What comes next is folded until you have answered." }));
+    if (covered) box.append(make("p", { className: "cover-note", textContent: "The next part is hidden until you answer." }));
     const uncover = () => {
       box.querySelector(".cover-note")?.remove();
       if (!covered?.inert) return;

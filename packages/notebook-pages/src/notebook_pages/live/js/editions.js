@@ -49,7 +49,7 @@ export class Editions {
   // What there is to keep: the server's list, in two parts, of [fingerprint, bytes] by path.
   async offered() {
     const answer = await fetch(this.address("offline.json"), { cache: "no-cache", signal: AbortSignal.timeout(SILENCE) });
-    if (!answer.ok) throw new Error("these pages do not say what there is to keep (offline.json)");
+    if (!answer.ok) throw new Error("this site has no list of the pages to store (offline.json)");
     return answer.json();
   }
 
@@ -97,7 +97,7 @@ export class Editions {
     let clock;
     const wait = () => {
       clearTimeout(clock);
-      clock = setTimeout(() => giveUp.abort(new Error(`for ${SILENCE / 1000} seconds nothing has come of ${path}`)), SILENCE);
+      clock = setTimeout(() => giveUp.abort(new Error(`${path} has sent nothing for ${SILENCE / 1000} seconds`)), SILENCE);
     };
     try {
       wait();
@@ -111,7 +111,7 @@ export class Editions {
       const content = await new Blob(parts).arrayBuffer();
       const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
       const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, print.length);
-      if (found !== print) throw new Error(`${path} is of another edition; try once more`);
+      if (found !== print) throw new Error(`${path} belongs to another edition; try again`);
       return new Response(content, { headers: { "Content-Type": answer.headers.get("Content-Type") ?? "application/octet-stream" } });
     } finally {
       clearTimeout(clock);

@@ -49,7 +49,7 @@ export class Figures {
     const box = element("div", "output text_html");
     if (model.get("_model_module") !== "anywidget") {
       box.append(preformatted("text_plain", data["text/plain"] ?? ""),
-        element("p", "live-note", "A control of ipywidgets: this page has its Python, and not its picture. In the notebook it works."));
+        element("p", "live-note", "This page cannot show this control of ipywidgets. The notebook can."));
       return box;
     }
     box.model = model;

@@ -7,17 +7,17 @@ const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e7 ? 1 : 0)} MB`;
 
 function hindrance() {
   if (!isSecureContext || !navigator.serviceWorker || !globalThis.caches) {
-    return "This browser, or this address (it is not https), does not let pages be kept. “Offline pages” on the front page is the same book as a zip.";
+    return "This browser, or this address (it is not https), cannot store pages. “Offline pages” on the front page is the same book as a zip.";
   }
-  return self === top ? null : "In a frame nothing can be kept: open the book in a tab of its own.";
+  return self === top ? null : "A page in a frame cannot store anything. Open the book in its own tab.";
 }
 
 async function take(tools, parts) {
-  tools.say("The book is being fetched ...");
+  tools.say("Downloading the book ...");
   try {
     await navigator.serviceWorker.register(`${SITE}service-worker.js`);
     await editions.renew(parts, tools.progress);
-    tools.say("The book is kept in this browser: its pages open without a network. Some browsers offer to install it as an app.");
+    tools.say("The book is stored in this browser, and its pages open without a network. Some browsers offer to install it as an app.");
     // Or the browser may make room when it likes. Some ask the reader, who may take their time.
     navigator.storage?.persist?.().catch(() => {});
   } catch (error) {
@@ -41,7 +41,7 @@ export async function keep(tools) {
     offer = await editions.offered();
   } catch (error) {
     if (!there) throw error;
-    return tools.say("The book is kept in this browser, and there is no network now.");
+    return tools.say("The book is stored in this browser, but there is no network now.");
   }
   const size = async (parts) => megabytes((await editions.missing(offer, parts)).reduce((all, [, [, bytes]]) => all + bytes, 0));
   const isNewest = there?.edition === offer.edition;
@@ -53,13 +53,13 @@ export async function keep(tools) {
   if (there) {
     actions["Forget it"] = async () => {
       await editions.forget();
-      tools.say("The book is no longer kept in this browser. Your answers still are.");
+      tools.say("The book is no longer stored in this browser. Your answers still are.");
     };
   }
   actions["Not now"] = () => tools.say("Nothing was changed.");
-  tools.ask(isNewest ? "The book is kept in this browser, for reading without a network."
-    : there ? "A copy of the book is kept here, of another edition. Renew it?"
-      : "Keep the book in this browser, for reading without a network? When these pages change, it fetches what has changed.", actions);
+  tools.ask(isNewest ? "The book is stored in this browser, for reading without a network."
+    : there ? "The copy stored here is of another edition. Update it?"
+      : "Store the book in this browser, for reading without a network? When the pages change, it downloads the changes.", actions);
 }
 
 // The sections of a page by their headings, without the sections within them.
@@ -82,9 +82,9 @@ export async function tellOfRenewal(tools) {
   if (!before || !now || before === now) return;
   const [old, fresh] = [sections(before), sections(now)];
   const changed = [...fresh].filter(([heading, text]) => old.get(heading) !== text).map(([heading]) => `“${heading}”`);
-  const what = !changed.length ? "The text of this page is the same."
-    : `On this page this has changed: ${changed.slice(0, 4).join(", ")}${changed.length > 4 ? ` and ${changed.length - 4} more` : ""}.`;
-  tools.ask(`A new edition of the book is here. ${what}`, {
+  const what = !changed.length ? "The text of this page has not changed."
+    : `Changed on this page: ${changed.slice(0, 4).join(", ")}${changed.length > 4 ? ` and ${changed.length - 4} more` : ""}.`;
+  tools.ask(`There is a new edition of the book. ${what}`, {
     "Show it": () => location.reload(),
     "Not now": () => tools.say("The page stays as it is until you open it again."),
   });

@@ -60,9 +60,9 @@ class Page {
     if (!cell || this.who?.contains(document.activeElement)) return;
     const name = coursework.read("me.txt")?.text ?? "";
     const field = Object.assign(element("input"), { value: name, name: "student", autocomplete: "email", spellcheck: false });
-    const label = element("label", "", "Your ID, as your course has it: ", field);
+    const label = element("label", "", "Your ID in your course: ", field);
     const button = element("button", "", name ? "Change" : "Give me my own numbers");
-    const words = name ? `The numbers on these pages are those of ${name}.` : "Your ID stays in this browser.";
+    const words = name ? `These pages use the numbers of ${name}.` : "Your ID stays in this browser.";
     const form = element("form", "live-note live-choice live-who", element("p", "", words), label, " ", button);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -72,7 +72,7 @@ class Page {
       button.blur();
       this.tellWhose();
       this.askWho();
-      this.bar.say(field.value.trim() ? "From the next run on, the numbers are your own." : "From the next run on, the numbers are the default ones.");
+      this.bar.say(field.value.trim() ? "From the next run on, you get your own numbers." : "From the next run on, you get the default numbers.");
     });
     if (this.who) this.who.replaceWith(form);
     else cell.input.after(form);
@@ -109,7 +109,7 @@ class Page {
     const check = this.cells.slice(cell.number).find(({ code }) => /\bcheck\(/.test(code));
     check?.output.querySelector(":scope > .live-outdated")?.remove();
     if (!changed || !check?.output.querySelector(":scope > :not(.live-others) .coursework-reply:not([data-outcome='not attempted'])")) return;
-    check.output.prepend(element("p", "live-known live-outdated", "This is the reply to an earlier answer. Run this cell to check what stands above it now."));
+    check.output.prepend(element("p", "live-known live-outdated", "This is the reply to an earlier answer. Run this cell to check the answer above it."));
   }
 
   // --- the reader's edits ----------------------------------------------------------------------
@@ -127,7 +127,7 @@ class Page {
     cell.own = cell.edited ? code : undefined; // until another tab's text takes its place
     if (store.isNewer) this.bar.say(`${NEWER} “Take away: with my answers” saves it.`);
     else if (!kept || window.keepsNothing) {
-      this.bar.say(`${window.keepsNothing ? "Your browser forbids this page to keep anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
+      this.bar.say(`${window.keepsNothing ? "Your browser does not let this page store anything" : "This browser has no room left for your answers"}: what you write lasts until you leave the page. “Take away: with my answers” saves it.`);
     }
     this.show();
   }
@@ -136,7 +136,7 @@ class Page {
   async bring() {
     this.showGiven();
     await this.lookAtNotebook();
-    if (this.reread()) this.bar.say("Your edits are here again. The results are the book’s until you run the page.");
+    if (this.reread()) this.bar.say("Your edits are restored. The results are the book’s until you run the page.");
     store.listen((key, text) => {
       if (key !== null && !key.includes(` ${this.answers.page} `)) return;
       const cell = this.cells.find(({ id }) => this.answers.isOf(id, key));
@@ -205,7 +205,7 @@ class Page {
     this.edit();
     const putAway = () => this.bar.say("It is put away. “Back up everything” still saves it.");
     const box = element("div", "live-note live-choice",
-      element("p", "", gone ? `You wrote this for “${name}”, which this page does not ask any more:`
+      element("p", "", gone ? `You wrote this for “${name}”, which this page no longer asks:`
         : "The book’s code here has changed since you edited it. This was yours:"),
       preformatted("stream", entry.code),
       ...(gone ? [choose("Put it away", putAway)]
@@ -249,7 +249,7 @@ class Page {
   // Run one cell, and before it what has not run yet; without a cell, the whole page.
   run(cell) {
     if (!cell && this.cells.every((other) => this.leftOut(other))) {
-      return this.bar.say("Each cell of this page draws a picture that is there already. Run below a cell draws it anew.");
+      return this.bar.say("Each cell of this page draws a picture that is already there. Run below a cell draws it again.");
     }
     // Asked twice by a quick hand: it is on its way.
     if (cell ? this.atWork(cell) : this.whole) return;
@@ -402,7 +402,7 @@ class Page {
     } else {
       const lost = status === "ended";
       const why = outcome.reason === "interrupted" || !lost ? "Stopped." : `Python broke off: ${outcome.reason}.`;
-      const then = lost ? " Python starts anew at the next run, and the page’s earlier cells run again first." : " What the cells before it have defined is still there.";
+      const then = lost ? " At the next run Python restarts, and the page’s earlier cells run first." : " Everything that earlier cells defined is still there.";
       cell.end(element("div", "live-note", element("p", "", why + then)));
       cell.ran = false;
       cell.stopped = cell.sent === cell.code; // it runs again when it is asked for, or changed; not because a later cell is
@@ -425,7 +425,7 @@ class Page {
     const parts = [`${plural(ran, "cell")} ran.`];
     if (plain) parts.push(`In ${plain} of them plain Python stood in for NumPy.`);
     const last = `${this.last[0].toUpperCase()}${this.last.slice(1)}`;
-    if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason stands below each.`);
+    if (missing.size) parts.push(`${plural(missing.size, "cell was", "cells were")} not run; the reason is below each.`);
     this.bar.say(alone || stopped || failed.length ? last : parts.join(" "));
   }
 
@@ -456,7 +456,7 @@ class Page {
     this.forget();
     for (const cell of this.cells) cell.restore();
     this.bar.progress(null);
-    this.bar.say("All is as the book has it, except for your edits. Python starts anew at the next run.");
+    this.bar.say("Everything is as in the book, except for your edits. Python restarts at the next run.");
   }
 
   show() {

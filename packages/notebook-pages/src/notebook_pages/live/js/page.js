@@ -67,7 +67,7 @@
   // Why this page can run no code and keep nothing, if so: its origin is no place that its own files share.
   const apart = self.origin !== "null" ? "" : location.protocol === "file:"
     ? "A page opened from disk cannot run code. In the folder of the book run: python serve.py, and open the address that it prints."
-    : "The page around this one shuts it off from its own files (its frame has a sandbox without allow-same-origin): no code runs here. Open this page in a tab of its own.";
+    : "The page around this one blocks its files (its frame has a sandbox without allow-same-origin), so no code runs here. Open this page in its own tab.";
   document.querySelector("a.open-notebook")?.addEventListener("click", (event) => {
     if (!apart) return;
     event.preventDefault();
@@ -112,12 +112,12 @@
     if (!error.isLost) return tools.say(`${what}: ${error.message}.`);
     const now = await fetch(location.pathname, { cache: "no-cache", signal: AbortSignal.timeout(5000) }).then((answer) => answer.ok && answer.text(), () => "");
     if (now && !now.includes(data.scripts.split("/").at(-2))) {
-      return tools.ask("This page has been published anew since you opened it, and its code runs after a reload. What you wrote here is kept.", {
+      return tools.ask("This page has been updated since you opened it. Reload it to run its code. What you wrote here is kept.", {
         "Reload": () => location.reload(),
       });
     }
     // A page that is kept in the browser answers without a network.
-    if (!now || !navigator.onLine) return tools.say(`${what}: ${now ? "this browser keeps the pages without Python, and there is no network" : "the place of these pages does not answer"}. Try once more when you have a network.`);
+    if (!now || !navigator.onLine) return tools.say(`${what}: ${now ? "this browser keeps the pages without Python, and there is no network" : "the server of these pages does not answer"}. Try again when you have a network.`);
     tools.say(`${what}: ${error.message}.`);
   };
   const open = () => (page ??= script("live.js").then(({ open }) => open({ data, boxes, bar: tools })));
@@ -231,7 +231,7 @@
       if (shown[number]) said = name && `Run this cell: you get the numbers of ${name}.`;
       else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
       else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and that stays known. ${now}: run the question and this cell to see how you stand.`;
-      else if (known.outcome === "correct") said = "✓ Correct, in an earlier check. Run this cell to see the reply to what stands above it now.";
+      else if (known.outcome === "correct") said = "✓ Correct, in an earlier check. Run this cell to see the reply to the answer above it.";
       else said = `You have tried this one before. ${run}`;
       if (!said) return;
       output.querySelector('.coursework-reply[data-outcome="not attempted"]')?.remove();

@@ -29,7 +29,7 @@ export class Python {
 
   watchSilence() {
     clearTimeout(this.silence);
-    this.silence = setTimeout(() => this.end("for 18 seconds nothing has come from the place of these pages"), SILENCE);
+    this.silence = setTimeout(() => this.end("the server of these pages has sent nothing for 18 seconds"), SILENCE);
   }
 
   hear(data, resolve, reject) {

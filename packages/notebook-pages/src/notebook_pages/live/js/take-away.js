@@ -29,7 +29,7 @@ function named(data, originals) {
 
 async function bookNotebook(data, originals) {
   const answer = await fetch(new URL(data.notebook, location.href), { cache: "no-cache" });
-  if (!answer.ok) throw new Error(`the page’s notebook did not come (${answer.status})`);
+  if (!answer.ok) throw new Error(`the page’s notebook could not be downloaded (${answer.status})`);
   const notebook = await answer.json();
   // The notebook may hold cells that the page does not show.
   const all = notebook.cells.filter((cell) => cell.cell_type === "code");
@@ -97,7 +97,7 @@ export async function load(data, originals) {
     kept = answers.write(name, { code: there, number: k + 1, original: fingerprint(originals[k]), at: Date.now() }) && kept;
     changed += 1;
   });
-  if (!kept) return "This browser has no room for what is in the notebook, or keeps nothing: not all of it was loaded.";
+  if (!kept) return "This browser has no room for everything in the notebook, or stores nothing, so not all of it was loaded.";
   const more = codes.length - originals.length;
   const own = more > 0 ? ` ${count(more, "cell")} of yours that the page does not have ${more === 1 ? "stays" : "stay"} in the file.` : "";
   return `${changed ? `${count(changed, "cell")} changed` : "Nothing is different"}: what stood in ${changed === 1 ? "it" : "them"} before is kept below each cell.${own}`;
@@ -152,6 +152,6 @@ export async function restore() {
     await writeCopy(place, { ...copy, path: place, name: place.split("/").at(-1) });
     brought += 1;
   }
-  const lacking = kept ? "" : " This browser has no room for all of it: what found none is on this page until you leave it, and in the file.";
-  return `${count(brought, "answer or notebook", "answers and notebooks")} brought back; what was here and newer stands.${lacking}`;
+  const lacking = kept ? "" : " This browser has no room for all of it: the rest is on this page until you leave it, and in the file.";
+  return `${count(brought, "answer or notebook", "answers and notebooks")} restored; newer work here is kept.${lacking}`;
 }

@@ -105,7 +105,7 @@ function watchFetching(all) {
     try {
       return await plain(whole, { integrity });
     } catch {
-      throw fail("it is not the file that this edition names");
+      throw fail("it is not the file of this edition");
     } finally {
       URL.revokeObjectURL(whole);
     }
@@ -168,7 +168,7 @@ async function start({ runtime, pyodide, lock: listed, interrupts }) {
     env: { HOME: "/home/reader", MPLBACKEND: "agg" },
   });
   const lost = [lock.first, ...packages[lock.first].depends, "sympy", "mpmath"].find((name) => !(name in python.loadedPackages));
-  if (lost) throw new Error(faults[0] ?? `${lost} could not be loaded: the file is not the one that this edition names`);
+  if (lost) throw new Error(faults[0] ?? `${lost} could not be loaded: the file is not the one of this edition`);
   const site = python.runPython("import sysconfig; sysconfig.get_path('purelib')");
   for (const folder of ["core", "lib"]) python.FS.mkdirTree(`${site}/IPython/${folder}`);
   for (const [name, text] of Object.entries(FILES)) python.FS.writeFile(`${site}/${name}`, text);
