@@ -318,7 +318,7 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
         asked("support", "choice", "'left'", ", options=['left', 'right']", 3),
         asked("bent", "expression", "0.6", "", 2),
         asked("loads", "vector", "[1, 0, -2]", ", length=3", 2),
-        asked("ends", "truth values", "[True, False]", ", length=2, exam=True", 1),
+        asked("ends", "truth values", "[True, False]", ", length=2, exam=True, fixed='Two ends.'", 1),
     ]
     write_source(course / "solutions", *cells, name="beam")
     monkeypatch.chdir(course)
@@ -326,8 +326,9 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
     said = capsys.readouterr().out
     assert "beam/support, 3 points: one of 2 answers." in said
     assert "beam/loads, 2 points: one of 125 answers." in said
-    assert "5 of 8 points have an answer that a script" in said and "beam/bent" not in said
+    assert "5 of 8 points have an answer that a script" in said and "beam/bent, 2" not in said
     assert "8 of 8 points in exercise notebooks have one answer for everybody." in said
+    assert "beam/bent (2): vary it, or" in said and "beam/ends (1): Two ends." in said
 
 
 def test_one_notebook_is_tried_alone(statics, tmp_path, monkeypatch, capsys):

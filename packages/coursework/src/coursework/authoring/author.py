@@ -150,6 +150,8 @@ class AuthoredQuestion:
         guess would earn.
     rubric : tuple of str, or dict
         What a person looks for who reads the answers; with the points that each line is worth.
+    fixed : str
+        Why the question has one answer for everybody.
     entries : dict
         :class:`Entry` by fingerprint: the right answer and every mistake that differs from it.
     no_mistakes : list of str
@@ -174,6 +176,7 @@ class AuthoredQuestion:
         after: Mapping[str, Sequence[str]] | None = None,
         solution: str = "",
         title: str = "",
+        fixed: str = "",
         turns: Iterable[Turn] = (),
         turned: Turn | None = None,
         authored: Mapping[str, Any] | None = None,
@@ -188,7 +191,7 @@ class AuthoredQuestion:
         self.partial = partial
         self.rubric = dict(rubric) if isinstance(rubric, dict) else tuple(rubric or ())
         self.hints, self.after, self.solution = dict(hints or {}), dict(after or {}), solution
-        self.pages = Pages(b"")
+        self.pages, self.fixed = Pages(b""), fixed
         self.turns, self.turned = list(turns), turned
         self.ladder = ladder_of(public, ladder, self.turns)
         self.plain = self.to_plain(answer)

@@ -25,11 +25,12 @@ MOST = 2**16
 
 
 class Asked(NamedTuple):
-    """A question with its points, its variants, and the number of possible answers."""
+    """A question: its points, its variants, its possible answers, and why it is fixed."""
 
     worth: float
     variants: int
     possible: int | None
+    fixed: str
 
 
 def possible_answers(question: AuthoredQuestion) -> int | None:
@@ -76,7 +77,9 @@ def _asked_in(path: Path, course: Course) -> dict[str, Asked]:
     with contextlib.redirect_stdout(io.StringIO()):
         source = read_source(path, edition=course.edition)
     return {
-        name: Asked(question.worth, question.public.variants, possible_answers(question))
+        name: Asked(
+            question.worth, question.public.variants, possible_answers(question), question.fixed
+        )
         for name, question in source.questions.items()
     }
 
@@ -88,13 +91,13 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     -------
     list of str
         A line for each question with a closed answer that is worth more than a point, the points
-        behind closed answers, and the points with one answer for everybody.
+        behind closed answers, and the points with one answer for everybody, with the reasons.
     """
     paths = notebooks_in(course.sources, only)
     with processes_for(paths) as pool:
         found = list(pool.map(_asked_in, paths, [course] * len(paths)))
     asked = {name: one for some in found for name, one in some.items()}
-    exercises = [one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS]
+    exercises = {name: one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS}
     lines = [
         f"{name}, {one.worth:g} points: one of {one.possible} answers. Trying them all finds it; "
         "ask for several parts in one answer, for a function, or say exam=True."
@@ -108,9 +111,15 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
         "tries. A script that builds formulas finds more."
     )
     if exercises:
-        fixed = sum(one.worth for one in exercises if one.variants == 1)
-        points = sum(one.worth for one in exercises)
+        fixed = {name: one for name, one in exercises.items() if one.variants == 1}
         lines.append(
-            f"{fixed:g} of {points:g} points in exercise notebooks have one answer for everybody."
+            f"{sum(one.worth for one in fixed.values()):g} of "
+            f"{sum(one.worth for one in exercises.values()):g} points in exercise notebooks have "
+            "one answer for everybody."
         )
+        lines += [
+            f"  {name} ({one.worth:g}): "
+            + (one.fixed or "vary it, or give the reason with `fixed`.")
+            for name, one in fixed.items()
+        ]
     return lines

@@ -229,6 +229,8 @@ def read_source(
             return
         if "kind" not in about:
             raise author.AuthorError(f"{name}: give its kind, for example kind='expression'.")
+        if name in rules and about.get("fixed"):
+            raise author.AuthorError(f"{name}: you draw variants for it, so leave out `fixed`.")
         if name not in rules:
             if not variant:
                 questions[name] = author.question(name, about.pop("kind"), answers[name], **about)

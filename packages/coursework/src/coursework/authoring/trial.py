@@ -7,17 +7,21 @@ import re
 from pathlib import Path
 
 from ..checking.reply import mathml, to_html
-from ..checking.variants import image
-from ..checking.variants import text_of as whole_text
+from ..checking.variants import text_of
 from .author import AuthoredQuestion, AuthorError, to_page
 from .course import Course
-from .release import shows_variants
 from .selftest import try_question, write_page
-from .source import Source, answered_in, read_source
+from .source import read_source, texts_of_questions
+
+#: All variants of a question stand side by side, to be compared.
+SIDE_BY_SIDE = (
+    "<style>.variants{display:grid;gap:1rem;"
+    "grid-template-columns:repeat(auto-fill,minmax(min(22rem,100%),1fr))}</style>"
+)
 
 
 def trial(course: Course, name: str, page: str | Path) -> str | Path:
-    """Write a page on one question, or on all questions of a notebook.
+    """Write a page on one question with all of its variants, or on all questions of a notebook.
 
     Parameters
     ----------
@@ -41,17 +45,49 @@ def trial(course: Course, name: str, page: str | Path) -> str | Path:
         raise AuthorError(
             f"There is no question {name!r}; {path.name} has {', '.join(source.questions)}."
         )
+    heads = texts_of_questions(source.notebook, source.figures)
     texts = "".join(
-        f"<section><h2>{html.escape(question.name)}</h2>{_under(to_page(_text(source, question)))}"
-        "<details><summary>The worked "
-        f"solution</summary>{to_page(question.solution) or '<p>None.</p>'}</details>"
+        f"<section><h2>{html.escape(question.name)}</h2>{_shown(heads[question.name], question)}"
         f"{_hints(question)}{_rubric(question)}</section>"
         for question in chosen
     )
     findings = [try_question(question) for question in chosen]
+    if name != notebook:
+        texts += _variants(path, chosen[0])
     Path(page).parent.mkdir(parents=True, exist_ok=True)
     Path(page).write_text(_with_mathematics(write_page(findings, None, texts)), "utf8")
     return page
+
+
+def _variants(path: Path, question: AuthoredQuestion) -> str:
+    """All variants, each with its text, its answer, its mistakes and its worked solution."""
+    own = (
+        read_source(path, number, only=[question.name], pictures=True).questions[question.name]
+        for number in range(question.public.variants)
+    )
+    each = "".join(
+        f"<section><h3>Variant {one.number}</h3>{_shown('', one)}"
+        f"<p>Answer: <code>{html.escape(str(one.answer))}</code></p><ul>"
+        + "".join(
+            f"<li>{to_html(str(mistake.details['text']))} "
+            f"<code>{html.escape(str(mistake.answer))}</code></li>"
+            for mistake in one.mistakes
+            if mistake.note == "authored"
+        )
+        + "</ul></section>"
+        for one in own
+    )
+    return f'{SIDE_BY_SIDE}<div class="variants">{each}</div>' if question.public.variant else ""
+
+
+def _shown(above: str, question: AuthoredQuestion) -> str:
+    """The text of a question as students meet it, with its worked solution folded below it."""
+    variant = question.public.variant
+    text = above.replace(variant.text, "") + "\n\n" + text_of(variant) if variant else above
+    return (
+        f"{_under(to_page(text))}<details><summary>The worked solution</summary>"
+        f"{to_page(question.solution) or '<p>None.</p>'}</details>"
+    )
 
 
 def _under(text: str) -> str:
@@ -62,39 +98,6 @@ def _under(text: str) -> str:
 def _with_mathematics(page: str) -> str:
     """The page with its formulas as browsers show them."""
     return re.sub(r"(\${1,2})([^$<]+)\1", lambda found: mathml(html.unescape(found[2])), page)
-
-
-def _text(source: Source, question: AuthoredQuestion) -> str:
-    """All that stands above a question as students meet it: the
-    heading, the text and the pictures.
-    """
-    return "\n\n".join(
-        [
-            *_above(source, question),
-            *([whole_text(question.public.variant)] if question.public.variant else []),
-        ]
-    )
-
-
-def _above(source: Source, question: AuthoredQuestion) -> list[str]:
-    """The Markdown and the figures between the question before and
-    the cell that its answer stands in.
-    """
-    cells = source.notebook.cells
-    above: list[str] = []
-    owners = {known.variable or "": name for name, known in source.questions.items()}
-    for number, cell in enumerate(cells):
-        if cell.cell_type == "markdown":
-            if not shows_variants(cells, number):
-                heading = cell.source.lstrip().startswith("#")
-                above = [cell.source] if heading else [*above, cell.source]
-        elif number in source.figures:
-            above.append(image(source.figures[number].picture(), source.figures[number].alt))
-        elif question.variable in answered_in(cell.source, owners):
-            return above
-        elif answered_in(cell.source, owners):
-            above = []
-    return above
 
 
 def _rubric(question: AuthoredQuestion) -> str:
