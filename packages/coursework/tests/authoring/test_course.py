@@ -318,7 +318,9 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
         asked("support", "choice", "'left'", ", options=['left', 'right']", 3),
         asked("bent", "expression", "0.6", "", 2),
         asked("loads", "vector", "[1, 0, -2]", ", length=3", 2),
-        asked("ends", "truth values", "[True, False]", ", length=2, exam=True, fixed='Two ends.'", 1),
+        asked(
+            "ends", "truth values", "[True, False]", ", length=2, exam=True, fixed='Two ends.'", 1
+        ),
     ]
     write_source(course / "solutions", *cells, name="beam")
     monkeypatch.chdir(course)
