@@ -56,10 +56,11 @@ def test_the_book_has_variants_that_stay_small():
     assert len(counts) >= 60 and sum(count >= 16 for count in counts) >= 27
     assert sum("picture" in about for about in of_the_book().values()) >= 4
     files = list(COURSE.sealed.rglob("*.json"))
-    assert sum(path.stat().st_size for path in files) < 1_750_000
+    # Nearly every question varies, so this is half as much again as when a half of them did.
+    assert sum(path.stat().st_size for path in files) < 2_700_000
     for path in (COURSE.sealed / "variants").glob("*.json"):
-        # All that a student's own variant needs beside the first.
-        assert path.stat().st_size < 20_000, path
+        # All that a student's own variant needs beside the first, with up to three figures.
+        assert path.stat().st_size < 36_000, path
         first = json.loads(
             (COURSE.sealed / f"{path.stem.rpartition('-')[0]}.json").read_text("utf8")
         )["questions"]
