@@ -103,7 +103,7 @@ def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, e
     back: the next edition is whole.
     """
     with network(editions(1)) as (net, address):
-        assert "is kept" in keep(engine, address, editions(1))
+        assert "is stored" in keep(engine, address, editions(1))
         newest, cut, whole = 1, 0, False
         while not whole:
             net.folder, net.left, net.refused = str(editions(newest + 1)), cut, 0
