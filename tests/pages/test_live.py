@@ -269,7 +269,7 @@ def test_results_equal_the_stored_ones(context, site, name):
     if all(kind.get("skip") for kind in kinds(name)):
         page.page.click("button.run-page")
         page.page.wait_for_function(
-            "document.querySelector('#live-words').textContent.includes('there already')"
+            "document.querySelector('#live-words').textContent.includes('already there')"
         )
         assert not [url for url in page.asked if url.endswith(".wasm")]
         return

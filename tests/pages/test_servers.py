@@ -239,7 +239,7 @@ def test_in_a_foreign_frame(page, tmp_path):
             frame.locator("#live-words:has-text('Cell 3 ran')").wait_for()
             frame.locator("details.take-away summary").click()
             frame.locator("button.keep-book").click()
-            frame.locator("#live-words:has-text('a tab of its own')").wait_for()
+            frame.locator("#live-words:has-text('its own tab')").wait_for()
             assert page.faults == []
 
 
