@@ -1498,6 +1498,6 @@ def test_controls_that_only_a_notebook_can_show_say_so(context, site):
     page.page.click("button.run-page")
     page.page.wait_for_selector("html.live-busy", state="attached")
     page.wait()
-    assert "In the notebook it works" in page.try_code(
+    assert "The notebook can" in page.try_code(
         page.asking, "import ipywidgets\nipywidgets.IntSlider()"
     )
