@@ -40,9 +40,9 @@ def angular_velocity_matrix(angles: Values, sequence: AxisSequence) -> Array | M
        \boldsymbol{\omega}_D = \mathbf{M}\begin{bmatrix} \dot\psi & \dot\theta & \dot\varphi
        \end{bmatrix}^T
 
-    Its columns are the unit vectors that the three turns are about, along the frame :math:`D` that
-    the last turn leads to. At gimbal lock the first and the last column are parallel, the
-    determinant is zero, and angular velocities in one direction cannot be had from any rates.
+    Its columns are the axes of the three rotations, written along the frame :math:`D` that results.
+    At gimbal lock the first and the last column are parallel, the determinant is zero, and no rates
+    give an angular velocity in one of the directions.
 
     Parameters
     ----------
@@ -314,7 +314,7 @@ def rotation_vector_rate(vector: Values, angular_velocity: Values) -> Array | Ma
     Raises
     ------
     ValueError
-        If numbers are a whole turn, or several, where there is no such rate.
+        If a rotation vector is one or more full turns long, where the rate is not defined.
 
     Examples
     --------

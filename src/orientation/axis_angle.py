@@ -54,7 +54,7 @@ def dcm_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
-    r"""Direction cosine matrix of a turn about one axis.
+    r"""Direction cosine matrix of a rotation about one axis.
 
     :math:`A` is turned with respect to :math:`N` through :math:`\theta` about the unit vector
     :math:`\hat{e}`, whose components are the same in both frames:
@@ -69,7 +69,7 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     axis : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
         Direction of the axis; its length does not matter, as long as it has one.
     angle : SymPy expression, float or array of shape ``(...)``
-        Radians, positive by the right hand.
+        Radians, positive by the right-hand rule.
 
     Returns
     -------
@@ -132,7 +132,7 @@ def quaternion_from_axis_angle(axis: Numbers, angle: Numbers) -> Array: ...
 @overload
 def quaternion_from_axis_angle(axis: Values, angle: Values) -> Matrix: ...
 def quaternion_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
-    r"""Unit quaternion of a turn about one axis.
+    r"""Unit quaternion of a rotation about one axis.
 
     .. math::
 

@@ -243,10 +243,11 @@ class _Numbers(Variable):
 def jacobian(
     conversion: Conversion, value: Values, *further: object, along: Along = "target"
 ) -> Array | Matrix:
-    r"""Derivative of what a conversion gives by what it is given.
+    r"""Derivative of the result of a conversion with respect to its input.
 
-    A direction cosine matrix, given or returned, counts as the three components of a small turn:
-    :math:`{}^A\mathbf{C}^N` becomes :math:`\exp(-[\boldsymbol\delta]_\times)\,{}^A\mathbf{C}^N`.
+    A direction cosine matrix, given or returned, counts as the three components of a small
+    rotation: :math:`{}^A\mathbf{C}^N` becomes
+    :math:`\exp(-[\boldsymbol\delta]_\times)\,{}^A\mathbf{C}^N`.
 
     Parameters
     ----------
@@ -254,24 +255,24 @@ def jacobian(
         A conversion of this package, such as :func:`body_fixed_from_dcm`, or a function of one
         argument that calls one.
     value : SymPy expressions, floats or array of shape ``(*item)`` or ``(..., *item)``
-        What it is differentiated by: the first argument of the conversion.
+        The first argument of the conversion, the input with respect to which to differentiate.
     *further
         Its other arguments, which are constant.
     along : {'target', 'source'}
-        The frame along which the components of a small turn are taken: :math:`A` or :math:`N` of
+        The frame for the components of a small rotation: :math:`A` or :math:`N` of
         :math:`{}^A\mathbf{C}^N`.
 
     Returns
     -------
     SymPy matrix, array of shape ``(m, n)`` or ``(..., m, n)``
-        With ``m`` components of the result and ``n`` of ``value``. What gives an axis and an angle
-        has four, the angle last.
+        With ``m`` components of the result and ``n`` of ``value``. An axis and an angle count as
+        four, the angle last.
 
     Raises
     ------
     ValueError
-        If the conversion has no derivative there, as Euler angles at gimbal lock, or a matrix that
-        it gives is no direction cosine matrix.
+        If the conversion has no derivative there, as Euler angles at gimbal lock, or it returns a
+        matrix that is not a direction cosine matrix.
 
     Examples
     --------
@@ -311,20 +312,20 @@ def propagate_covariance(
     *further: object,
     along: Along = "target",
 ) -> Array:
-    r"""Covariance of what a conversion gives, to first order.
+    r"""Covariance of the result of a conversion, to first order.
 
     .. math::
 
        \mathbf{P}_y = \mathbf{J}\,\mathbf{P}_x\,\mathbf{J}^T
 
     with the :func:`jacobian` of the conversion. The covariance of a direction cosine matrix is that
-    of the small turn :math:`\boldsymbol\delta`, in square radians.
+    of the small rotation :math:`\boldsymbol\delta`, in square radians.
 
     Parameters
     ----------
     conversion, value, further, along
-        As for :func:`jacobian`. ROS states the covariance of small turns about fixed axes: those of
-        :math:`N`, ``along='source'``.
+        As for :func:`jacobian`. ROS states the covariance of small rotations about fixed axes:
+        those of :math:`N`, ``along='source'``.
     covariance : array of shape ``(n, n)`` or ``(..., n, n)``
 
     Returns
@@ -334,8 +335,8 @@ def propagate_covariance(
     Warns
     -----
     UserWarning
-        If a standard deviation comes out at more than half a radian: the first order says little
-        then. Close to gimbal lock, the first and the last angle spread that far.
+        If a standard deviation exceeds half a radian, where first order means little. Close to
+        gimbal lock, the first and the last angle spread that far.
 
     Raises
     ------

@@ -55,7 +55,7 @@ def simple_dcm(axis: Axis, angle: Values) -> Array | Matrix:
     axis : {'x', 'y', 'z'}
         The shared unit vector.
     angle : SymPy expression, float or array of shape ``(...)``
-        Angle in radians, positive by the right hand.
+        Angle in radians, positive by the right-hand rule.
 
     Returns
     -------
@@ -107,13 +107,13 @@ def check_dcm(dcm: Values) -> None:
     r"""Say what is wrong with a matrix that should be a direction cosine matrix.
 
     A direction cosine matrix has rows of unit length that are perpendicular to each other,
-    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. Nothing is
-    returned for a valid matrix and nothing is ever repaired; :func:`nearest_dcm` does that.
+    :math:`\mathbf{C}\mathbf{C}^T = \mathbf{I}`, and :math:`\det\mathbf{C} = +1`. For a valid matrix
+    it returns nothing. It never repairs a matrix; :func:`nearest_dcm` does.
 
     Parameters
     ----------
     dcm : SymPy matrix, or array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        :math:`{}^A\mathbf{C}^N`. A symbolic matrix is tried at random values of its symbols.
+        :math:`{}^A\mathbf{C}^N`. A symbolic matrix is tested at random values of its symbols.
 
     Raises
     ------

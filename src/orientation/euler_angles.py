@@ -68,7 +68,7 @@ def dcm_from_body_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
 def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
-    r"""Direction cosine matrix of three successive turns, each about an axis of the turned frame.
+    r"""Direction cosine matrix of three rotations, each about an axis of the turned frame.
 
     For the sequence z-x-y, with angles :math:`\psi, \theta, \varphi`,
 
@@ -79,7 +79,7 @@ def dcm_from_body_fixed(angles: Values, sequence: AxisSequence) -> Array | Matri
     Parameters
     ----------
     angles : SymPy expressions or floats ``(psi, theta, phi)``, or array of shape ``(..., 3)``
-        Angles in radians, in the order of the turns.
+        Angles in radians, in the order of the rotations.
     sequence : str
         One of :data:`SEQUENCES`, such as ``'zxy'``.
 
@@ -147,11 +147,11 @@ def body_fixed_formula(sequence: str) -> Formula:
 def body_fixed_from_dcm(dcm: Values, sequence: AxisSequence) -> Array:
     r"""Body fixed angles of a direction cosine matrix, for any of the twelve sequences.
 
-    The first angle comes from the one row (or column) that the third turn leaves alone; turning
-    back by it leaves two simple turns, whose angles are read off. Each step is an ``atan2``, so no
-    threshold is needed: at gimbal lock the split between the first and the last angle is arbitrary
-    (the first is 0 when the matrix is exactly locked), and the orientation is still right to
-    rounding.
+    The first angle comes from the row (or column) that the third rotation does not change. Undoing
+    the first rotation leaves two simple ones, which give the other two angles. Each step is an
+    ``atan2``, so no threshold is needed: at gimbal lock the split between the first and the last
+    angle is arbitrary (the first is 0 when the matrix is exactly locked), and the orientation is
+    still right to rounding.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def dcm_from_space_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
 def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
-    r"""Direction cosine matrix of three successive turns about the axes of the frame that stays.
+    r"""Direction cosine matrix of three rotations about the axes of the frame that stays.
 
     Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
 

@@ -78,9 +78,9 @@ class Prediction(NamedTuple):
 class MultiplicativeKalmanFilter:
     r"""Multiplicative extended Kalman filter of an orientation and of the gyroscope's bias.
 
-    The orientation itself is a direction cosine matrix, which is rotated and never added to. What
-    has a covariance is the error state: the small rotation vector :math:`\boldsymbol\delta` from
-    the estimated body to the true one, along the body,
+    The orientation itself is a direction cosine matrix, which the filter rotates and never adds to.
+    The covariance is that of the error state: the small rotation vector :math:`\boldsymbol\delta`
+    from the estimated body to the true one, along the body,
 
     .. math::
 
@@ -284,7 +284,7 @@ class MultiplicativeKalmanFilter:
 
 
 def smooth(predictions: Sequence[Prediction], last: FilterState) -> FilterState:
-    r"""Go back over what a filter has followed, and use at each moment what came later, too.
+    r"""Smooth the estimates of a filter: at each time, use the later measurements as well.
 
     The smoother of Rauch, Tung and Striebel, with the correction as a factor of the orientation.
     Backwards from the last state, with :math:`{}^{-}` for before and :math:`{}^{+}` for after a
@@ -300,14 +300,14 @@ def smooth(predictions: Sequence[Prediction], last: FilterState) -> FilterState:
     Parameters
     ----------
     predictions : list of Prediction
-        What :meth:`MultiplicativeKalmanFilter.turn` returned, in order, ``n`` of them.
+        The ``n`` results of :meth:`MultiplicativeKalmanFilter.turn`, in order.
     last : FilterState
         The filter's ``state`` at the end.
 
     Returns
     -------
     FilterState
-        With an axis of length ``n + 1`` in front: at the beginning of each step, and at the end.
+        With a first axis of length ``n + 1``: the beginning of each step, and the end.
 
     Examples
     --------

@@ -106,9 +106,9 @@ class _Edge(NamedTuple):
 class Frames:
     r"""Named frames and the orientations between them.
 
-    A ``Frames`` never changes: every ``orient_...`` method returns a new one with one orientation
-    more, so running a notebook cell again gives the same answer again. Two frames are connected by
-    one path at most; a second one, which could contradict the first, is an error.
+    A ``Frames`` never changes. Every ``orient_...`` method returns a new one with one more
+    orientation, so running a notebook cell again gives the same answer again. Two frames are
+    connected by one path at most; a second one, which could contradict the first, is an error.
 
     Examples
     --------

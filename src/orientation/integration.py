@@ -22,13 +22,13 @@ ORDERS = (1, 2, 4)
 def turns_from_angular_velocity(
     angular_velocity: Callable[[Array], Numbers], times: Numbers, order: int = 4
 ) -> Array:
-    r"""Return the rotation vector of the turn in each interval of time.
+    r"""Return the rotation vector of each interval of time.
 
     For a step of the duration :math:`h` from :math:`t`, order 1 takes the angular velocity at its
     beginning, :math:`h\,\boldsymbol{\omega}(t)`, and order 2 that in its middle,
     :math:`h\,\boldsymbol{\omega}(t + \frac{h}{2})`. Order 4 takes it at the two Gauss points
-    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and what the order of the turns costs in
-    between (Magnus):
+    :math:`t + (\frac{1}{2} \mp \frac{\sqrt{3}}{6})h`, and adds the effect of the order of the
+    rotations in between (Magnus):
 
     .. math::
 
@@ -44,7 +44,7 @@ def turns_from_angular_velocity(
     times : array of shape ``(n + 1,)``
         Seconds.
     order : {1, 2, 4}
-        By what power of the step the error of the orientations falls.
+        The power of the step with which the error of the orientations decreases.
 
     Returns
     -------
@@ -54,7 +54,8 @@ def turns_from_angular_velocity(
     Raises
     ------
     ValueError
-        If the order is another, or what the function returns has another shape or is not finite.
+        If the order is not one of these, or the function returns another shape or numbers that are
+        not finite.
 
     Examples
     --------

@@ -25,7 +25,7 @@ MOST_STEPS = 200
 
 
 def angle_between(first: Values, second: Values) -> Scalars:
-    r"""Return the angle of the one turn that leads from one orientation to another.
+    r"""Return the angle of the single rotation that leads from one orientation to another.
 
     For :math:`{}^A\mathbf{C}^N` and :math:`{}^B\mathbf{C}^N` it is the angle of
     :math:`{}^B\mathbf{C}^A`, the length of the shortest way between them. It keeps its digits near
@@ -86,8 +86,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     By ``entries`` the distance is the Frobenius norm of the difference of the matrices: the mean is
     the direction cosine matrix nearest to their average. The mean of the quaternions, the
     eigenvector of the largest eigenvalue of :math:`\sum_k w_k\,q_k q_k^T`, is the same orientation.
-    By ``angle`` it is the angle of the turn between them, and the mean is found by averaging
-    rotation vectors as seen from a guess, again and again.
+    By ``angle`` it is the angle of the rotation between them, and the mean is found by repeatedly
+    averaging rotation vectors from the current estimate.
 
     Parameters
     ----------
@@ -105,8 +105,8 @@ def mean_orientation(dcms: Values, weights: Values | None = None, metric: str = 
     ------
     ValueError
         If the mean by that metric is not unique, because the orientations are spread too far. By
-        angle it is unique if all are closer to it than a quarter turn; otherwise it is looked for
-        from up to 100 of them and 16 places between, and means that are equally good are told.
+        angle it is unique if all are closer to it than a quarter turn; otherwise the search starts
+        from up to 100 of them and 16 random ones, and the error reports equally good means.
 
     Examples
     --------
@@ -199,7 +199,7 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
 
 
 def random_orientations(count: int, random: numpy.random.Generator | int | None = None) -> Array:
-    r"""Return orientations chosen at random, none likelier than another.
+    r"""Return random orientations, uniformly distributed.
 
     Four normally distributed numbers, divided by their length, are a point on the sphere of unit
     quaternions that is equally likely everywhere, and so is the orientation. Evenly distributed
@@ -209,7 +209,7 @@ def random_orientations(count: int, random: numpy.random.Generator | int | None 
     ----------
     count : int
     random : numpy.random.Generator or int, optional
-        Where the chance comes from, or its seed, so that a program can be run again.
+        A random generator or its seed, so that results can be reproduced.
 
     Returns
     -------

@@ -25,11 +25,10 @@ ROUNDING = 1e-13
 def dcm_from_two_directions(observed: Values, reference: Values) -> Array:
     r"""Direction cosine matrix that two observed directions fix: the TRIAD method.
 
-    The first direction is trusted entirely, the second only for what it says about the turn around
-    the first. From each pair a right-handed triad is made, :math:`\hat{t}_1 = \hat{u}_1`,
-    :math:`\hat{t}_2 \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times
-    \hat{t}_2`; with the triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N`
-    (reference),
+    The first direction counts as exact, and the second determines only the rotation about the
+    first. Each pair gives a right-handed triad, :math:`\hat{t}_1 = \hat{u}_1`, :math:`\hat{t}_2
+    \parallel \hat{u}_1 \times \hat{u}_2`, :math:`\hat{t}_3 = \hat{t}_1 \times \hat{t}_2`; with the
+    triads as rows of :math:`\mathbf{T}_B` (observed) and :math:`\mathbf{T}_N` (reference),
 
     .. math::
 
@@ -124,8 +123,8 @@ def dcm_from_directions(
     reference : array of shape ``(count, 3)`` or ``(..., count, 3)``
         The same directions :math:`\hat{n}_k` along :math:`N`.
     deviations : array of shape ``(count,)``, optional
-        Standard deviation :math:`\sigma_k` of each direction in radians, across it. Without them
-        all count alike.
+        Standard deviation :math:`\sigma_k` of each direction in radians, across it. If they are
+        omitted, all directions have the same weight.
 
     Returns
     -------
@@ -174,8 +173,8 @@ def directions_covariance(observed: Numbers, deviations: Values) -> Array:
 
     The error is the small rotation vector :math:`\boldsymbol\delta` from the estimated body to the
     true one, along :math:`B`, with :math:`{}^B\mathbf{C}^N =
-    \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each direction tells of the turns
-    across it and nothing of the turn around it:
+    \exp(-[\boldsymbol\delta]_\times)\,{}^{\hat B}\mathbf{C}^N`. Each direction determines the
+    rotations about axes perpendicular to it, but not the rotation about itself:
 
     .. math::
 

@@ -214,7 +214,7 @@ def multiply_quaternions(first: Values, second: Values) -> Array | Matrix:
 
     With :math:`i^2 = j^2 = k^2 = ijk = -1`. If ``first`` turns :math:`N` to :math:`A` and
     ``second`` turns :math:`A` to :math:`B`, their product turns :math:`N` to :math:`B`: quaternions
-    are written in the order of the turns, where matrices are written the other way,
+    are written in the order of the rotations, and matrices in the opposite order,
     :math:`{}^B\mathbf{C}^N = {}^B\mathbf{C}^A\,{}^A\mathbf{C}^N`.
 
     Parameters

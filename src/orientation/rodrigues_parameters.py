@@ -219,13 +219,13 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
 
        \boldsymbol{\sigma}' = -\,\frac{\boldsymbol{\sigma}}{\sigma^2}
 
-    It belongs to the quaternion :math:`-q`, the turn the other way round. Changing over to it
-    whenever :math:`\sigma` grows longer than 1 keeps clear of the singularity at a whole turn.
+    It belongs to the quaternion :math:`-q`, the rotation the other way round. Switch to it whenever
+    :math:`\sigma` becomes longer than 1, to avoid the singularity at a full turn.
 
     Parameters
     ----------
     vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Not zero: the shadow of no turn at all is infinitely far away.
+        Not zero, since the shadow of no rotation is infinitely far away.
 
     Returns
     -------
@@ -234,7 +234,7 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
     Raises
     ------
     ValueError
-        If a vector is zero, or so short that its shadow cannot be written down.
+        If a vector is zero, or so short that its shadow overflows.
 
     Examples
     --------

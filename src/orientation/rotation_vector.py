@@ -42,7 +42,7 @@ def dcm_from_rotation_vector(vector: Values) -> Array | Matrix:
     Parameters
     ----------
     vector : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Radians. The zero vector is no turn at all.
+        Radians. The zero vector means no rotation.
 
     Returns
     -------
