@@ -18,6 +18,8 @@ FILE = FOLDER / "js" / "glyphs.js"
 LABELS = (
     *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcdm" for axis in "xyz"),
     r"\hat{e}",
+    *(rf"\hat{{u}}_{number}" for number in "12"),
+    *(rf"\mathbf{{v}}{primes}" for primes in ("", "'", "''")),
     *"NABCDtxyz",
     # Between any two of the frames of a tree.
     *(rf"{{}}^{target}\mathbf{{C}}^{source}" for target in "NABCDE" for source in "NABCDE"),

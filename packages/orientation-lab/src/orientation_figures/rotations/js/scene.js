@@ -408,9 +408,11 @@ const SHOWS = {
     const axis = unit([0.1, -0.2, 1]), u = unit(cross([0, 1, 0.2], axis)), v = cross(axis, u);
     const way = (angle) => add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
     const first = deg(20) + s.together * deg(55), gap = deg(35) + s.apart * deg(30), second = first + gap;
-    for (const [angle, colour] of [[first, 'glass'], [second, 'glass']]) {
+    for (const [angle, name] of [[first, '\\hat{u}_1'], [second, '\\hat{u}_2']]) {
       const edge = (side, high) => add(scale(1.45 * side, way(angle)), scale(high, axis));
-      scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], colour, 0.34);
+      scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], 'glass', 0.34);
+      scene.dashes(ZERO, edge(1, 0), 0.016, 'accent', 12);
+      scene.label(edge(1.04, 0), name, 'accent');
       const frame = [edge(-1, -1.25), edge(1, -1.25), edge(1, 1.25), edge(-1, 1.25), edge(-1, -1.25)];
       frame.slice(1).forEach((corner, k) => scene.rod(frame[k], corner, 0.016, 'metal'));
     }
@@ -421,12 +423,14 @@ const SHOWS = {
     const normal = (angle) => way(angle + PI / 2);
     const once = reflected(r, first), twice = reflected(once, second);
     scene.arrow(ZERO, r, 'A', { thick: 0.035 });
-    scene.label(r, '0', 'A');
+    scene.label(r, '\\mathbf{v}', 'A');
     scene.arrow(ZERO, once, 'metal', { thick: 0.03 });
-    scene.label(once, '1', 'ink');
+    scene.label(once, '\\mathbf{v}\'', 'ink');
     scene.arrow(ZERO, twice, 'D', { thick: 0.035 });
-    scene.label(twice, '2', 'D');
+    scene.label(twice, '\\mathbf{v}\'\'', 'D');
     scene.circle(u, v, 0.62, first, second, 'ink', 0.02);
+    scene.label(scale(0.66, way((first + second) / 2)), '\\theta/2', 'ink');
+    scene.label(scale(1, way(deg(-32) + gap)), '\\theta', 'accent');
     scene.sweep(axis, 2 * gap, scale(0.95, way(deg(-32))), 'accent', { thick: 0.022 });
   },
   'four-numbers'(scene, s, { D }) {
