@@ -176,7 +176,7 @@ def _animate(tag, values):
     last = len(values) - 1
     if len(set(values)) == 1:
         return ""
-    # A value equal to both its neighbours says nothing new.
+    # A value that equals both of its neighbours adds nothing.
     keys = [
         i
         for i in range(last + 1)

@@ -22,7 +22,7 @@ from .style import STYLE
 from .vectors import unit
 from .words import Words, hatted  # noqa: F401  # those who draw took it from here before
 
-#: How the labels of the book's drawings are set: ``python -m tools.labels`` writes it.
+#: The typeset labels of the book's drawings, which ``python -m tools.labels`` writes.
 LABELS = Path(__file__).with_name("labels.json")
 
 
@@ -72,7 +72,8 @@ def view_from(azimuth, elevation):
     >>> view_from(0.0, 0.0)[2]
     array([1., 0., 0.])
     """
-    # A frame turned so has its x unit vector towards the camera, y to the right and z up.
+    # A frame with this orientation has its x unit vector towards the camera, y to the right and z
+    # up.
     return (simple_dcm("y", -float(elevation)) @ simple_dcm("z", float(azimuth)))[[1, 2, 0]]
 
 
@@ -233,8 +234,8 @@ class Drawing(Words):
         glyphs = "".join(
             f'<path id="@{number}" d="{outline}"/>' for outline, number in outlines.items()
         )
-        # Ids come from the content: two figures on one page cannot clash,
-        # and no run differs from the last.
+        # The IDs depend on the content, so two figures on one page cannot clash, and every run
+        # gives the same ones.
         name = "g" + hashlib.sha256((self.alt + glyphs + marks).encode()).hexdigest()[:10]
         inside = (f"<defs>{glyphs}</defs>" if glyphs else "") + marks
         return (

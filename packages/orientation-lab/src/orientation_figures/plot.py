@@ -38,8 +38,8 @@ SETTINGS = {
 }
 
 
-# How wide a plot is set at most, in pixels. It is shown larger on a wide page; on a telephone of
-# 380 pixels, where 348 are left for it, its words are 11 pixels high.
+# The largest width of a plot in pixels. A wide page shows it larger. On a phone of 380 pixels,
+# which leaves 348 for it, its text is 11 pixels high.
 SET = 411
 
 
@@ -81,8 +81,8 @@ class Plot:
             )
         self.alt, self.colours, self.width = alt.strip(), LIGHT, width
         with matplotlib.rc_context(SETTINGS):
-            # Set smaller than it is shown, so that its words can still be read where
-            # a telephone shrinks the whole.
+            # Typeset it smaller than it is shown, so that its text is still legible when a phone
+            # shrinks the whole.
             size = [round(min(0.8, SET / width) * length) / 72 for length in (width, height)]
             self.figure = Figure(figsize=size, layout="constrained")
             self.axes = self.figure.subplots(rows, sharex=True)
@@ -103,7 +103,7 @@ class Plot:
         buffer = io.StringIO()
         with matplotlib.rc_context({**SETTINGS, "svg.hashsalt": self.alt}):
             self.figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None})
-        # Every id carries a name of its own: two plots on one page cannot clash.
+        # Every ID contains the name of its plot, so that two plots on one page cannot clash.
         name = "p" + hashlib.sha256(self.alt.encode()).hexdigest()[:8]
         root = ElementTree.fromstring(buffer.getvalue())
         _lighten(root, name)
@@ -128,8 +128,8 @@ def _lighten(root, name):
     to, groups without a meaning, invisible frames and the document's own style go. The ids that
     stay begin with `name`.
     """
-    # Matplotlib's style is for every element of a page: it would take the round
-    # ends of lines from all drawings.
+    # Matplotlib's style applies to every element of a page, and would remove the round ends of
+    # lines from all drawings.
     for child in list(root):
         if child.tag == f"{SVG}metadata" or child.find(f"{SVG}style") is not None:
             root.remove(child)
@@ -141,13 +141,14 @@ def _lighten(root, name):
         old = element.attrib.pop("id", None)
         if old in short:
             element.set("id", short[old])
-        if LINK in element.attrib:  # in a page the prefix has no meaning
+        # The prefix has no meaning in a page.
+        if LINK in element.attrib:
             element.set("href", "#" + short[element.attrib.pop(LINK)[1:]])
         for key, value in element.attrib.items():
             if key == "d":
                 value = _short_path(value)
             elif key in ("x", "y", "width", "height", "transform"):
-                # Scales and turns keep all of their digits.
+                # Keep all digits of scales and rotations.
                 value = re.sub(r"^-?[\d.]+$|translate\([^)]*\)", _shorter, value)
             elif key == "style":
                 value = re.sub(r"([:;]) ", r"\1", value)
@@ -196,7 +197,8 @@ def _short_path(path):
         if letter == "z":
             steps, here = [*steps, ("z", [])], list(start)
             continue
-        size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter]  # all that Matplotlib writes, absolute
+        # Matplotlib writes only absolute coordinates.
+        size = {"M": 2, "L": 2, "Q": 4, "C": 6}[letter]
         step = [
             round(float(token) - here[k % 2], digits)
             for k, token in enumerate(tokens[place : place + size])
@@ -215,8 +217,8 @@ def _short_path(path):
         steps.append((letter, step))
     found = ""
     for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):
-        # A letter that is repeated need not be written, and a minus parts two
-        # numbers as well as a blank does.
+        # A repeated letter can be left out, and a minus sign separates two numbers as well as a
+        # blank.
         written = "" if letter == before != "M" else letter.lower() if found else letter
         numbers = " ".join(_short(value, digits) for value in step).replace(" -", "-")
         found += written + (" " if not written and not numbers.startswith("-") else "") + numbers

@@ -10,8 +10,8 @@ import math
 
 from .vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, unit
 
-# Heads of arrows, by points (along, across) from the tip: frames differ in them, and in their
-# strokes, without colour.
+# Heads of arrows, by points (along, across) from the tip. Without colour, frames differ in these
+# heads and in their strokes.
 BARB = ((0, 0), (-13, 4.6), (-7.5, 0), (-13, -4.6))
 TRIANGLE = ((0, 0), (-14, 5.6), (-14, 0), (-14, -5.6))
 DIAMOND = ((0, 0), (-8, 5.4), (-16, 0), (-8, -5.4))

@@ -26,8 +26,8 @@ Array: TypeAlias = "NDArray[np.float64]"
 
 #: Metres per second squared.
 STANDARD_GRAVITY = 9.80665
-#: Samples per second. The x-IMU's follows from its register
-#: ``InertialAndMagneticDataRate``, 9, which stands for 256.
+#: Samples per second. The x-IMU's follows from the value 9 of its register
+#: ``InertialAndMagneticDataRate``, which means 256.
 X_IMU_RATE, XSENS_RATE, WALKING_RATE = 256, 50, 120
 
 

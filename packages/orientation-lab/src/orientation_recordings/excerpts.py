@@ -63,7 +63,7 @@ def excerpts(wheel: str) -> dict[str, str]:
         "x_imu_sensors.csv": rows("data_xio/00033_CalInertialAndMag.csv", *x_imu),
         "x_imu_quaternion.csv": rows("data_xio/00033_Quaternion.csv", *x_imu),
         "x_imu_euler_angles.csv": rows("data_xio/00033_EulerAngles.csv", *x_imu),
-        # A second is enough of what follows from the quaternion.
+        # One second is enough for what follows from the quaternion.
         "x_imu_rotation_matrix.csv": rows("data_xio/00033_RotationMatrix.csv", 2845, 3235),
         "x_imu_registers.csv": "\n".join(lines("data_xio/00033_Registers.csv")) + "\n",
         "x_imu3_sensors.csv": rows("data_xio3/Inertial.csv", 0, float("inf")),

@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 STEP = 0.04
-#: Seconds: the telephone lies on a table until it is taken, and the way leads past the car.
+#: In seconds. The phone lies on a table until somebody picks it up, and the way leads past the car.
 TAKEN, CAR = 8.0, (28.0, 33.0)
-#: What may differ from walk to walk besides the noise and the gyroscope's bias.
+#: The parameters that may differ from walk to walk, besides the noise and the gyroscope's bias.
 EVERYTHING = frozenset({"step", "look", "pose", "side"})
-#: Along x to the north, y to the west and z up: microtesla in central Europe.
+#: In microtesla, along x (north), y (west) and z (up), in central Europe.
 FIELD = np.array([20.0, 0, -44])
-#: Of one sample: radians per second, multiples of gravity, microtesla.
+#: Per sample, in radians per second, multiples of gravity and microtesla.
 NOISE = np.radians(0.2), 0.05 / 9.80665, 0.5
-#: Of the gyroscope's constant bias, radians per second.
+#: For the gyroscope's constant bias, in radians per second.
 BIAS = np.radians(0.5)
 _USUAL_POSE = dcm_from_body_fixed(np.radians([70, 20, -35]), "zxy")
 

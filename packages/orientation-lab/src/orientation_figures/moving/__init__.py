@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .triad import TriadFigure
     from .workbench import WorkbenchFigure
 
-#: The module of each figure: whoever names a figure loads it, and nobody the others.
+#: The module of each figure. Importing a name loads only the module of that figure.
 _MODULES = {
     "BeltFigure": "belt",
     "ChallengeFigure": "challenge",
@@ -53,7 +53,8 @@ def __getattr__(name: str) -> type:
     """A figure, loaded when it is first asked for."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    import_module(".figure", __name__)  # where anywidget is missing, that is what is said
+    # If anywidget is missing, the error says so.
+    import_module(".figure", __name__)
     figure: type = getattr(import_module(f".{_MODULES[name]}", __name__), name)
     globals()[name] = figure
     return figure

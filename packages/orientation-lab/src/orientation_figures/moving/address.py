@@ -14,9 +14,9 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 VERSION = 1
-#: Plain data, as JSON has it.
+#: Plain data of the kind that JSON can hold.
 Plain: TypeAlias = "None | bool | float | str | list[Plain] | dict[str, Plain]"
-#: Letters: longer addresses are cut by some programs that pass them on.
+#: In characters. Some programs cut longer addresses when they pass them on.
 LARGEST = 6000
 FRAGMENT = re.compile(r"#?([a-z0-9-]+)=([0-9]+)\.(.*)", re.DOTALL)
 

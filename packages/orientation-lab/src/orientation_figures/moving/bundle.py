@@ -16,23 +16,23 @@ SHARED = (
     "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address",
     "shared",
 )  # fmt: skip
-#: What ``pictures`` describes, and ``javascript`` has translated.
+#: The pictures that ``pictures`` describes and ``javascript`` has translated.
 PICTURES = sorted(
     path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js")
 )
-#: Modules that one figure alone needs, before its own.
+#: Modules that only one figure needs, to be loaded before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
 OWN |= {
     name: (*OWN.get(name, ()), f"{name}_picture")
     for name in PICTURES
     if f"{name}_picture" not in SHARED
 }
-#: Figures that use packages of npm: what their page loads when they are seen is built from this
-#: script, and each has a style sheet of its own.
+#: Figures that use npm packages. This script is the source of what their page loads when they come
+#: into view, and each has its own style sheet.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
-#: Fetches that, when the page stands and the figure is in sight. Where scripts run the stills are
-#: text until somebody needs them: on paper, and where figure and text have no room beside each
-#: other (as in essay.css).
+#: Loads that script when the page is complete and the figure is in sight. Where scripts run, the
+#: stills are stored as text until they are needed: on paper, and where figure and text do not fit
+#: beside each other (as in essay.css).
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
 const unfold = () => {
@@ -82,7 +82,7 @@ def whole(name):
 
 def esm(name):
     """Return the figure ``name`` as one module that imports nothing, as anywidget takes it."""
-    # The figure has a scope of its own, where it may use a name that the shared modules have.
+    # The figure has its own scope, so that it may reuse a name of the shared modules.
     figure = f"const render = (() => {{\n{whole(name)}return render;\n}})();\n"
     return "".join(map(body, SHARED)) + figure + "export default { render };\n"
 
@@ -118,7 +118,8 @@ def beside(name):
     """Return what a figure of this kind loads when it needs it, by the names of the files."""
     if "take_away" not in OWN.get(name, ()):
         return {}
-    from .take_away import scripts  # which needs NumPy, as no figure in a page does
+    # This needs NumPy, unlike the figures in a page.
+    from .take_away import scripts
 
     return {"drawing.css": STYLE} | scripts()
 

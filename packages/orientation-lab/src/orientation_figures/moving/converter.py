@@ -9,8 +9,8 @@ from orientation_workbench.programs import FORMS, OTHER, PROGRAMS, expected_of
 from .figure import MovingFigure
 from .state import Numbers
 
-# What a side of the converter says; for a program of the table its own
-# convention goes before the last three.
+# The menus on each side of the converter. For a program in the table, its own convention comes
+# before the last three.
 CHOICES = {
     "program": (*PROGRAMS, OTHER),
     "form": FORMS,
@@ -30,7 +30,7 @@ FIRST = {
 AT_FIRST = (0.9204901330363197, 0.3601778830129209, -0.07022156093803689, 0.13430837632305287)
 
 
-#: Where an axis points to, along forward, left and up.
+#: The direction of an axis, along forward, left and up.
 _WAYS = {
     "forward": (1, 0, 0),
     "left": (0, 1, 0),

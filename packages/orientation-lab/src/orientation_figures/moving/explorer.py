@@ -29,12 +29,13 @@ from . import bundle
 from .state import Sequence
 
 NAMES = ("psi", "theta", "phi")
-#: What an angle may be made of besides numbers and symbols.
+#: The parts that an angle may contain besides numbers and symbols.
 FUNCTIONS = {
     name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")
 }
 KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ("Integer", "Float", "Rational")}
-TURN = 2 * sm.pi  # beyond it, degrees may have been meant
+# Beyond this the angle may have been meant in degrees.
+TURN = 2 * sm.pi
 SPACE = '<mspace width="0.17em"></mspace>'
 FIXED = '<mo stretchy="false">{}</mo>'
 #: The symbol of the matrix, with its frames around it.
@@ -97,7 +98,8 @@ class SequenceExplorer(anywidget.AnyWidget):
         return STYLE + bundle.style()
 
     def __init__(self, sequence="zxy", angles=NAMES, fixed="body"):
-        layout_of(sequence)  # its message says more than that of the list
+        # Its message says more than the list's.
+        layout_of(sequence)
         for name, angle in zip(NAMES, angles, strict=True):
             angle_from_text(str(angle), name)
         super().__init__(sequence=sequence, angles=[str(angle) for angle in angles], fixed=fixed)

@@ -47,14 +47,15 @@ class MovingFigure(anywidget.AnyWidget):
     def __init__(self, **attributes):
         computed = {name: attributes.pop(name) for name in self._settable() & set(attributes)}
         unknown = sorted(set(attributes) - set(self.trait_names()))
-        if unknown:  # a widget would take a misspelt name in silence
+        # A widget would silently accept a misspelt name.
+        if unknown:
             raise TypeError(self._without(unknown[0]))
         super().__init__(**attributes)
         for name, value in computed.items():
             setattr(self, name, value)
 
     def __setattr__(self, name, value):
-        # The same once it is made: a misspelt name would become an attribute that nothing shows.
+        # The same holds later: a misspelt name would become an attribute that nothing shows.
         if not name.startswith("_") and not hasattr(type(self), name):
             raise AttributeError(self._without(name))
         super().__setattr__(name, value)
@@ -82,7 +83,8 @@ class MovingFigure(anywidget.AnyWidget):
 
     def drawing(self):
         """Return the ``Drawing`` that stands for the figure where it cannot move."""
-        # Imported only now: a still needs NumPy and Matplotlib, the figure itself does not.
+        # Import these only here, because a still needs NumPy and Matplotlib, but the figure does
+        # not.
         from .sheet import Sheet
 
         return import_module(f".pictures.{self.kind}", __package__).drawing(self, Sheet)
@@ -116,13 +118,14 @@ class MovingFigure(anywidget.AnyWidget):
 
 def stills_can_be_drawn():
     """Return whether NumPy and Matplotlib are there."""
-    # They are looked for, not imported in vain: where they are missing, as in a browser, a figure
-    # is shown by its front end and needs no still; where they are there, no error of a still must
-    # be lost.
+    # Look for them instead of importing them in vain. If they are missing, as in a browser, the
+    # front end shows the figure without a still. If they are there, no error of a still must be
+    # lost.
     try:
         return all(map(find_spec, ("numpy", "matplotlib")))
     except ModuleNotFoundError:
-        # So answers the Python of a page, which could fetch them: a still is no reason to.
+        # The Python of a page answers like this if it could fetch them, but a still is no reason to
+        # fetch.
         return False
 
 

@@ -26,7 +26,7 @@ from .tumbling import angular_acceleration
 COMMAND = "python -m orientation_figures.moving.formulas"
 FILE = FOLDER / "js" / "formulas.js"
 
-#: What figures use of the formulas, with those of the sequences or axes that they use.
+#: The formulas that figures use, with the sequences or axes that they use them for.
 NAMES = {
     "simple_dcm": "xyz",
     "dcm_from_body_fixed": SEQUENCES,

@@ -14,7 +14,7 @@ from .bundle import FOLDER
 COMMAND = "python -m orientation_figures.moving.glyphs"
 FILE = FOLDER / "js" / "glyphs.js"
 
-#: Every text that a figure sets as mathematics.
+#: Every label that a figure typesets as mathematics.
 LABELS = (
     *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcdm" for axis in "xyz"),
     r"\hat{e}",

@@ -20,7 +20,7 @@ from .bundle import FOLDER
 COMMAND = "python -m orientation_figures.moving.javascript"
 
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
-#: Words of a sheet that take what they are given in order, in both languages.
+#: Words of a sheet that take their arguments in order, in both languages.
 _IN_ORDER = (
     "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring",
     "shadow", "text",
@@ -31,7 +31,7 @@ _METHODS = {
     "lower": "toLowerCase",
     "startswith": "startsWith",
 }
-#: Where the words of the sheets stand; the pictures have a folder.
+#: The module with the words of the sheets. The pictures have a folder.
 _WORDS = FOLDER.parent / "words.py"
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
@@ -39,7 +39,7 @@ _OPERATORS = {
     ast.GtE: ">=", ast.Is: "===", ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!",
     ast.USub: "-",
 }  # fmt: skip
-#: How strongly what is no operation of two numbers binds.
+#: The precedence of expressions that are not operations on two numbers.
 _STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}
 
 
@@ -49,7 +49,8 @@ def translated(path):
     for node in ast.parse(path.read_text("utf8")).body:
         match node:
             case ast.ImportFrom(module=module, level=level):
-                # What is no other picture has its twin in JavaScript under the same name.
+                # A function that is not another picture has a twin in JavaScript under the same
+                # name.
                 beside = level == 1 and module != "vectors"
                 source = f"{module}_picture" if beside else "mathematics"
                 modules |= {alias.name: source for alias in node.names}
@@ -146,7 +147,8 @@ def statement(node, changing):
         case ast.Expr():
             return f"{expression(node.value)};"
         case ast.Return(value=ast.Name(id="self")):
-            return ""  # nobody chains words in the page
+            # Words are not chained in the page.
+            return ""
         case ast.Return():
             return f"return {expression(node.value)};" if node.value else "return;"
         case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)) if not (

@@ -114,7 +114,8 @@ class MotionFigure(MovingFigure):
         integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run
         ends early where its numbers have grown beyond ten thousand.
         """
-        from . import tumbling  # only now: it needs NumPy
+        # Import it only here, because it needs NumPy.
+        from . import tumbling
 
         count = int(self.time / self.step + 1e-9)
         return tumbling.run(

@@ -34,7 +34,7 @@ class Sheet(Drawing):
         return super().text(*arguments)
 
     def line(self, points, colour="ink", kind=""):
-        # The style sheet of a page makes slim tubes; that which goes with a still knows none.
+        # The style sheet of a page draws slim tubes, but that of a still has none.
         return super().line(points, colour, "thick" if kind == "tube slim" else kind)
 
     def placed(self, right, down):

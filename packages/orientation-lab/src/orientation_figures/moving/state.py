@@ -35,7 +35,7 @@ class Numbers(traitlets.TraitType):
         except (TypeError, ValueError) as error:
             raise traitlets.TraitError(str(error)) from None
         entries = _entries(numbers)
-        # A slider's end, converted from degrees, may be a rounding beyond.
+        # The end of a slider, converted from degrees, may exceed the limit by a rounding error.
         if max(entries) > self.largest + 1e-12 or min(entries) < self.smallest - 1e-12:
             cause = (
                 ". Angles are in radians, not degrees"
@@ -120,7 +120,7 @@ class Sequence(traitlets.TraitType):
 
 def _unit(vector):
     length = math.hypot(*vector)
-    # A vector of unit length stays as it is to the last digit, however often it goes to and fro.
+    # A unit vector stays the same to the last digit, however often it is converted there and back.
     return vector if abs(length - 1) < 1e-15 else tuple(entry / length for entry in vector)
 
 

@@ -90,7 +90,8 @@ class SuccessiveFigure(MovingFigure):
         """Direction cosine matrices of N and of every further frame with
         respect to N, shape ``(n + 1, 3, 3)``.
         """
-        import numpy as np  # only now: the figure itself does without
+        # Import it only here, because the figure itself does not need it.
+        import numpy as np
 
         return np.array(chain(self.turns, self.fixed))
 

@@ -11,7 +11,7 @@ from functools import cache
 from orientation_workbench.formulas import CHOICES, FORMULAS
 from orientation_workbench.languages import CONVENTIONS, LANGUAGES, formula_in
 
-#: Which of its kinds of numbers make a convention matter to a formula.
+#: The kinds of numbers for which a convention matters to a formula.
 MATTERS = {"matrix": {"matrix"}, "scalar": {"quaternion"}, "unit": {"angle", "angles"}}
 
 

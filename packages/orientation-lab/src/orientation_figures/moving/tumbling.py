@@ -18,11 +18,11 @@ FINER = 10  # the reference takes so many steps for one
 LARGEST = 1e4  # numbers beyond this end a run
 
 
-#: The points of a step at which the fourth-order exponential step looks.
+#: The points of a step at which the fourth-order exponential step evaluates the rate.
 GAUSS = 0.5 - 3**0.5 / 6, 0.5 + 3**0.5 / 6
 
 
-# The results are kept: an unchanged figure draws the same run again and again.
+# Keep the results, because an unchanged figure draws the same run again and again.
 @lru_cache(maxsize=8)
 def run(moments, axis, disturbance, method, step, restored, count):
     """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them.
@@ -130,7 +130,8 @@ def _step(state, step, method, moments, omegas):
     matrix, quaternion, angles = beyond(
         step / 6, [a + 2 * b + 2 * c + d for a, b, c, d in zip(first, second, third, fourth)]
     )
-    if method == "exponential":  # of which Euler angles have none
+    # Euler angles have no such step.
+    if method == "exponential":
         turn = _turn(step, moments, omegas)
         matrix = dcm_from_rotation_vector(turn) @ state[0]
         quaternion = multiply_quaternions(
@@ -153,7 +154,7 @@ def _turn(step, moments, omegas):
     return step / 2 * (one + other) + 3**0.5 / 12 * step**2 * np.cross(one, other)
 
 
-# What the numbers of a run say.
+# The words for the numbers of a run.
 
 
 def matrices(run, description, which):

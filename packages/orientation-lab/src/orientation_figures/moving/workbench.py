@@ -12,8 +12,8 @@ from .state import Numbers
 
 UNKNOWN = "not known"
 NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way"), UNKNOWN)
-#: Cases as they are met, most with the numbers of a public thread: what both
-#: programs gave, and what is known of each.
+#: Typical cases, most with the numbers of a public thread: the numbers of both programs, and the
+#: facts known about each.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",

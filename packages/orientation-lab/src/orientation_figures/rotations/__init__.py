@@ -12,7 +12,7 @@ from pathlib import Path
 from ..style import LIGHT, STYLE
 
 FOLDER = Path(__file__).parent
-#: What the page's figure has in the script's colours, in the tones of paper.
+#: The tones of paper for the parts of the figure that have the script's colours in the page.
 _OWN = {
     "graphite": "#474e57", "metal": "#a3abb4", "glass": "#5f86b8", "paper": "#ffffff",
     "lamp": "#d93025",

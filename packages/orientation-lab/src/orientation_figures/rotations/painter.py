@@ -12,17 +12,17 @@ import numpy as np
 from ..drawing import typeset
 
 TONES = 6
-#: What is no thicker is drawn as a line is.
+#: Parts that are no thicker than this are drawn as lines.
 THIN = 0.032
-#: What is fainter is drawn so, too: nobody sees faces in it.
+#: Fainter parts are drawn as lines, too, because nobody can see faces in them.
 FAINT = 0.5
-#: An edge that is cut off less is a sharp one on paper.
+#: An edge that is cut off by less than this looks sharp on paper.
 FINEST_BEVEL = 0.045
 TURN = 2 * np.pi
-#: Less is rounding, which no two kinds of processor do alike: what is as far off
-#: or edge-on is painted alike by all.
+#: A smaller difference is rounding, which differs between processors, so everything this close to
+#: edge-on is painted alike.
 SMALL = 1e-9
-#: Parts of a pixel in which the places of corners are counted.
+#: The fractions of a pixel in which corners are counted.
 FINE = 2
 
 
@@ -131,7 +131,7 @@ class Paper:
         if shape == "tube" or thick < THIN or (shape in ("rod", "arc") and alpha < FAINT):
             yield from self.thread(item)
             return
-        # The largest is seen to be round.
+        # On the largest one the corners would show.
         local = _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)
         both = shape == "ribbon"
         for face in local:
@@ -150,8 +150,8 @@ class Paper:
             light = 0.36 + 0.13 * (1 + normal[2]) + 0.56 * max(0.0, normal @ self.light)
             tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES + SMALL), 0, TONES - 1))
             pixels, depth = self.place(points)
-            # What is flat and large is sorted by its farthest point: the ground lies
-            # behind all that stands on it.
+            # A large flat part is sorted by its farthest point, since the ground is behind
+            # everything that stands on it.
             yield (
                 (-50 if colour == "ground" else depth.mean()),
                 f"{colour} tone-{tone}",
@@ -193,7 +193,8 @@ class Paper:
         """The outline of a shape's faces where the light throws them on the ground."""
         shape, of, rows, origin, size, *_ = item
         if shape == "ball" or min(size[:2]) < 0.06 or (shape == "arc" and of[1] < THIN):
-            return  # it is too small to be missed
+            # It is too small for anyone to miss.
+            return
         for face in SHAPES[shape](*of):
             points = np.array(origin) + (face * size) @ np.array(rows)
             if np.cross(points[1] - points[0], points[2] - points[0]) @ self.light <= SMALL:

@@ -1,6 +1,6 @@
 """The picture of a walk past a car: the error of the heading over time."""
 
-#: Seconds, and degrees, at the edges of the plot; the car stands between two of the seconds.
+#: The edges of the plot in seconds and in degrees. The car stands between two of the seconds.
 FIRST = 8
 LAST = 45
 LARGEST = 60

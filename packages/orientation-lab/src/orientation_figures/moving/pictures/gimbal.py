@@ -6,7 +6,7 @@ from orientation.direction_cosines import simple_dcm
 
 from ...vectors import AXES, IDENTITY, add, dot, length, multiply, scale
 
-# Radii of the rings of B and C, the camera, where the axes end.
+# Radii of the rings of B and C and of the camera, and the ends of the axes.
 OUTER = 1.05
 INNER = 0.76
 CAMERA = (0.62, 0.44, 0.46)
@@ -37,8 +37,8 @@ def picture(sheet, gimbal, close=False, lit=None):
     def near(direction):
         return -1 if dot(direction, sheet.view[2]) < 0 else 1
 
-    # Shells about one centre, from the camera outwards: the near half of
-    # each lies above all that is in it.
+    # Shells about one centre, from the camera outwards. The near half of each covers everything
+    # inside it.
     down = scale(-1, axes[0])
     sheet.layer = 6 * near(down)
     sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, "A")
@@ -65,7 +65,7 @@ def picture(sheet, gimbal, close=False, lit=None):
     if near(D[1]) > 0:
         sheet.layer = 0.6
         sheet.circle(D[1], radius=0.09, origin=scale(0.5, D[1]), colour="D", kind="fill-38")
-    # The axes, outside of what they carry, and which way about each is positive.
+    # The axes outside the parts that they carry, with their positive senses.
     rests = [IDENTITY[at[1]], B[at[2]], C[at[1]]]
     for k, axis in enumerate(axes):
         same = close and k != 1
@@ -74,8 +74,8 @@ def picture(sheet, gimbal, close=False, lit=None):
             sheet.layer = 7 * near(arm)
             begin = (INNER if k == 2 else OUTER) + 0.1
             sheet.line([scale(begin, arm), scale(END, arm)], colour, "thick" if same else "guide")
-        # At lock the names of the two axes stand side by side, also
-        # where the axes point opposite ways.
+        # At lock the names of the two axes stand side by side, even if the axes point opposite
+        # ways.
         end = scale(-END if same and dot(axis, axes[0]) < 0 else END, axis)
         sheet.layer = 7 * near(end)
         sheet.turn(axis, 4.4, rests[k], radius=0.16, origin=scale(0.9, end), colour=colour)

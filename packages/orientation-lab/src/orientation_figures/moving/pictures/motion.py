@@ -12,7 +12,8 @@ SECONDS = 20.0
 SAMPLE = 0.1  # seconds between two points of a curve
 ROUNDING = 1e-15  # what is below it is the rounding of one processor, and is drawn here
 SIZE = 118
-LONGEST = 1.25  # how long an arrow may be drawn
+# The largest length of an arrow.
+LONGEST = 1.25
 COLOURS = {"matrix": "A", "quaternion": "D", "angles": "C"}
 LEFT = -128
 RIGHT = 168
@@ -84,7 +85,7 @@ def picture(sheet, moments, dcm, reference, momentum):
     sheet.triad("N", IDENTITY, origin=sheet.placed(-136, 108), length=0.28)
     sheet.layer = 1
     sheet.arrow(scale(1.4, momentum), colour="accent", label=r"$\mathbf{H}$")
-    # A body that has grown out of the sheet is drawn smaller, and with it what it really is.
+    # A body that has grown beyond the sheet is drawn smaller, with its true size beside it.
     sheet.size = SIZE * min(1, LONGEST / max([length(row) for row in dcm]))
     if body_of(moments) == "racket":
         racket(sheet, dcm)
@@ -243,7 +244,7 @@ def plot(figure, Sheet):
         for name, colour in COLOURS.items():
             curve(part, np.log10(np.maximum(values[name], ROUNDING)), f"axis {colour}")
     curve(MARGIN, margin, "ink")
-    # What the figure says in its table, where curves only pass through on their way up.
+    # The values in the figure's table, at points that the curves only pass on their way up.
     for name, words, place, middle in (
         ("matrix", "matrix", -120, -73),
         ("quaternion", "quaternion", -40, 19),

@@ -34,15 +34,15 @@ def picture(sheet, rows, nearest):
     sheet.layer = 1
     for row in rows:
         if off(row):
-            # Where the tip should be, and what is missing or too much.
+            # The right place of the tip, and the part that is missing or too long.
             sheet.line([row, unit(row)], "B", "thick")
             sheet.ring(unit(row), "B", 5)
     for i, j in [[0, 1], [1, 2], [2, 0]]:
-        # The corner between two rows: a square, or what has become of it.
+        # The corner between two rows: a square, or what it has become.
         u, v = scale(0.2, unit(rows[i])), scale(0.2, unit(rows[j]))
         fails = abs(dot(rows[i], rows[j])) > SMALL
         sheet.line([u, add(u, v), v], "B" if fails else "muted", "thick" if fails else "")
-    # Where the third row of a right-handed matrix would point.
+    # The direction of the third row of a right-handed matrix.
     if mirrored(rows):
         sheet.arrow(cross(rows[0], rows[1]), colour="B", label=r"$\hat{a}_x\times\hat{a}_y$")
 
@@ -53,7 +53,8 @@ def drawing(figure, Sheet):
     rows = figure.matrix
     try:
         nearest = figure.nearest.dcm
-    except ValueError:  # several are equally near
+    # Several matrices are equally near.
+    except ValueError:
         nearest = None
     said = ", ".join(
         f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
