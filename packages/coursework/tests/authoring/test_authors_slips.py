@@ -73,7 +73,7 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"check": "check('trial/other', answer)"},
-            "stands before its check; what is checked so far: trial/other",
+            "stands before its check, which belongs above it; what is checked so far: trial/other",
         ),
         ({"question": changed("kind='expression', ", "")}, "trial/one: give its kind"),
         (

@@ -631,7 +631,7 @@ def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
     main(["merge", str(copied), str(other.path), "--yes"])
     said = capsys.readouterr().out
     assert (
-        "3 decisions from" in said
+        ": 3 decisions" in said
         and "2 of them are on answers that are not here: stranger, mistaken. They" in said
     )
 

@@ -136,6 +136,16 @@ def test_a_blank_copy_counts_less_than_finished_work(course):
     assert "was not counted: it answers nothing" in page
 
 
+def test_a_copy_with_nothing_but_remarks_counts_less_than_finished_work(course):
+    folder = collected(course, "ada", "hw1")
+    made = course.answers("hw1", sum=None, arm=None)
+    made.cells.append(nbformat.v4.new_code_cell("# I shall do this tomorrow", id="remark"))
+    nbformat.write(made, folder / "hw1-Copy1.ipynb")
+    os.utime(folder / "hw1.ipynb", (1, 1))
+    assert "DOES NOT COUNT: it answers nothing" in course.grade()
+    assert course.points("hw1") == {"ada": 8}
+
+
 def test_what_came_in_time_counts_before_what_came_late(tmp_path):
     """Brightspace says of each attempt when it came."""
     course = Course(tmp_path, hw1={"sum": (5, 4), "arm": (2, 4)})
@@ -298,24 +308,54 @@ def test_blackboards_own_gradebook_is_filled_without_a_word(tmp_path):
 def test_gradescopes_own_lists_are_understood(tmp_path):
     course = Course(tmp_path, hw1={"sum": (5, 4)})
     (tmp_path / "roster.csv").write_text(
-        "Name,SID,Email\nAda Lee,1001,ada@uni.example\nBen Lee,,ben@uni.example\n"
+        "Name,SID,Email\nAda Lee,1001,ada@uni.example\nBen Lee,,ben@uni.example\nCem Oz,3003,\n"
+        "Dan Ek,4004,\n"
     )
     course.marks.mkdir()
-    (course.marks / "term.toml").write_text(
-        'time-zone = "UTC"\nroster = "../roster.csv"\n[assignments.hw1]\n'
-    )
+    term = 'time-zone = "UTC"\nroster = "../roster.csv"\n[assignments.hw1]\n'
+    (course.marks / "term.toml").write_text(term)
     listed = []
-    for number, (name, sid, email) in enumerate(
-        [("Ada Lee", "1001", "ada@uni.example"), ("Ben Lee", "2002", "ben@uni.example")]
-    ):
+    ada, ben = ("Ada Lee", "1001", "ada@uni.example"), ("Ben Lee", "2002", "ben@uni.example")
+    cem, dan = ("Cem Oz", "3003", ""), ("Dan Ek", "4004", "")
+    for number, people in enumerate([[ada], [ben], [cem, dan]]):
         course.hands_in(f"submission_{number}", "hw1")
-        listed.append(
-            f"submission_{number}:\n  :submitters:\n  - :name: {name}\n    :sid: '{sid}'\n"
-            f"    :email: {email}\n  :created_at: 2025-10-01 12:00:00.0 Z\n"
-        )
+        listed.append(f"submission_{number}:\n  :submitters:\n")
+        for name, sid, email in people:
+            listed.append(f"  - :name: {name}\n    :sid: '{sid}'\n    :email: {email}\n")
+        listed.append("  :created_at: 2025-10-01 12:00:00.0 Z\n")
     (course.handed_in / "submission_metadata.yml").write_text("".join(listed))
-    course.grade()
+    # What two handed in together is a question, until the term says that they are a group.
+    assert "? <- submission_2/hw1.ipynb: Several students handed this in" in course.grade()
     assert course.points() == {"1001": 4, "ben@uni.example": 4}
+    (course.marks / "term.toml").write_text(f'{term}[groups]\nteam = ["3003", "4004"]\n')
+    course.grade()
+    assert course.points() == {"1001": 4, "ben@uni.example": 4, "team": 4}
+    assert "4004 (in team), hw1: 4 of 4 points." in course.run("why", "4004", "hw1")
+    course.run("export", "marks", "--nbgrader", "grades.csv")
+    (table,) = (tmp_path / "grades.csv").read_text().split("\n\n")
+    assert [line.split(",")[3] for line in table.splitlines()[1:]] == [
+        '"1001"', '"3003"', '"4004"', '"ben@uni.example"'
+    ]  # fmt: skip
+    assert stat.S_IMODE((tmp_path / "grades.csv").stat().st_mode) == 0o600
+
+
+def test_who_has_no_mark_is_told_why(course):
+    collected(course, "ada", "hw1")
+    damaged = collected(course, "ben", "hw1")
+    (damaged / "hw1.ipynb").write_text("no notebook")
+    write_term(course, "[extensions.dan]", "hw1 = 'excused'")
+    course.grade()
+    said = course.run("why", "ben", "hw1")
+    assert "ben, hw1: nothing that can be graded was handed in." in said
+    assert "cannot be graded: submitted/ben/hw1/hw1.ipynb, since This is no notebook" in said
+    assert "no mark is exported" in said
+    assert "due 2025-10-05 23:59 CEST; it is exported as 0" in course.run("why", "cem", "hw1")
+    assert "CEST; excused" in course.run("why", "dan", "hw1")
+    said = course.export(book_of(course), "--assignment", "hw1")
+    assert "Excused by the term, so not filled in (1):\n  dan" in said
+    # A misspelt name is refused wherever the term is read.
+    write_term(course, "[extensions.den]", "hw1 = 'excused'")
+    assert "line 14: extensions name 'den'" in course.regrade(fails=True)
 
 
 def test_nobody_else_on_the_machine_reads_marks(tmp_path):

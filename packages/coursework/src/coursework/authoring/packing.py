@@ -64,6 +64,9 @@ README = """Exercises of {title}
        environment\\Scripts\\activate
        python -m pip install -r requirements.txt
 
+   These lines install the package that came with the exercises. Do not run "pip install
+   coursework": the project of that name on the index is somebody else's.
+
    The folder "environment" is Python with what the exercises need, apart from that of your
    system. If somebody gave you a folder "wheels" for a room without a network, the last line is
 

@@ -216,7 +216,7 @@ def read_source(
     def record_question(name: str, **about: Any) -> None:
         if name not in answers:
             raise author.AuthorError(
-                f"{name}: the question stands before its check"
+                f"{name}: the question stands before its check, which belongs above it"
                 + (f"; what is checked so far: {', '.join(answers)}." if answers else ".")
             )
         if name in questions:
@@ -298,7 +298,7 @@ def read_source(
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
     if len(set(variables.values())) < len(variables):
-        raise author.AuthorError(f"{path.name}: two questions have an answer of the same name.")
+        raise author.AuthorError(f"{path.name}: two answers have one name: give each its own.")
     for name, question in questions.items():
         question.variable = variables[name]
     if only is None and not variant:

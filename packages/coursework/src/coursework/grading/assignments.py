@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -129,12 +130,17 @@ class Course:
             owners = {variable: name for name, variable in names_asked(path).items()}
             for cell in json.loads(path.read_text("utf8"))["cells"]:
                 if cell["cell_type"] == "code":
-                    cells.add(posed("".join(cell["source"]), owners).strip())
+                    cells.add(_code(posed("".join(cell["source"]), owners)))
         return frozenset(cells)
 
     def answers_something(self, notebook: Notebook) -> bool:
         """Whether a notebook says anything that the exercise did not say."""
         return any(
-            source and source not in self.blanks and not intake.SAYS.match(source)
-            for source in (cell["source"].strip() for cell in notebook.cells)
+            code and code not in self.blanks and not intake.SAYS.match(code)
+            for code in (_code(cell["source"]) for cell in notebook.cells)
         )
+
+
+def _code(source: str) -> str:
+    """A cell without comments and blanks, which answer nothing."""
+    return " ".join(re.sub("#.*", "", source).split())

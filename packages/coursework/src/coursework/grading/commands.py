@@ -30,6 +30,12 @@ SOLUTIONS = _argument(
     "--solutions",
     help="folder of the notebooks with solutions (default: the one in course.toml)",
 )
+DRY_RUN = _argument(
+    "--dry-run", action="store_true", help="show what would happen, and change no mark"
+)
+GRADER = _argument(
+    "--grader", help="whose decisions these are, for the journal (default: your user name)"
+)
 YES = _argument(
     "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
 )
@@ -59,12 +65,7 @@ ARGUMENTS = {
                 help="grade only this assignment (default: all in term.toml)",
             ),
             _argument("--student", help="the student, if one student handed in everything"),
-            _argument(
-                "--dry-run",
-                action="store_true",
-                help="show whose each file is, how the grader knows, and how many it would run; "
-                "run none",
-            ),
+            DRY_RUN,
             YES,
             WORKERS,
             _argument(
@@ -95,11 +96,7 @@ ARGUMENTS = {
         [
             OUT,
             SOLUTIONS,
-            _argument(
-                "--dry-run",
-                action="store_true",
-                help="show which marks would change, and change none",
-            ),
+            DRY_RUN,
             YES,
         ],
     ),
@@ -107,7 +104,7 @@ ARGUMENTS = {
         "judge answers on a page that only this machine can open",
         [
             OUT,
-            _argument("--grader", help="your name, for the journal (default: your user name)"),
+            GRADER,
             _argument("--hide-names", action="store_true", help="show numbers in place of names"),
             _argument(
                 "--port", type=int, default=0, help="port for the page (default: any free one)"
@@ -127,13 +124,8 @@ ARGUMENTS = {
                 "credit filled in; or a table of appeals with the columns student, question and "
                 "words",
             ),
-            _argument(
-                "--grader",
-                help="the grader whose decisions a table holds (default: your user name)",
-            ),
-            _argument(
-                "--dry-run", action="store_true", help="show what would be added, and add nothing"
-            ),
+            GRADER,
+            DRY_RUN,
             YES,
         ],
     ),
@@ -156,11 +148,7 @@ ARGUMENTS = {
                 metavar="counts.json",
                 help="counts of earlier years, to compare",
             ),
-            _argument(
-                "--dry-run",
-                action="store_true",
-                help="print the table of the course, and write nothing",
-            ),
+            DRY_RUN,
         ],
     ),
     "export": (
@@ -185,11 +173,7 @@ ARGUMENTS = {
                 help="export the marks that were decided and due by then, such as "
                 "2026-12-01T12:00 (default: now)",
             ),
-            _argument(
-                "--dry-run",
-                action="store_true",
-                help="show what would be filled in, and write nothing",
-            ),
+            DRY_RUN,
             _argument(
                 "--overwrite",
                 action="append",
@@ -366,7 +350,7 @@ def _agree(out: str, yes: bool) -> Agree:
 def _say_moved(laboratory: Laboratory) -> None:
     if not laboratory.agreed:
         sys.exit(NOT_MOVED)
-    print(*laboratory.added, f"{len(laboratory.moves)} moved.", sep="\n")
+    print(*laboratory.first_decided(), f"{len(laboratory.moves)} moved.", sep="\n")
 
 
 def regrade(
@@ -386,7 +370,7 @@ def regrade(
     except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
     if dry_run:
-        said = [*laboratory.lines(), *laboratory.added]
+        said = [*laboratory.lines(), *laboratory.first_decided()]
         print(*said, f"{len(laboratory.moves)} would move.", sep="\n")
     else:
         _say_moved(laboratory)
@@ -465,7 +449,8 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         else ""
     )
     print(
-        f"{len(decisions)} decisions{others} from {path}{' would be taken in' if dry_run else ''}."
+        f"New from {path}{', would be taken in' * dry_run}: {len(decisions)} "
+        f"{'decision' if len(decisions) == 1 else 'decisions'}{others}."
     )
     foreign = [decision for decision in decisions if not _is_here(store, decision)]
     if foreign:

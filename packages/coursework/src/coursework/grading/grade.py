@@ -29,7 +29,7 @@ from .judging.contract import Asked
 from .judging.journal import Given, Journal, Standing, appeals_open, with_decisions
 from .judging.judge import Judge
 from .judging.laboratory import PAGE, Agree, Laboratory, settle
-from .judging.term import BEST, FILE, result_of, term_of
+from .judging.term import BEST, result_of, term_of
 from .pairing import (
     HandedIn,
     Work,
@@ -305,10 +305,7 @@ def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None)
     if student is not None and people and student not in people.people:
         raise BadRoster(f"There is no student {student!r} in the roster.")
     notebooks, refused = read(place, course, desk.term, student, desk.store.folder)
-    handed_in = pair(notebooks, refused, course, desk.term)
-    if people:
-        desk.term.demand_people(desk.store.folder / FILE, people.people)
-    return handed_in
+    return pair(notebooks, refused, course, desk.term)
 
 
 def _is_done(store: Store, one: Work, key: str) -> bool:

@@ -203,7 +203,7 @@ def say(
         print(f"{number} {are[0]} of {name}, and {are[1]} left alone.", file=show)
     _say_whose(handed_in, folder, show)
     if term.roster:
-        _say_absent(handed_in, term, graded, term.roster, show)
+        _say_absent(handed_in, term, graded, intake.refused_of(Store(folder)), show)
     return _say_foreign(handed_in.work, show)
 
 
@@ -235,19 +235,25 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         print(whose + (f" DOES NOT COUNT: {why}" if why else ""), file=show)
     if len(rows) > MOST_SHOWN:
         print(f"  ... and {len(rows) - MOST_SHOWN} more: {folder / WHOSE}", file=show)
-    ends = ("whose are they?", intake.NOT_MATCHED)
+    ends = ("whose are they?", intake.NOT_MATCHED, intake.NO_GROUP)
     asked = [refused for refused in handed_in.refused if refused.why.endswith(ends)]
     for refused in asked[:MOST_SHOWN]:
         print(f"  ? <- {in_a_line(refused.file, 120)}: {in_a_line(refused.why, 300)}", file=show)
 
 
 def _say_absent(
-    handed_in: HandedIn, term: Term, graded: Collection[str], roster: Roster, show: TextIO
+    handed_in: HandedIn,
+    term: Term,
+    graded: Collection[str],
+    before: Iterable[Refused],
+    show: TextIO,
 ) -> None:
+    people = set(term.roster.people) if term.roster else set()
     came = {*graded, *(one.student for one in handed_in.work)}
     present = {member for name in came for member in term.members(name)}
-    damaged = {one.student for one in handed_in.refused} & set(roster.people) - present
-    missing = sorted(set(roster.people) - present - damaged)
+    refused = {one.student for one in (*handed_in.refused, *before)}
+    damaged = refused & people - present
+    missing = sorted(people - present - damaged)
     for names, what in (
         (missing, "handed in nothing"),
         (sorted(damaged), "handed in what cannot be graded"),

@@ -233,7 +233,7 @@ def write(
     last, also if the machine goes down.
 
     ``text`` is text, bytes or pieces of text that come one after another. What is ``private`` holds
-    right answers: nobody else who works on this machine may read it.
+    right answers or marks: nobody else who works on this machine may read it.
     """
     path = Path(path)
     path.parent.mkdir(mode=0o700 if private else 0o777, parents=True, exist_ok=True)

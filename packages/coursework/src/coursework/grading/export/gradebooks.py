@@ -22,7 +22,7 @@ from typing import NamedTuple
 from ...checking.reply import plain_text
 from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
-from ..judging.term import EXCUSED, FILE, Result, Term, result_of, term_of, unknown_times
+from ..judging.term import EXCUSED, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
 from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
@@ -122,8 +122,6 @@ class Marks:
             for member in term.members(record.student):
                 self.students.setdefault(member, []).append(record)
         people = set(term.roster.people) if term.roster else set()
-        if people:
-            term.demand_people(store.folder / FILE, people)
         worth = {record.assignment: record.worth for record in self.records}
         self.results: dict[tuple[str, str], Result] = {}
         moment = as_of or datetime.datetime.now(datetime.UTC)
@@ -164,8 +162,9 @@ class Marks:
         people = set(self.term.roster.people) if self.term.roster else set()
         return people & {one.student for one in refused_of(self.store)} - set(self.students)
 
-    def excused(self, student: str) -> bool:
-        return self.results[student, self.assignment].state == EXCUSED
+    @property
+    def excused(self) -> list[str]:
+        return [student for (student, _), one in self.results.items() if one.state == EXCUSED]
 
     def mark(self, student: str) -> Given:
         """What was given for the one assignment."""
@@ -509,7 +508,7 @@ def fill(
             marks=now_written,
         )
         marks.journal.append([event])
-        write(target, bytes(book))
+        write(target, bytes(book), private=True)
         said.append(f"{len(now_written)} filled in: {target}")
     shown = book.column(
         "student", "lastname", "full name", "username", "orgdefinedid", "identifier"
@@ -550,7 +549,7 @@ def _why_not(book: Gradebook, system: System, marks: Marks, line: int, student: 
     """Why nothing is filled in for a student: the name of a heading, or nothing."""
     if student in marks.damaged:
         return "damaged"
-    if marks.excused(student):
+    if student in marks.excused:
         return "excused"
     if student not in marks.missing and marks.mark(student).undecided:
         return "waiting"
@@ -656,7 +655,9 @@ def _match(
         lines.setdefault(("own", own), set()).add(line)
     wanting: dict[int, list[str]] = {}
     several: list[str] = []
-    for student in [*marks.students, *marks.missing, *marks.damaged]:
+    for student in dict.fromkeys(
+        (*marks.students, *marks.missing, *marks.damaged, *marks.excused)
+    ):
         for key in _keys_of_student(system, student, marks.identity(student)):
             candidates = lines.get(key, set())
             if len(candidates) == 1:
@@ -737,6 +738,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
         pages[name] = page
     half = Path(path).with_name(f".half-{secrets.token_hex(8)}")
     try:
+        half.touch(0o600)
         with zipfile.ZipFile(half, "w", zipfile.ZIP_DEFLATED) as archive:
             for name, page in sorted(pages.items()):
                 # With a fixed date: the same pages give the same bytes.
@@ -752,15 +754,14 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
 def write_nbgrader(path: str | Path, marks: Marks) -> None:
     """Write nbgrader's table of grades."""
     rows = []
-    for record in marks.records:
-        given = marks.given[record.student, record.assignment]
-        (first, *_) = marks.term.members(record.student)
-        penalty = marks.results[first, record.assignment].penalty
-        score = round(given.points * (1 - penalty), 4)
-        lost = round(given.points * penalty, 4)
-        points = (given.points, lost, score, given.worth)
-        rows.append((record.assignment, "", "", record.student, "", "", "", *points))
-    write(path, table(NBGRADER, rows))
+    for (student, assignment), result in sorted(marks.results.items()):
+        given = marks.given.get((marks.term.group_of(student), assignment))
+        if given or (result.state == "missing" and result.due):
+            raw, worth = (given.points, given.worth) if given else (0, result.worth)
+            lost = round(raw * result.penalty, 4)
+            points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
+            rows.append((assignment, "", "", student, "", "", "", *points))
+    write(path, table(NBGRADER, rows), private=True)
 
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:

@@ -252,6 +252,12 @@ class Laboratory:
         return said
 
 
+    def first_decided(self) -> list[str]:
+        """What waited for a person, and was decided: that moves no mark that was given."""
+        heading = f"Decided for the first time ({len(self.added)}):"
+        return [heading, *(f"  {line}" for line in self.added)] if self.added else []
+
+
 #: Says whether what a laboratory shows shall come to pass.
 Agree = Callable[[Laboratory], bool]
 

@@ -445,6 +445,8 @@ def read_term(path: str | Path) -> Term:
     }
     drop = tuple(replace(rule, of=rule.of or tuple(assignments)) for rule in term.drop)
     roster = Roster(path.parent / str(term.roster), term.groups) if term.roster else None
+    if roster:
+        term.demand_people(path, roster.people)
     return replace(term, assignments=assignments, drop=drop, extensions=extensions, roster=roster)
 
 

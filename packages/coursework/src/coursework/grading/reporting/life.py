@@ -5,6 +5,7 @@ import datetime
 from ..judging import term as of_term
 from ..judging.journal import Appeal, Decision, Exported, Given, Journal
 from ..store import Store
+from ..submissions.intake import refused_of
 from ..tables import in_a_line, number
 
 
@@ -20,7 +21,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     whose = term.group_of(student)
     key = whose, assignment
     record, given = store.read(*key), (keys := journal.standing().given).get(key)
-    if record is None or given is None:
+    expected = term.roster and student in term.roster.people and assignment in term.assignments
+    if given and record is None or not given and not expected:
         own = sorted(name for one, name in keys if one == whose)
         raise ValueError(
             f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
@@ -29,20 +31,26 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"{', but its record is gone: grade again' if given else ''}."
         )
     group = f" (in {whose})" if whose != student else ""
-    said = [f"{student}{group}, {assignment}: {_of(given)}."]
-    for notebook in record.notebooks:
+    comes_to = _of(given) if given else "nothing that can be graded was handed in"
+    said = [f"{student}{group}, {assignment}: {comes_to}."]
+    refused = [one for one in refused_of(store) if one.student in (student, whose)]
+    for one in refused:
+        said.append(f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}")
+    for notebook in record.notebooks if record else ():
         when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
         said.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
-    for other in record.superseded:
+    for other in record.superseded if record else ():
         said.append(f"  does not count: {in_a_line(other.file, 120)}, since {other.why}")
-    result = of_term.result_of(
-        student, assignment, record, term, {}, datetime.datetime.now(datetime.UTC)
-    )
+    now = datetime.datetime.now(datetime.UTC)
+    result = of_term.result_of(student, assignment, record, term, {assignment: 0}, now)
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
     in_time = "in time" if result.handed_in else "nothing says when it came"
     late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time
+    if not record:
+        missing = result.due and result.state == "missing" and not refused
+        late = "it is exported as 0" if missing else "no mark is exported"
     said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
-    for name, mark in record.marks.items():
+    for name, mark in record.marks.items() if record else ():
         case = record.cases.get(name)
         rule = f", variant {case.own.variant} ({case.rule})" if case and case.rule else ""
         decided = f", decided by {mark.decided['who']}" if mark.decided else ""

@@ -73,6 +73,8 @@ class Claim(NamedTuple):
         itself.
     place : str
         The name of the outermost folder or file, as it stands in what was handed in.
+    others : tuple of tuples of (kind, value)
+        Of what a group handed in, the same as ``keys`` for each of the other members.
     """
 
     student: str
@@ -85,6 +87,7 @@ class Claim(NamedTuple):
     handed_in: str = ""
     reply: str = ""
     place: str = ""
+    others: tuple[tuple[tuple[str, str], ...], ...] = ()
 
 
 class Layout:
@@ -258,16 +261,20 @@ class Layout:
         known = self.submitters.get(parts[0])
         if known is None:
             return None
-        name, own, when = known
+        people, when = known
+        # The number or address is the course's; what people are called they may change.
+        keys, *others = (
+            (*(("gradescope", own) for own in numbers), ("name", name)) for name, numbers in people
+        )
         return Claim(
-            _clean([*own, name][0]),
-            # The number or address is the course's; what people are called they may change.
-            (*(("gradescope", one) for one in own), ("name", name)),
+            _clean(keys[0][1]),
+            keys,
             f"gradescope {parts[0]}",
             _inside(parts),
             given_by_system=True,
             handed_in=when,
             reply=f"{parts[0]}/",
+            others=tuple(others),
         )
 
     def _moodle(self, parts: Parts) -> Claim | None:
@@ -405,9 +412,9 @@ SYSTEMS: tuple[tuple[str, Callable[[Parts], bool]], ...] = (
 )
 
 
-def _submitters(data: bytes) -> dict[str, tuple[str, list[str], str]]:
-    """The name, the number and the address, and the time of each of Gradescope's
-    submissions that one person handed in.
+def _submitters(data: bytes) -> dict[str, tuple[list[tuple[str, list[str]]], str]]:
+    """Of each of Gradescope's submissions, the people who handed it in, with their names and their
+    numbers and addresses, and the time.
     """
     import yaml
 
@@ -417,16 +424,16 @@ def _submitters(data: bytes) -> dict[str, tuple[str, list[str], str]]:
         return {}
     found = {}
     for folder, about in listed.items() if isinstance(listed, dict) else ():
-        people = about.get(":submitters") if isinstance(about, dict) else None
-        # What a group handed in is nobody's alone: a person says whose it is.
-        if isinstance(people, list) and len(people) == 1 and isinstance(people[0], dict):
-            name, number, address = (
-                str(people[0].get(f":{key}") or "") for key in ("name", "sid", "email")
-            )
-            when = about.get(":created_at")
-            time = when.isoformat() if isinstance(when, datetime.datetime) else ""
-            if name or number or address:
-                found[str(folder)] = name, [own for own in (number, address) if own], time
+        submitters = about.get(":submitters") if isinstance(about, dict) else None
+        people = []
+        for person in submitters if isinstance(submitters, list) else ():
+            called = person if isinstance(person, dict) else {}
+            name, *own = (str(called.get(f":{key}") or "") for key in ("name", "sid", "email"))
+            people.append((name, list(filter(None, own))))
+        when = about.get(":created_at") if people else None
+        time = when.isoformat() if isinstance(when, datetime.datetime) else ""
+        if people and all(name or own for name, own in people):
+            found[str(folder)] = people, time
     return found
 
 

@@ -434,6 +434,9 @@ def _with_student(
     if student is not None:
         identity = roster.identity(student) if roster else Identity()
         return one._replace(student=student, matched="as you said", identity=identity)
+    if one.claim.others and (roster is None or not roster.are_a_group((one.claim.keys, *one.claim.others))):
+        refused.append(Refused(one.file, one.claim.student, NO_GROUP))
+        return None
     if roster is None:
         identity = Identity(known if one.claim.given_by_system else {})
         return one._replace(matched="as its name or folder says", identity=identity)
@@ -447,6 +450,10 @@ def _with_student(
     )
 
 
+NO_GROUP = (
+    "Several students handed this in together, and they are no group in term.toml: whose is it? "
+    "Write them under [groups], such as team-1 = ['ada', 'ben']."
+)
 NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
 
 

@@ -168,7 +168,10 @@ class Roster:
             if len({self.group_of.get(name, name) for name in found}) == 1:
                 return self.group_of[min(found)], WORDS[kind]
             if found:
-                return None, f"Several students of the roster fit: {', '.join(sorted(found))}."
+                return None, (
+                    f"Several students of the roster fit: {', '.join(sorted(found))}. If they work "
+                    "together, write them under [groups] in term.toml."
+                )
             if kind in self.kinds and kind in (
                 "canvas",
                 "canvas anonymous",
@@ -179,6 +182,12 @@ class Roster:
             if kind == "github" and kind not in self.kinds:
                 return None, "The roster has no column `github`, and that name anybody may choose."
         return None, "Nobody in the roster fits."
+
+    def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
+        """Whether all whom these keys mean work in one group."""
+        names = [self.find(keys)[0] or "" for keys in people]
+        groups = {self.group_of.get(name, name) for name in names}
+        return len(groups) == 1 and groups <= set(self.group_of.values())
 
     def identity(self, student: str) -> Identity:
         """What is known of a student, as a record holds it."""
