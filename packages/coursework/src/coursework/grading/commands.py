@@ -6,7 +6,6 @@ import argparse
 import contextlib
 import datetime
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -148,7 +147,6 @@ ARGUMENTS = {
                 metavar="counts.json",
                 help="counts of earlier years, to compare",
             ),
-            DRY_RUN,
         ],
     ),
     "export": (
@@ -481,7 +479,6 @@ def term(
     solutions: str | None,
     roster: str | None,
     earlier: Sequence[str],
-    dry_run: bool,
 ) -> None:
     from pathlib import Path
 
@@ -493,21 +490,14 @@ def term(
         if new:
             from ..authoring.course import find_course
 
-            print(new_term(out, Path(solutions or find_course().sources), roster, dry_run))
+            print(new_term(out, Path(solutions or find_course().sources), roster))
             return
         if roster:
             sys.exit("coursework term: --roster is for term new; it stands in term.toml then.")
-        store, rules = Store(out), read_term(Path(out, FILE))
-        with tempfile.TemporaryDirectory() as folder:
-            where = Path(folder) if dry_run else None
-            said = write_course(store, rules, earlier=earlier, folder=where)
-            if where:
-                said += [(where / "course.csv").read_text("utf8"), "Nothing was kept."]
-            else:
-                said.append(f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it")
+        said = write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier)
     except ValueError as error:
         sys.exit(f"coursework term: {error}")
-    print(*said, sep="\n")
+    print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
 
 
 def export(

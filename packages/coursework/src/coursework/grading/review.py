@@ -48,7 +48,7 @@ from .reporting import pages
 from .reporting.reports import deed
 from .reporting.templates_of_pages import ENVIRONMENT, source_of
 from .store import Store
-from .submissions.intake import SAYS
+from .submissions.intake import SAYS, bare
 from .tables import number
 
 ALONE = "127.0.0.1"
@@ -386,7 +386,7 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
                 shared[ANSWER, question, mark.group].add(record.student)
             for notebook in record.notebooks:
                 cells = work(notebook.sha256) if cell is not None else ()
-                written = "".join(map(_bare, cells[max(0, (cell or 0) - 1) : (cell or 0) + 1]))
+                written = "".join(map(bare, cells[max(0, (cell or 0) - 1) : (cell or 0) + 1]))
                 if cell is not None and cell < len(cells) and len(written) >= SHORTEST_CODE:
                     shared[CODE, question, written].add(record.student)
     pairs: Counter[tuple[str, str, str]] = Counter()
@@ -408,11 +408,6 @@ def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) ->
             for question in record.marks:
                 hints[record.student, question].append(f"the notebook {said}")
     return hints
-
-
-def _bare(source: str) -> str:
-    """Code without comments and blanks: what is left of it when somebody changes how it looks."""
-    return re.sub(r"\s+", "", re.sub(r"#[^\n]*", "", source))
 
 
 # --- the server ---------------------------------------------------------------------------------

@@ -655,9 +655,7 @@ def _match(
         lines.setdefault(("own", own), set()).add(line)
     wanting: dict[int, list[str]] = {}
     several: list[str] = []
-    for student in dict.fromkeys(
-        (*marks.students, *marks.missing, *marks.damaged, *marks.excused)
-    ):
+    for student in dict.fromkeys((*marks.students, *marks.missing, *marks.damaged, *marks.excused)):
         for key in _keys_of_student(system, student, marks.identity(student)):
             candidates = lines.get(key, set())
             if len(candidates) == 1:

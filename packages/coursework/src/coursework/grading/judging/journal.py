@@ -13,7 +13,6 @@ another by then, nothing is entered, and both are told.
 """
 
 import contextlib
-import csv
 import datetime
 import getpass
 import hashlib
@@ -30,7 +29,7 @@ from ...checking.fields import Fields, Json, Misread, one_of, text
 from ..locks import lock
 from ..reading import AsJson
 from ..record import Judged, Mark, Record
-from ..submissions.roster import decoded
+from ..submissions.roster import cells_in
 from ..tables import as_written
 
 FILE = "journal.jsonl"
@@ -918,17 +917,9 @@ def _event(line: str) -> Event:
 
 
 def _table(path: Path) -> tuple[set[str], list[Row]]:
-    text = decoded(path.read_bytes())
-    first = text.split("\n", 1)[0]
-    # Not at every sign that ends a line somewhere: students choose some of the words,
-    # and would begin a line of theirs.
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
-    header = [name.strip().casefold() for name in next(reader, [])]
-    rows = [
-        (reader.line_num, dict.fromkeys(header, "") | dict(zip(header, map(str.strip, cells))))
-        for cells in reader
-    ]
-    return set(header), rows
+    header, lines = cells_in(path)
+    empty = dict.fromkeys(header, "")
+    return set(header), [(number, empty | dict(zip(header, cells))) for number, cells in lines]
 
 
 def _credit(text: str, where: str) -> float | None:

@@ -251,7 +251,6 @@ class Laboratory:
             said.append(f"  ... and {len(self.moves) - MOST_SHOWN} more.")
         return said
 
-
     def first_decided(self) -> list[str]:
         """What waited for a person, and was decided: that moves no mark that was given."""
         heading = f"Decided for the first time ({len(self.added)}):"

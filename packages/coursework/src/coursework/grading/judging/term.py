@@ -367,7 +367,7 @@ NEW_ASSIGNMENT = """
 """
 
 
-def new_term(folder: str | Path, sources: Path, roster: str | None, dry_run: bool = False) -> str:
+def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     """Write the file of a term for the notebooks with solutions that there are; say so.
 
     Raises
@@ -398,11 +398,10 @@ def new_term(folder: str | Path, sources: Path, roster: str | None, dry_run: boo
         names=", ".join(map(json.dumps, names)),
         first=names[0],
     )
-    if not dry_run:
-        path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        path.write_text(text, "utf8")
-        read_term(path)
-    return text if dry_run else f"{path}: read it, and choose."
+    path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    path.write_text(text, "utf8")
+    read_term(path)
+    return f"{path}: read it, and choose."
 
 
 def read_term(path: str | Path) -> Term:

@@ -63,9 +63,8 @@ def write_course(
     *,
     earlier: Iterable[str | Path] = (),
     now: datetime.datetime | None = None,
-    folder: Path | None = None,
 ) -> list[str]:
-    """Write what a course comes to into ``folder``, or else the folder ``course`` of the results.
+    """Write what a course comes to into the folder ``course`` of the results.
 
     Parameters
     ----------
@@ -98,7 +97,7 @@ def write_course(
         students.update(term.roster.people)
     term.demand_people(store.folder / FILE, students)
     said = _misspelt(term, worth)
-    folder, rows, all_results = folder or store.folder / FOLDER, [], list[Result]()
+    folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
     for student in sorted(students):
         records = {
             name: found

@@ -36,6 +36,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     refused = [one for one in refused_of(store) if one.student in (student, whose)]
     for one in refused:
         said.append(f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}")
+    cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():
         when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
         said.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
@@ -51,7 +52,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         late = "it is exported as 0" if missing else "no mark is exported"
     said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items() if record else ():
-        case = record.cases.get(name)
+        case = cases.get(name)
         rule = f", variant {case.own.variant} ({case.rule})" if case and case.rule else ""
         decided = f", decided by {mark.decided['who']}" if mark.decided else ""
         note = f" ({mark.note})" if mark.note else ""

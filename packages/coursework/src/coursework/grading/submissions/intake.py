@@ -90,6 +90,11 @@ SAYS = re.compile(
 )
 
 
+def bare(source: str) -> str:
+    """Code without comments and blanks: what is left of it when somebody changes how it looks."""
+    return re.sub(r"\s+", "", re.sub(r"#[^\n]*", "", source))
+
+
 class CodeCell(TypedDict):
     """A cell of code, as it was handed in."""
 
@@ -434,7 +439,8 @@ def _with_student(
     if student is not None:
         identity = roster.identity(student) if roster else Identity()
         return one._replace(student=student, matched="as you said", identity=identity)
-    if one.claim.others and (roster is None or not roster.are_a_group((one.claim.keys, *one.claim.others))):
+    people = one.claim.keys, *one.claim.others
+    if one.claim.others and not (roster and roster.are_a_group(people)):
         refused.append(Refused(one.file, one.claim.student, NO_GROUP))
         return None
     if roster is None:

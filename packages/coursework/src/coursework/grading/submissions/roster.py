@@ -202,23 +202,29 @@ class Roster:
         )
 
 
-def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
-    try:
-        text = decoded(path.read_bytes())
-    except OSError as error:
-        raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
+def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """The names of a table's columns, in small letters, and the cells of each line."""
+    text = decoded(path.read_bytes())
     first = text.split("\n", 1)[0]
     # Not at every sign that ends a line somewhere: students choose their names,
     # and would begin a line of theirs.
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
+    return header, ((reader.line_num, list(map(str.strip, cells))) for cells in reader)
+
+
+def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
+    try:
+        header, lines = cells_in(path)
+    except OSError as error:
+        raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
     english, _ = in_english(header)
     header = [english.get(name, name) for name in header]
-    for number, cells in enumerate(reader, 2):
-        yield number, dict(zip(header, (cell.strip() for cell in cells), strict=False))
+    for number, cells in lines:
+        yield number, dict(zip(header, cells))
 
 
 def decoded(data: bytes) -> str:
