@@ -67,6 +67,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         raise
     except ModuleNotFoundError as error:
+        if error.name in ("fcntl", "resource"):
+            sys.exit(
+                f"coursework {command} judges what strangers wrote, apart from all else and by "
+                "means of Linux that this system has not. Run it in WSL or in a container; review, "
+                "merge, term and export run here, too, and keep what was decided in the journal."
+            )
         sys.exit(
             f"coursework {command} needs {error.name}, which is not installed here. Install "
             "coursework-tools, or in a working copy: python -m pip install --editable '.[tools]'"

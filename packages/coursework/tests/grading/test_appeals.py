@@ -128,10 +128,10 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
         journal.append([late], collisions=True)
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
     journal.append([late], collisions=True)
-    assert state().state == "accepted" and Journal(out.folder).current()[key].credit == 1
+    assert state().state == "accepted" and Journal(out.folder).standing().decisions[key].credit == 1
     # Undo is real: the mark is what it was, and the appeal waits again.
     journal.take_back([record], SUM, "Ben")
-    assert state().state == "under review" and key not in Journal(out.folder).current()
+    assert state().state == "under review" and key not in Journal(out.folder).standing().decisions
     # Once it is closed, another one may be raised.
     journal.appeal(record, SUM, "No!", state=REJECTED, of=first, after=state().last, who="Ann")
     journal.appeal(record, SUM, "I ask once more.", who="Ann")
@@ -274,7 +274,7 @@ def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out
     assert (found.points, [one["state"] for one in found.appeals]) == (1, ["accepted"])
     again = Journal(out.folder)
     again.take_back([out.read("benjamin", "essays")], SUM, "Ben")
-    assert again.current()["benjamin", "essays", SUM].credit == 1
+    assert again.standing().decisions["benjamin", "essays", SUM].credit == 1
 
 
 # --- what has changed since ---------------------------------------------------------------------
@@ -410,7 +410,7 @@ def test_who_saw_another_decision_decided_later_whatever_the_clock_says(out):
     for events, credit in (([one, other], 1), ([one, other, third], 0), ([third, other, one], 0)):
         journal.path.unlink(missing_ok=True)
         Journal(out.folder).append(events)
-        assert Journal(out.folder).current()["ben", "essays", SUM].credit == credit
+        assert Journal(out.folder).standing().decisions["ben", "essays", SUM].credit == credit
 
 
 def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
@@ -420,7 +420,7 @@ def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
     appeals = tmp_path / "appeals.csv"
     appeals.write_text(f"student,question,words\nben,{SUM},Right!\n")
     put(tmp_path / "in", "dan", answered("So.", 5), "essays.ipynb")
-    made = (regrade_page := "regrade.html"), "regrade.csv", "whose.csv", "lock"
+    made = (regrade_page := "regrade.html"), "whose.csv", "lock"
 
     def contents():
         return {

@@ -192,7 +192,7 @@ def test_what_a_captured_worker_sends_is_read_as_strictly_as_what_a_notebook_sen
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("deed", ["return Evil()", "raise EvilError", "return [b'x', Evil()]"])
+@pytest.mark.parametrize("deed", ["raise EvilError", "return [b'x', Evil()]"])
 def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, deed):
     touched = tmp_path / "touched"
     touched.mkdir()

@@ -985,7 +985,7 @@ def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
     mine.add(found, "turns/sum", 1, who="Ann")
     other.add(found, "turns/about-x", 1, who="Bea")
     assert mine.merge(other.path) == (other.events, []) and mine.merge(other.path) == ([], [])
-    assert {key[2]: one.who for key, one in mine.current().items()} == {
+    assert {key[2]: one.who for key, one in mine.standing().decisions.items()} == {
         "turns/sum": "Ann",
         "turns/about-x": "Bea",
     }

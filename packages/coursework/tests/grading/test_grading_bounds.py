@@ -87,7 +87,7 @@ def judged(answers, questions, folder):
 
 
 @pytest.mark.parametrize(
-    "number", [300, *(pytest.param((1_000, k), marks=pytest.mark.long) for k in range(10))]
+    "number", [300, *(pytest.param((1_000, k), marks=pytest.mark.long) for k in range(2))]
 )
 def test_ordinary_answers_are_judged_in_bounded_time_and_memory(number, questions, tmp_path):
     dice, answers = random.Random(f"answers {number}"), []
@@ -261,7 +261,7 @@ def _contents(folder):
         for path in folder.rglob("*")
         if path.is_file()
         # The page of moves is that of the last run: what moved before stands in the journal.
-        and path.name not in ("run.log", "lock", "journal.jsonl", "regrade.html", "regrade.csv")
+        and path.name not in ("run.log", "lock", "journal.jsonl", "regrade.html")
         and not path.name.startswith(".half-")
     }
 
@@ -290,7 +290,7 @@ def whole(tmp_path):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_whenever_it_is_killed_the_same_comes_of_it(whole, tmp_path_factory, run, seed, kills=6):
     """Five commands, each killed so many times at moments drawn by
     lot, and then let come to its end.

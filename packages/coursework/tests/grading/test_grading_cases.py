@@ -315,7 +315,7 @@ def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
     first.append([one], collisions=True)
     with pytest.raises(Collision) as found:
         second.append([second.decision(RECORD, "turns/sum", 1, who="Ben")], collisions=True)
-    assert found.value.decisions == [one] and list(second.current().values()) == [one]
+    assert found.value.decisions == [one] and list(second.standing().decisions.values()) == [one]
     second.append(
         [second.decision(RECORD, "turns/sum", 1, who="Ben", after=one.id)], collisions=True
     )
@@ -323,7 +323,7 @@ def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
         first.append(
             [first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True
         )
-    (counts,) = Journal(tmp_path).current().values()
+    (counts,) = Journal(tmp_path).standing().decisions.values()
     assert (counts.who, counts.credit) == ("Ben", 1)
 
 
@@ -333,11 +333,11 @@ def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(t
     journal.add(RECORD, "turns/sum", 1, who="Ben")
     key = "ann", "turns", "turns/sum"
     journal.take_back([RECORD], "turns/sum", "Ben")
-    assert journal.current()[key].who == "Ann"
+    assert journal.standing().decisions[key].who == "Ann"
     with pytest.raises(Collision, match="no decision of yours"):
         journal.take_back([RECORD], "turns/sum", "Ben")
     journal.take_back([RECORD], "turns/sum", "Ann")
-    assert Journal(tmp_path).current() == {} and len(Journal(tmp_path).decisions) == 4
+    assert Journal(tmp_path).standing().decisions == {} and len(Journal(tmp_path).decisions) == 4
     # As it was written before one could tell whose: all earlier ones are taken back.
     journal.add(RECORD, "turns/sum", 1, who="Ann")
     journal.add(RECORD, "turns/sum", None, who="Ben")
@@ -349,7 +349,7 @@ def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(t
     (tmp_path / "journal.jsonl").write_text(
         "".join(json.dumps(line) + "\n" for line in without[-2:])
     )
-    assert Journal(tmp_path).current() == {}
+    assert Journal(tmp_path).standing().decisions == {}
 
 
 @pytest.mark.parametrize("left", [1, 20, -1])
@@ -631,9 +631,8 @@ def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_
     assert {one.student for one in found.lose} == losing and list(out.all()) == before
     gaining = {one.student for one in found.gain}
     assert gaining <= {"wrong"}
-    rows = (out.folder / "regrade.csv").read_text().splitlines()
     page = (out.folder / "regrade.html").read_text()
-    assert len(rows) == 1 + len(found.moves) and all(f">{student}<" in page for student in losing)
+    assert all(f">{student}<" in page for student in losing)
     # Without a yes nothing moves; with one what was said.
     with pytest.raises(SystemExit, match="No mark that was given before has moved"):
         main(["regrade", str(out.folder), "--solutions", str(solutions)])

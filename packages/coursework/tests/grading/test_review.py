@@ -266,7 +266,7 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         assert first.decide(name, "credit=back").status == 409
         assert first.decide(name, "credit=1").status == 303
         assert second.decide(name, "credit=back").status == 303
-        assert {one.who for one in Journal(out).current().values()} == {"Ann"}
+        assert {one.who for one in Journal(out).standing().decisions.values()} == {"Ann"}
 
 
 def test_hints_are_for_a_person_and_no_marks(out):
@@ -352,7 +352,7 @@ def test_the_commands(out, capsys, tmp_path, graded):
     Journal(out).add(found, "turns/sum", 1, who="Ann")
     Journal(other).add(found, "turns/sum", 0, who="Bea")
     main(["merge", str(out), str(other / "journal.jsonl")])
-    assert "1 decisions" in capsys.readouterr().out.splitlines()[0]
+    assert ": 1 decision." in capsys.readouterr().out.splitlines()[0]
     with pytest.raises(SystemExit, match="there is no .*decided nothing yet"):
         main(["merge", str(out), str(tmp_path / "none")])
 
@@ -544,7 +544,7 @@ def test_many_answers_are_reviewed_by_keys_alone(tmp_path, browser, graded):
         assert "0 answers wait" in page.text_content("main")
         page.context.close()
     assert all(url.startswith("http://127.0.0.1:") for url in requests)
-    decided = Journal(out).current()
+    decided = Journal(out).standing().decisions
     assert len(decided) == MANY
     assert sorted(one.credit for one in decided.values()) == [0.5] * (MANY // 2) + [1] * (MANY // 2)
     assert [one.comment for one in decided.values() if one.comment] == ["Rounded: 4 digits"]

@@ -490,7 +490,7 @@ class Story:
         appeals = journal.standing().appeals.get((*key, name), ())
         if self.dice.random() < 0.7 and appeals and appeals[-1].is_open:
             record = Store(self.place / "marks").read(*key)
-            there = journal.current().get((*key, name))
+            there = journal.standing().decisions.get((*key, name))
             decision = journal.decision(
                 record,
                 name,
@@ -513,7 +513,7 @@ class Story:
 
         def serve(out, grader, **more):
             journal, record = Journal(self.place / "marks"), Store(out).read(*key)
-            there = journal.current().get((*key, name))
+            there = journal.standing().decisions.get((*key, name))
             after = there.id if there else ""
             decision = journal.decision(record, name, credit, who=grader, after=after)
             journal.append([decision], collisions=True)

@@ -8,8 +8,9 @@ from coursework.authoring import release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.packing import archive as pack
 from coursework.authoring.selftest import (
-    leaks,
+    found_in,
     released_texts,
+    secrets_of,
     selftest,
     try_question,
     write_page,
@@ -27,7 +28,8 @@ def test_every_question_passes_and_names_its_mistakes(name):
     assert "<h1>" in write_page(findings, [])
     if name != release.CHAPTERS:
         assert len(findings) >= 4
-        assert leaks([source], released_texts(COURSE.exercises, COURSE.sealed, "none")) == []
+        released = released_texts(COURSE.exercises, COURSE.sealed, "none")
+        assert found_in(released, secrets_of(source)) == []
 
 
 @needs_solutions
@@ -36,7 +38,9 @@ def test_nothing_leaks_into_the_archive(tmp_path):
     archive = pack(COURSE, tmp_path / "exercises.zip")
     sources = [release.read_source(path) for path in SOURCES.values()]
     received = released_texts(COURSE.exercises, COURSE.sealed, archive)
-    assert leaks(sources, received) == []
+    for source in sources:
+        if source.name != release.CHAPTERS:
+            assert found_in(received, secrets_of(source)) == []
     # The questions to ask aloud stand beside the solutions.
     assert not any("spoken-questions" in name for name in received)
 

@@ -14,7 +14,7 @@ import random
 import re
 import zipfile
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
@@ -389,16 +389,6 @@ def _strings(data: object) -> Iterator[str]:
         else:
             for part in data:
                 yield from _strings(part)
-
-
-def leaks(sources: Iterable[Source], texts: Mapping[str, str]) -> list[Leak]:
-    """Give every secret that stands in a released text: what it is, and where."""
-    return [
-        leak
-        for source in sources
-        if source.name != CHAPTERS
-        for leak in found_in(texts, secrets_of(source))
-    ]
 
 
 def found_in(texts: Mapping[str, str], secrets: Secrets) -> list[Leak]:

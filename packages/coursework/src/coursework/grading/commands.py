@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import datetime
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .judging.journal import Decision, Journal
+    from .judging.journal import Journal
     from .judging.laboratory import Agree, Laboratory
     from .store import Store
 
@@ -253,28 +252,6 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
             parser.add_argument(*names, **options)
 
 
-class NeedsLinux(RuntimeError):
-    """This system keeps no programs apart in the way that grading does."""
-
-    def __str__(self) -> str:
-        return (
-            "this judges what strangers wrote, apart from all else and by means of Linux that this "
-            "system has not. "
-            "Run it in WSL or in a container; review, merge, term and export run here, too."
-        )
-
-
-@contextlib.contextmanager
-def _on_linux() -> Iterator[None]:
-    """Where modules that only Unix has are missing, say what that means."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        if error.name in ("fcntl", "resource"):
-            raise NeedsLinux from None
-        raise
-
-
 def grade(
     submissions: str,
     out: str,
@@ -289,15 +266,11 @@ def grade(
     as_listed: bool,
     yes: bool,
 ) -> None:
-    try:
-        with _on_linux():
-            from .execution.sandbox import WeakIsolation, WorkerDied
-            from .grade import grade as grade_class
-            from .running import Running
-            from .store import InUse
-            from .workers import processors
-    except NeedsLinux as error:
-        sys.exit(f"coursework grade: {error}")
+    from .execution.sandbox import WeakIsolation, WorkerDied
+    from .grade import grade as grade_class
+    from .running import Running
+    from .store import InUse
+    from .workers import processors
 
     try:
         done = grade_class(
@@ -357,15 +330,14 @@ def regrade(
     dry_run: bool,
     yes: bool,
 ) -> None:
+    from .grade import regrade as regrade_class
     from .store import InUse
 
     try:
-        with _on_linux():
-            from .grade import regrade as regrade_class
         laboratory = regrade_class(
             out, solutions=solutions, dry_run=dry_run, agree=_agree(out, yes)
         )
-    except (InUse, NeedsLinux, ValueError) as error:  # NothingToGrade and BadPolicy are such
+    except (InUse, ValueError) as error:  # NothingToGrade and BadPolicy are such
         sys.exit(f"coursework regrade: {error}")
     if dry_run:
         said = [*laboratory.lines(), *laboratory.first_decided()]
@@ -396,10 +368,10 @@ def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool)
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
         try:
-            with _on_linux():
-                from .grade import bring_in_decisions
+            from .grade import bring_in_decisions
+
             _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
-        except (InUse, NeedsLinux, ValueError) as error:
+        except (InUse, ValueError) as error:
             sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
@@ -426,17 +398,17 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
                 for line in unused:
                     print(f"  not used: {line}")
         if not dry_run:
-            with _on_linux():
-                from .grade import bring_in_decisions
+            from .grade import bring_in_decisions
+
             _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
-    except (InUse, NeedsLinux, ValueError) as error:
+    except (InUse, ValueError) as error:
         sys.exit(f"coursework merge: {error}")
 
 
 def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> None:
     from pathlib import Path
 
-    from .judging.journal import Decision
+    from .judging.journal import Decision, digest_of_answer
     from .tables import in_a_line
 
     new, differing = journal.merge(Path(path))
@@ -450,7 +422,12 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         f"New from {path}{', would be taken in' * dry_run}: {len(decisions)} "
         f"{'decision' if len(decisions) == 1 else 'decisions'}{others}."
     )
-    foreign = [decision for decision in decisions if not _is_here(store, decision)]
+    foreign = [
+        one
+        for one in decisions
+        if (record := store.read(one.student, one.assignment)) is None
+        or digest_of_answer(record, one.question) != one.answer
+    ]
     if foreign:
         students = dict.fromkeys(decision.student for decision in foreign)
         whose = ", ".join(in_a_line(name, 60) for name in students)
@@ -463,14 +440,6 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
             f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
             f"{second.who} gave {second.credit}; the later one counts."
         )
-
-
-def _is_here(store: Store, decision: Decision) -> bool:
-    """Whether the answer that was decided on is that of the records."""
-    from .judging.journal import digest_of_answer
-
-    record = store.read(decision.student, decision.assignment)
-    return record is not None and digest_of_answer(record, decision.question) == decision.answer
 
 
 def term(

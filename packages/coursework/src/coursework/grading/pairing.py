@@ -251,8 +251,7 @@ def _say_absent(
     people = set(term.roster.people) if term.roster else set()
     came = {*graded, *(one.student for one in handed_in.work)}
     present = {member for name in came for member in term.members(name)}
-    refused = {one.student for one in (*handed_in.refused, *before)}
-    damaged = refused & people - present
+    damaged = {one.student for one in (*handed_in.refused, *before)} & people - present
     missing = sorted(people - present - damaged)
     for names, what in (
         (missing, "handed in nothing"),

@@ -159,8 +159,8 @@ class Marks:
     @functools.cached_property
     def damaged(self) -> set[str]:
         """Who is known to have handed in nothing but what cannot be graded."""
-        people = set(self.term.roster.people) if self.term.roster else set()
-        return people & {one.student for one in refused_of(self.store)} - set(self.students)
+        refused = {one.student for one in refused_of(self.store)} - set(self.students)
+        return refused.intersection(student for student, _ in self.results)
 
     @property
     def excused(self) -> list[str]:

@@ -463,12 +463,6 @@ class Journal:
         given = {(one.student, one.assignment): one for one in events if isinstance(one, Given)}
         return Standing(decisions, appeals, worths, given)
 
-    def current(self, until: datetime.datetime | None = None) -> Mapping[Key, Decision]:
-        """The decision that counts for each answer, or counted at a time, by
-        student, assignment and question.
-        """
-        return self.standing(until).decisions
-
     # -- what is entered
 
     def hand_on(self, student: str, assignment: str, name: str) -> None:
@@ -702,7 +696,7 @@ class Journal:
             Where both decided on one answer and not the same: the later one counts.
         """
         known = {one.id for one in self.events}
-        before = self.current()
+        before = self.standing().decisions
         theirs = [one for one in events_in(path) if isinstance(one, ByPeople)]
         new = [one for one in theirs if one.id not in known]
         differing = [
@@ -759,7 +753,12 @@ class Journal:
         cases = {
             case_id(record, name): (record, name) for record in records for name in record.marks
         }
-        unused, wanted, standing, why = [], list[Decision](), self.current(), f"from {path.name}"
+        unused, wanted, standing, why = (
+            [],
+            list[Decision](),
+            self.standing().decisions,
+            f"from {path.name}",
+        )
         for number, row in rows:
             credit = _credit(row["credit"], f"{path}, line {number}")
             if credit is None:

@@ -18,7 +18,7 @@ from ..store import Store
 from ..tables import in_a_line, number
 from .journal import Given, Journal, Part
 
-TABLE, PAGE = "regrade.csv", "regrade.html"
+PAGE = "regrade.html"
 #: Instead of the name of a variant: all that the source has no more.
 TAKEN_OUT = "taken-out"
 #: The note of an answer that is to be run again, since it was not asked
@@ -231,6 +231,12 @@ class Laboratory:
     def again(self) -> list[Move]:
         return [move for move in self.moves if move.run_again]
 
+    @property
+    def even(self) -> list[Move]:
+        """Those whose share of the points stays the same."""
+        others = (*self.gain, *self.lose, *self.again)
+        return [move for move in self.moves if move not in others]
+
     def lines(self) -> list[str]:
         """What a person should know before saying yes."""
         said = []
@@ -243,9 +249,8 @@ class Laboratory:
                 f"{_about(self.again)}. `coursework grade`, as you said it before, runs just these "
                 "again."
             )
-        others = len(self.moves) - len(self.gain) - len(self.lose) - len(self.again)
-        if others:
-            said.append(f"Of {others} the share of the points would stay the same.")
+        if self.even:
+            said.append(f"Of {len(self.even)} the share of the points would stay the same.")
         said += [f"  {move}" for move in self.moves[:MOST_SHOWN]]
         if len(self.moves) > MOST_SHOWN:
             said.append(f"  ... and {len(self.moves) - MOST_SHOWN} more.")
@@ -253,8 +258,8 @@ class Laboratory:
 
     def first_decided(self) -> list[str]:
         """What waited for a person, and was decided: that moves no mark that was given."""
-        heading = f"Decided for the first time ({len(self.added)}):"
-        return [heading, *(f"  {line}" for line in self.added)] if self.added else []
+        indented = [f"  {line}" for line in self.added]
+        return indented and [f"Decided for the first time ({len(self.added)}):", *indented]
 
 
 #: Says whether what a laboratory shows shall come to pass.

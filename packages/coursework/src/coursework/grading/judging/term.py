@@ -218,18 +218,12 @@ class Term:
         ------
         BadTerm
         """
-        file = _File(path)
-        groups = [member for members in self.groups.values() for member in members]
-        for where, names in (
-            ("extensions", list(self.extensions)),
-            ("groups", groups),
-        ):
-            for student in names:
-                if student not in students:
-                    raise file.bad(
-                        f"{where}.{student}" if where == "extensions" else student,
-                        f"{where} name {student!r}, and nobody in the course is called so.",
-                    )
+        named = [("extensions", f"extensions.{student}", student) for student in self.extensions]
+        named += [("groups", one, one) for members in self.groups.values() for one in members]
+        for where, place, student in named:
+            if student not in students:
+                said = f"{where} name {student!r}, and nobody in the course is called so."
+                raise _File(path).bad(place, said)
 
 
 class _File:

@@ -30,9 +30,9 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"{', '.join(own or sorted({one for one, _ in keys})[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
         )
-    group = f" (in {whose})" if whose != student else ""
+    named = f"{student} (in {whose})" if whose != student else student
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
-    said = [f"{student}{group}, {assignment}: {comes_to}."]
+    said = [f"{named}, {assignment}: {comes_to}."]
     refused = [one for one in refused_of(store) if one.student in (student, whose)]
     for one in refused:
         said.append(f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}")

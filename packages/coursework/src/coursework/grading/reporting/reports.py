@@ -20,7 +20,7 @@ from ...checking.plugins import plugins
 from ...checking.reply import OUTCOMES
 from ...checking.writing import answer_as_text
 from ..judging.journal import case_id
-from ..judging.laboratory import PAGE, TABLE, Change, Laboratory
+from ..judging.laboratory import PAGE, Laboratory
 from ..judging.term import Term, result_of, term_of
 from ..record import Cell, Mark, Record, RunNotebook
 from ..store import Store, file_name, write
@@ -168,13 +168,12 @@ def write_all(store: Store) -> None:
 
 
 def write_moves(laboratory: Laboratory, folder: Path) -> None:
-    """Write what would move: the table and the page."""
-    changes = sorted(change for move in laboratory.moves for change in move.changes)
-    write(folder / TABLE, table(Change._fields, changes))
+    """Write the page of what would move."""
     groups = (
         ("Who would gain", laboratory.gain),
         ("Who would lose", laboratory.lose),
         ("What cannot be judged from what is stored, and is to be run again", laboratory.again),
+        ("Whose share of the points would stay the same", laboratory.even),
     )
     write(folder / PAGE, page("laboratory.html", groups=groups, lines=laboratory.lines()))
 
