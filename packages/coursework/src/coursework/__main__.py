@@ -67,16 +67,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         raise
     except ModuleNotFoundError as error:
-        if error.name in ("fcntl", "resource"):
-            sys.exit(
-                f"coursework {command} judges what strangers wrote, apart from all else and by "
-                "means of Linux that this system has not. Run it in WSL or in a container; review, "
-                "merge, term and export run here, too, and keep what was decided in the journal."
-            )
-        sys.exit(
-            f"coursework {command} needs {error.name}, which is not installed here. Install "
-            "coursework-tools, or in a working copy: python -m pip install --editable '.[tools]'"
+        needs = (
+            "means of Linux that this system has not, to judge what strangers wrote apart from all "
+            "else. Run it in WSL or in a container; review, merge, term and export run here, too, "
+            "and what was decided is in the journal."
+            if error.name in ("fcntl", "resource")
+            else f"{error.name}, which is not installed here. Install coursework-tools, or in a "
+            "working copy: python -m pip install --editable '.[tools]'"
         )
+        sys.exit(f"coursework {command} needs {needs}")
     except OSError as error:  # The reason is enough; a traceback helps nobody here.
         where = f": {error.filename}" if error.filename else ""
         sys.exit(f"coursework {command}: {error.strerror or error}{where}")

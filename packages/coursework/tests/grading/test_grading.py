@@ -605,7 +605,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     points = {row["student"]: row["points"] for row in rows_of(copied / "grades.csv")}
     assert "b" not in points and (points["somebody"], points["another"]) == ("5.5", "6")
     assert "'b' is now 'somebody'" in shown.getvalue() and "1 of the decisions" in shown.getvalue()
-    handed_on = {one.student: one for one in Journal(copied).decisions}
+    handed_on = {one.student: one for one in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
     assert handed_on["somebody"].when == handed_on["b"].when
     (copied / "term.toml").unlink()
@@ -968,7 +968,7 @@ def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, t
     assert [one.after for one in regrade(copied, solutions=course / "solutions").moves] == [4]
     journal = Journal(copied)
     journal.add(found, "turns/sum", 1, who="Ann")
-    assert [one.credit for one in journal.decisions] == [1, 0.25, None, 1]
+    assert [one.credit for one in journal.by_people] == [1, 0.25, None, 1]
     # Graded again with another answer, the decision on the old one does not count.
     again = tmp_path / "again"
     put(again, "mistaken", handed_in(sum="sine = 0"))

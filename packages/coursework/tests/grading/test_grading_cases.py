@@ -337,7 +337,7 @@ def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(t
     with pytest.raises(Collision, match="no decision of yours"):
         journal.take_back([RECORD], "turns/sum", "Ben")
     journal.take_back([RECORD], "turns/sum", "Ann")
-    assert Journal(tmp_path).standing().decisions == {} and len(Journal(tmp_path).decisions) == 4
+    assert Journal(tmp_path).standing().decisions == {} and len(Journal(tmp_path).by_people) == 4
     # As it was written before one could tell whose: all earlier ones are taken back.
     journal.add(RECORD, "turns/sum", 1, who="Ann")
     journal.add(RECORD, "turns/sum", None, who="Ben")
@@ -362,20 +362,20 @@ def test_a_journal_that_ends_within_a_line_is_read_and_goes_on(tmp_path, left):
     second = whole.split(b"\n")[1]
     path.write_bytes(whole[: len(whole) - 1 - len(second)] + second[:left])
     again = Journal(tmp_path)
-    assert [one.who for one in again.decisions] == [
+    assert [one.who for one in again.by_people] == [
         "Ann"
     ] and "ends within a line" in again.said_of_cut()
     again.add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Journal(tmp_path).decisions] == [
+    assert [one.who for one in Journal(tmp_path).by_people] == [
         "Ann",
         "Cem",
     ] and not again.said_of_cut()
     assert (tmp_path / CUT).read_bytes() == second[:left] + b"\n"
     # A line that only an editor left without its end is whole.
     path.write_bytes(whole[:-1])
-    assert len(Journal(tmp_path).decisions) == 2 and not Journal(tmp_path).said_of_cut()
+    assert len(Journal(tmp_path).by_people) == 2 and not Journal(tmp_path).said_of_cut()
     Journal(tmp_path).add(RECORD, "turns/sum", 0, who="Cem")
-    assert [one.who for one in Journal(tmp_path).decisions] == ["Ann", "Ben", "Cem"]
+    assert [one.who for one in Journal(tmp_path).by_people] == ["Ann", "Ben", "Cem"]
 
 
 def test_names_that_are_to_be_hidden_are_hidden_in_what_students_wrote(begun, out):

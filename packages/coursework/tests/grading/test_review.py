@@ -168,9 +168,9 @@ def test_only_this_machine_this_name_and_this_page_are_heard(out):
             assert served.decide(cluster, **headers).status == 403
         body = served.ask(f"/{served.secret}/answer/{cluster}", "POST", "credit=1")[0]
         assert body.status == 403  # without an origin
-        assert Journal(out).decisions == []
+        assert Journal(out).by_people == []
         assert served.decide(cluster).status == 303
-        assert len(Journal(out).decisions) == 1
+        assert len(Journal(out).by_people) == 1
 
 
 def test_the_server_listens_on_this_machine_alone(out):
@@ -261,7 +261,7 @@ def test_two_who_judge_at_once_are_told_and_lose_nothing(out):
         body = f"credit=1&comment=All+of+it&seen={quote(seen)}"
         response, page = first.ask(f"/{first.secret}/answer/{name}", "POST", body, **headers)
         assert response.status == 409 and "Ben gave 0.5" in page and "All of it" in page
-        assert {one.who for one in Journal(out).decisions} == {"Ben"}
+        assert {one.who for one in Journal(out).by_people} == {"Ben"}
         # What Ben decided is not Ann's to take back; upon it she may decide.
         assert first.decide(name, "credit=back").status == 409
         assert first.decide(name, "credit=1").status == 303

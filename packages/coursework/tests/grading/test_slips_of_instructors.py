@@ -83,9 +83,9 @@ def test_a_decision_that_a_full_disk_refused_is_not_lost_unsaid(course, monkeypa
         with monkeypatch.context() as patched:
             patched.setattr(judging.os, "fsync", full)
             assert served.decide(cluster, "credit=1&comment=Kept", seen).status == 507
-        assert Journal(course / "out").decisions == []
+        assert Journal(course / "out").by_people == []
         assert served.decide(cluster, "credit=1", seen).status == 303
-    assert Journal(course / "out").decisions
+    assert Journal(course / "out").by_people
 
 
 def test_a_name_begins_no_line_of_a_table(tmp_path):

@@ -318,6 +318,17 @@ def _agree(out: str, yes: bool) -> Agree:
     return agree
 
 
+def _bring_in_decisions(out: str, yes: bool) -> None:
+    """Bring what was decided, and is kept already, into the marks."""
+    from .grade import bring_in_decisions
+    from .store import InUse
+
+    try:
+        _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
+    except (InUse, ValueError) as error:
+        sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
+
+
 def _say_moved(laboratory: Laboratory) -> None:
     if not laboratory.agreed:
         sys.exit(NOT_MOVED)
@@ -350,7 +361,6 @@ def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool)
     import getpass
 
     from .review import review as serve
-    from .store import InUse
 
     def say(address: str) -> None:
         print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
@@ -367,19 +377,14 @@ def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool)
         sys.exit(f"coursework review: {error}")
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
-        try:
-            from .grade import bring_in_decisions
-
-            _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
-        except (InUse, ValueError) as error:
-            sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
+        _bring_in_decisions(out, yes)
 
 
 def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes: bool) -> None:
     from pathlib import Path
 
     from .judging.journal import Journal
-    from .store import InUse, Store
+    from .store import Store
 
     missing = [path for path in files if not Path(path).is_file()]
     if missing:
@@ -397,12 +402,10 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
                 print(f"From {path}, {'would be ' * dry_run}taken in: {entered}.")
                 for line in unused:
                     print(f"  not used: {line}")
-        if not dry_run:
-            from .grade import bring_in_decisions
-
-            _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
-    except (InUse, ValueError) as error:
+    except ValueError as error:
         sys.exit(f"coursework merge: {error}")
+    if not dry_run:
+        _bring_in_decisions(out, yes)
 
 
 def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> None:

@@ -285,8 +285,8 @@ class Class:
         )
         found |= dict.fromkeys(source)
         used: Counter[str] = Counter()
-        for one in self.journal.decisions:
-            if one.question == cluster.question:
+        for one in self.journal.by_people:
+            if isinstance(one, Decision) and one.question == cluster.question:
                 found |= dict.fromkeys(one.rubric)
         for one in self.standing.decisions.values():
             if one.question == cluster.question:

@@ -418,10 +418,6 @@ class Journal:
         """What people said."""
         return [one for one in self.events if isinstance(one, ByPeople)]
 
-    @property
-    def decisions(self) -> list[Decision]:
-        return [one for one in self.events if isinstance(one, Decision)]
-
     def said_of_cut(self) -> str:
         """What a person should know if the last line was not written to its end; or nothing."""
         last = self.path.read_bytes().rpartition(b"\n")[2] if self.path.exists() else b""

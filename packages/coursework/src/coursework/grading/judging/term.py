@@ -410,7 +410,8 @@ def read_term(path: str | Path) -> Term:
     try:
         said: dict[str, object] = tomllib.loads(path.read_text("utf8"))
     except (OSError, ValueError) as error:
-        raise BadTerm(f"{path}: {error}") from None
+        new = "; `coursework term new` writes it" if isinstance(error, FileNotFoundError) else ""
+        raise BadTerm(f"{path}: {error}{new}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
         try:
