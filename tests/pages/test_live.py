@@ -280,8 +280,8 @@ def test_the_list_of_cells_is_that_of_the_build(site):
     text = (HTML / "appendix" / "code-in-the-page.html").read_text("utf8")
     every = [kind for page in kinds_of_cells().values() for kind in on_the_page(page)]
     alone = sum(set(kind["needs"]) <= {"anywidget"} for kind in every)
-    assert f"Of {len(every)} cells, {alone} run in the page with what comes with this site" in text
-    assert alone >= 0.87 * len(every), "nearly nine cells of ten ask no other server"
+    assert f"Of {len(every)} cells, {alone} (" in text
+    assert alone >= 0.87 * len(every), "nearly nine cells of ten need no other server"
 
 
 # --- what is loaded, and when -------------------------------------------------------------------

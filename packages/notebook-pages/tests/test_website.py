@@ -204,7 +204,7 @@ FAULTS = {
     ),
     "a question has no replies": (
         chapter(GOOD_TEXT.replace("\n: ", "\n")),
-        "must end in its choices",
+        "must end with its choices",
     ),
     "a question has no label": (
         chapter(GOOD_TEXT.replace(":label: predict-one\n", "")),

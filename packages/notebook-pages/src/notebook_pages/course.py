@@ -25,10 +25,9 @@ INDEX = """# {title}
 
 {links}
 
-Each page checks your answers where you read it: put yours in place of the dots and run the cell.
-What you answer stays in your browser. To work on your own machine, take
-<a href="take-away/exercises.zip">all exercises</a> with you; `README.txt` in them says how to
-begin.
+Each page checks your answers: replace the dots by your answer and run the cell. Your answers stay
+in your browser. To work on your own machine, download
+<a href="take-away/exercises.zip">all exercises</a>; their `README.txt` explains how to begin.
 
 <!-- whole-book -->
 """

@@ -92,7 +92,7 @@ def labelled(doctree):
 
 
 def unknown(label, node):
-    fault = "a step of the lecture shows %s, which is no label of this page"
+    fault = "a step of the lecture shows %s, which is not a label on this page"
     logger.warning(fault, label, location=where(node), type="website", subtype="lecture")
     return label
 

@@ -77,16 +77,16 @@ class QuestionDirective(SphinxDirective):
         box = question(predicts=self.predicts)
         self.set_source_info(box)
         if "label" not in self.options:
-            return self.fault("it needs a `:label:`, under which the reader's answer is kept")
+            return self.fault("it needs a `:label:`, under which the reader's answer is stored")
         box["ids"] = [nodes.make_id(self.options["label"])]
         self.state.nested_parse(self.content, self.content_offset, box)
         if not box.children or not isinstance(box[-1], nodes.definition_list):
-            return self.fault("it must end in its choices, each followed by a line `: reply`")
+            return self.fault("it must end with its choices, each followed by a line `: reply`")
         items = list(box.pop().children)
         kinds = [kind for kind in ("answer", "number", "angle") if kind in self.options]
         if len(kinds) != 1:
             return self.fault(
-                "say what is right by one of `:answer: B`, `:number: 0.5` and `:angle: 30`"
+                "give the right answer by `:answer: B`, `:number: 0.5` or `:angle: 30`"
             )
         box["kind"], box["answer"] = kinds[0], self.options[kinds[0]]
         box["covers"] = self.options.get("covers", 0)
@@ -145,7 +145,7 @@ def number_questions(app, doctree):
         (label,) = box["ids"]
         if label in labels:
             logger.warning(
-                "two questions are called %s",
+                "two questions have the label %s",
                 label,
                 location=where(box),
                 type="website",

@@ -107,7 +107,7 @@ def link_to_pdf():
 
 def link_to_epub():
     return LINK.format(
-        name=EPUB.name, title="EPUB", note="for reading programs", size=EPUB.stat().st_size / 1e6
+        name=EPUB.name, title="EPUB", note="for e-readers", size=EPUB.stat().st_size / 1e6
     )
 
 

@@ -46,8 +46,8 @@ KERNEL = ("ipykernel", "piplite", "pyodide_kernel")
 # IPython runs this first.
 STARTUP = "stand_in.ipy"
 NOTE = (
-    "> This page of *{title}* runs in your browser. What you change is kept in this browser, on "
-    "this machine; "
+    "> This page of *{title}* runs in your browser. Your changes stay in this browser, on this "
+    "machine. "
     "*File > Download* gives you the notebook." + (f" {LICENCES_SAID}" if LICENCES_SAID else "")
 )
 NUMERICAL = (

@@ -11,8 +11,8 @@ from .cells import kinds_of_cells, on_the_page
 SOURCES = {
     "official": "Here NumPy and Matplotlib are fetched from `cdn.jsdelivr.net` when a cell needs "
     "them.",
-    "off": "Here NumPy and Matplotlib are not offered: those cells keep their printed results.",
-    "folder": "Here NumPy and Matplotlib come with the pages, from the same place.",
+    "off": "This site does not offer NumPy and Matplotlib: those cells keep their printed results.",
+    "folder": "Here NumPy and Matplotlib come from the same server as the pages.",
 }
 WIDGET = "hold a moving figure"
 COLUMNS = (WIDGET, "draw with Matplotlib", "compute with NumPy", "need SciPy")
@@ -61,12 +61,12 @@ class NeedsMore(SphinxDirective):
         some = [page for page, kinds in pages.items() if any(kind["needs"] for kind in kinds)]
         lines = [
             SOURCES.get(setting, SOURCES["folder"]),
-            f"Of {len(every)} cells, {alone} run in the page with what comes with this site, and "
-            f"ask no other server: {int(100 * alone / len(every))} per cent. "
+            f"Of {len(every)} cells, {alone} ({int(100 * alone / len(every))} per cent) run in the "
+            "page without any other server. "
             f"{len(pages) - len(some)} pages need nothing but SymPy and this book's own packages. "
-            "The cells that need more, by their numbers from the top of each page, are these; a "
-            "cell that takes a name from one of them needs the same. "
-            "What a moving figure needs comes with this site.",
+            "The table lists the cells that need more, by their numbers from the top of each page. "
+            "A cell that uses a name from one of them needs the same. "
+            "The packages for moving figures are part of this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",
             "|---|---|" + "---|" * len(COLUMNS),

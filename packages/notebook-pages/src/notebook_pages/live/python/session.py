@@ -385,9 +385,7 @@ def hint(error, name):
                 "\n\nCommands that begin with % are Jupyter's. Here: import timeit, and call "
                 "timeit.timeit."
             )
-        return (
-            "\n\nCommands that begin with % or ! are Jupyter's; on this page there is Python alone."
-        )
+        return "\n\nCommands that begin with % or ! are Jupyter's; this page has only Python."
     if line.endswith("?") or line.startswith("?"):
         return f"\n\nThe question mark is Jupyter's. Here: help({line.strip('?')})"
     return ""
