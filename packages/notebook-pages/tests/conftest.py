@@ -20,7 +20,7 @@ def pytest_configure(config):
         )
         if fetched is None:
             raise pytest.UsageError(
-                f"What pages are made with is not in {places[0]}: run `python -m "
+                f"The tools for pages are not in {places[0]}: run `python -m "
                 "notebook_pages.set_up` in this folder."
             )
         os.environ["NOTEBOOK_PAGES_FETCHED"] = str(fetched)
