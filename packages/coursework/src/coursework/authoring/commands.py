@@ -50,7 +50,7 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     publish.add_argument(
         "--room",
         action="store_true",
-        help="also download all the packages needed, for a room without a network",
+        help="also download all packages, for a room without a network",
     )
     trial = commands.add_parser(
         "try", help="show a question as students will see it, with every reply"

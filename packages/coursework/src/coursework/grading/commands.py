@@ -35,7 +35,7 @@ GRADER = _argument(
     "--grader", help="whose decisions these are, for the journal (default: your user name)"
 )
 YES = _argument(
-    "--yes", action="store_true", help="agree in advance to every change of a mark, up or down"
+    "--yes", action="store_true", help="accept every change of a mark, up or down, without asking"
 )
 WORKERS = _argument(
     "--workers",
@@ -62,7 +62,7 @@ ARGUMENTS = {
                 metavar="NAME",
                 help="grade only this assignment (default: all in term.toml)",
             ),
-            _argument("--student", help="the student, if one student handed in everything"),
+            _argument("--student", help="the student who handed in all the files"),
             DRY_RUN,
             YES,
             WORKERS,
@@ -85,7 +85,7 @@ ARGUMENTS = {
             _argument(
                 "--as-listed",
                 action="store_true",
-                help="grade by the list even if many notebooks claim to be somebody else's",
+                help="follow the list even if many notebooks claim to be another student's",
             ),
         ],
     ),
@@ -176,8 +176,8 @@ ARGUMENTS = {
                 action="append",
                 default=[],
                 metavar="STUDENT",
-                help="replace a mark that somebody entered by hand for this student; an excuse "
-                "stays",
+                help="replace a mark that somebody entered by hand for this student, but "
+                "not an excuse",
             ),
             _argument(
                 "--assignment",
@@ -221,7 +221,7 @@ ARGUMENTS = {
                 "--keys",
                 required=True,
                 metavar="FOLDER",
-                help="folder of the keys; new ones are made if it has none",
+                help="folder of the keys; an empty one gets new keys",
             ),
             _argument(
                 "--host",
