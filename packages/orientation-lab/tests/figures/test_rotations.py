@@ -124,13 +124,14 @@ def test_the_mirrors_turn_by_twice_their_angle():
     for text, _, _, _, at in STILLS["two-mirrors"]["labels"]:
         tip[text] = np.array(at)
     axis = tip[r"\hat{e}"] / np.linalg.norm(tip[r"\hat{e}"])
-    flat = [tip[k] - axis * (tip[k] @ axis) for k in "02"]
+    first, last = tip[r"\mathbf{v}"], tip[r"\mathbf{v}''"]
+    flat = [arrow - axis * (arrow @ axis) for arrow in (first, last)]
     turn = np.arctan2(axis @ np.cross(*flat), flat[0] @ flat[1])
     panes = [np.reshape(item[1], (-1, 3)) for item in items if item[0] == "ribbon"]
     edges = [pane[2] - pane[0] for pane in panes]
     gap = np.arccos(abs(edges[0] @ edges[1]) / np.prod(np.linalg.norm(edges, axis=1)))
     assert turn == pytest.approx(2 * gap, abs=2e-3)
-    assert np.linalg.norm(tip["0"]) == pytest.approx(np.linalg.norm(tip["2"]), abs=1e-3)
+    assert np.linalg.norm(first) == pytest.approx(np.linalg.norm(last), abs=1e-3)
 
 
 def test_the_cable_hangs_on_camera_and_wall_and_after_two_turns_it_is_flat():

@@ -5,7 +5,6 @@ needed is left out, and so are the sources of other people's packages, which wou
 download; our own sources stay, because error messages show their lines.
 """
 
-import base64
 import hashlib
 import importlib.util
 import sys
@@ -65,11 +64,8 @@ def compile_wheel(path, target):
             ):
                 files |= compiled(name, wheel.read(name))
         (record,) = (name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
-    lines = []
-    for name, content in files.items():
-        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).decode().rstrip("=")
-        lines.append(f"{name},sha256={digest},{len(content)}\n")
-    files[record] = "".join([*lines, f"{record},,\n"]).encode()
+    # Hashes of single files, which nothing compresses, stay out: the lock file has one of the wheel.
+    files[record] = "".join(f"{name},,\n" for name in [*files, record]).encode()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name, content in files.items():
             wheel.writestr(zipfile.ZipInfo(name, THE_SAME_DATE), content, zipfile.ZIP_DEFLATED, 9)

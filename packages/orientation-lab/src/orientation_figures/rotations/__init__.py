@@ -111,6 +111,6 @@ class Gimbal(Stop):
             f'<figure class="orientation-figure painted world" '
             f'data-figure="rotations">'
             f'<style>{STYLE}{style()}</style><div class="still">{self.svg(_light)}</div>'
-            '<p class="stands">Here the camera stands still, as each stop has it. On the '
-            "book’s page it moves, and you can take hold of it.</p></figure>"
+            '<p class="stands">Here the camera stands still. On the book’s page you can '
+            "take hold of it.</p></figure>"
         )

@@ -374,12 +374,12 @@ const SHOWS = {
   lock(scene, s, { A, B, C }) {
     const margin = Math.abs(wrapped(s.angles[1])) - PI / 2, close = Math.abs(margin) < deg(12);
     for (const [axis, text, near] of [[A[2], '\\psi', 1.62], [C[1], '\\varphi', 1.5]]) {
-      scene.dashes(scale(-1.25, axis), scale(near, axis), 0.017, close ? 'accent' : 'muted', 22);
+      scene.dashes(scale(-1.25, axis), scale(near, axis), 0.017, close ? 'accent' : 'muted', 12);
       // At lock the two names stand on either side of the one line.
       const at = scale(close ? 1.35 : near, axis), beside = scale(text === '\\psi' ? 1 : -1, s.right);
       scene.label(at, text, close ? 'accent' : 'ink', close ? add(at, beside) : ZERO);
     }
-    scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 24);
+    scene.dashes(scale(-1.7, B[0]), scale(1.7, B[0]), 0.017, 'muted', 14);
     scene.label(scale(1.7, B[0]), '\\theta', 'ink');
     // The star passes from overhead along the line that the camera cannot follow: towards b_x.
     const gone = deg(38) * between(s.t, 0.68, 1);
@@ -392,7 +392,7 @@ const SHOWS = {
   'one-turn'(scene, s, { D }) {
     const [axis, angle] = axisOf(s.start);
     if (angle < 0.05) return;
-    scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 26);
+    scene.dashes(scale(-2.0, axis), scale(2.0, axis), 0.022, 'accent', 13);
     scene.label(scale(2.0, axis), '\\hat{e}', 'accent');
     const home = frames(s.start).D;
     for (const row of home) {   // the circle of each arrow's tip, and the part of it that is behind
@@ -411,12 +411,12 @@ const SHOWS = {
     for (const [angle, name] of [[first, '\\hat{u}_1'], [second, '\\hat{u}_2']]) {
       const edge = (side, high) => add(scale(1.45 * side, way(angle)), scale(high, axis));
       scene.ribbon([edge(-1, -1.25), edge(1, -1.25)], [edge(-1, 1.25), edge(1, 1.25)], 'glass', 0.34);
-      scene.dashes(ZERO, edge(1, 0), 0.016, 'accent', 12);
+      scene.rod(ZERO, edge(1, 0), 0.008, 'accent');
       scene.label(edge(1.04, 0), name, 'accent');
       const frame = [edge(-1, -1.25), edge(1, -1.25), edge(1, 1.25), edge(-1, 1.25), edge(-1, -1.25)];
       frame.slice(1).forEach((corner, k) => scene.rod(frame[k], corner, 0.016, 'metal'));
     }
-    scene.dashes(scale(-1.6, axis), scale(1.6, axis), 0.02, 'accent', 20);
+    scene.dashes(scale(-1.6, axis), scale(1.6, axis), 0.02, 'accent', 10);
     scene.label(scale(1.62, axis), '\\hat{e}', 'accent');
     const r = add(scale(1.5, way(deg(-32))), scale(0.35, axis));
     const reflected = (vector, angle) => subtract(vector, scale(2 * dot(vector, normal(angle)), normal(angle)));
@@ -435,7 +435,7 @@ const SHOWS = {
   },
   'four-numbers'(scene, s, { D }) {
     const { axis } = FOUR, half = s.whole / 2;
-    scene.dashes(scale(-1.9, axis), scale(1.9, axis), 0.02, 'accent', 24);
+    scene.dashes(scale(-1.9, axis), scale(1.9, axis), 0.02, 'accent', 13);
     const arm = scale(1.3, unit(cross(axis, [0, 0, 1])));
     scene.sweep(axis, s.whole % (2 * PI), arm, 'D', { thick: 0.024 });
     scene.circle(unit(arm), cross(axis, unit(arm)), 1.3, 0, 2 * PI, 'muted', 0.008);
