@@ -64,7 +64,7 @@ def compile_wheel(path, target):
             ):
                 files |= compiled(name, wheel.read(name))
         (record,) = (name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
-    # Hashes of single files, which nothing compresses, stay out: the lock file has one of the wheel.
+    # Hashes of single files, which nothing compresses, stay out: the lock file has the wheel's.
     files[record] = "".join(f"{name},,\n" for name in [*files, record]).encode()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name, content in files.items():
