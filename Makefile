@@ -40,18 +40,16 @@ help:
 
 # The projects of this repository, with their extras, that each command installs. The book itself needs neither a
 # browser nor the tests.
-PROJECTS_book := . ./packages/coursework ./packages/notebook-pages ./packages/orientation-lab
-PROJECTS_print := . ./packages/coursework ./packages/notebook-pages[print] ./packages/orientation-lab
-PROJECTS_pins := . ./packages/coursework ./packages/notebook-pages[pins] ./packages/orientation-lab
-PROJECTS_release := . ./packages/coursework[tools] ./packages/notebook-pages ./packages/orientation-lab
+PROJECTS_book := . ./packages/coursework[tools] ./packages/notebook-pages ./packages/orientation-lab
+PROJECTS_print := . ./packages/coursework[tools] ./packages/notebook-pages[print] ./packages/orientation-lab
+PROJECTS_pins := . ./packages/coursework[tools] ./packages/notebook-pages[pins] ./packages/orientation-lab
 PROJECTS_test := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test]
 PROJECTS_mutants := .[test] ./packages/coursework[tools,cluster,test] ./packages/notebook-pages[print,test] ./packages/orientation-lab[test,mutants]
 # The other installations that each of these covers.
 COVERS_pins := book
 COVERS_print := book
-COVERS_release := book
-COVERS_test := book print release
-COVERS_mutants := book print release test
+COVERS_test := book print
+COVERS_mutants := book print test
 # Two pip commands at once would write into the same environment. The slow commands use all processors by themselves.
 .NOTPARALLEL:
 
@@ -93,7 +91,7 @@ numpy: setup
 	@$(RUN) -m notebook_pages.live.fetch _build/numpy
 
 # AFTER names the chapter that the new one follows. We release the new chapter's exercises, so that the book builds.
-new-chapter: $(VENV)/ready-release setup
+new-chapter: setup
 	@$(RUN) -m tools.new chapter "$(NAME)" "$(TITLE)" $(if $(AFTER),--after "$(AFTER)")
 	@$(RUN) -m coursework release "$(NAME)" chapters
 
@@ -116,7 +114,7 @@ test-rest: $(VENV)/ready-test book
 notebooks: setup
 	@$(RUN) -m notebook_pages.notebooks
 
-release: $(VENV)/ready-release setup
+release: setup
 	@$(RUN) -m coursework release $(ONLY)
 	@$(RUN) -m coursework selftest $(ONLY)
 

@@ -113,7 +113,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
     run("release first-steps")
     (folder / "next.csv").write_text("student\neva\nfay\n")
     run("term new marks-2027 --roster next.csv")
-    assert "is there already" in run("term new marks-2027 --roster next.csv", fails=True)
+    assert "already exists" in run("term new marks-2027 --roster next.csv", fails=True)
     hand_in(folder, "next/eva/first-steps.ipynb")
     run("grade next --out marks-2027")
     run("term marks-2027 --earlier marks/course/counts.json")

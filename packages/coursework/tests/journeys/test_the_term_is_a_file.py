@@ -66,7 +66,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     (tmp_path / "roster.csv").write_text("student\nada\nben\n")
     made = ["term", "new", "marks", "--solutions", "solutions", "--roster", "roster.csv"]
     assert "read it, and choose" in course.run(*made)
-    assert "is there already" in course.run(*made, fails=True)
+    assert "already exists" in course.run(*made, fails=True)
     path = course.marks / "term.toml"
     text = path.read_text()
     assert "[assignments.hw1]" in text and 'roster = "../roster.csv"' in text

@@ -304,48 +304,48 @@ def term_of(folder: str | Path) -> Term:
 
 NEW = """\
 # The term: who is in the course, what is due when, and the rules that hold for all. Every command
-# reads this file. A line that begins with # says nothing; take the sign away to choose.
+# reads this file. A line that begins with # is a suggestion: remove the # to make it hold.
 
 name = {name}
-time-zone = {zone}  # in which the times below are meant
+time-zone = {zone}  # of the times below
 
-# Who is in the course: your own table with a column student, or the gradebook that your system
-# exports. Without one, students are called as their folders are.
+# Who is in the course: your own table with a column "student", or the gradebook that your system
+# exports. Without a roster, the names of the folders are the students.
 {roster}
 
 # Which of several attempts counts: "newest in time" (a late one only if none came in time), "last",
-# or "best" (all are graded; the one with the most points, lateness included). One that answers
-# nothing never counts where another answers something.
+# or "best" (all are graded, and the one with the most points counts, after any deduction for
+# lateness). A blank attempt never counts if another one answers something.
 attempts = "newest in time"
 
 [late]
-# grace-minutes = 15      # what is this late is on time
-# a-day = 0.1             # each day that has begun costs this share of the points earned
-# most = 0.5              # and all days together no more than this
-# nothing-after-days = 7  # what is later than this earns nothing
-# marked = 0.1            # what a system marks as late without saying when it came
+# grace-minutes = 15      # not late yet
+# a-day = 0.1             # the share of the points that each day costs, once it has begun
+# most = 0.5              # the most that all days together cost
+# nothing-after-days = 7  # after this, no points
+# marked = 0.1            # the cost if a system says "late", but not when it came
 {assignments}
-# The lowest of these does not count for the course:
+# The lowest of these marks does not count for the course:
 # [[drop]]
 # lowest = 1
 # of = [{names}]
 
-# One hand-in for several, whose folder is called by the group or by one of them:
+# A group hands in once, under its own name or a member's:
 # [groups]
 # team-1 = ["ada", "ben"]
 
-# More time, for one assignment or for all; or "excused":
+# More time, for one assignment or for all of them, or "excused":
 # [extensions.ada]
 # {first} = 2026-10-15T23:59:00
-# time = 1.5              # half as much again, of the time from opens until due
+# time = 1.5              # half as much time again, from opens to due
 
-# What a mended question may do to marks that were given; see `coursework regrade --dry-run`:
+# What a corrected question may do to marks already given; see `coursework regrade --dry-run`:
 [regrading]
 # never-lower = ["{first}/question"]            # nobody loses by it
 # full-credit = ["{first}/question@taken-out"]  # all who had a variant that is gone; without @, all
 # void = ["{first}/question"]                   # it counts for nobody
 
-# What columns of the gradebook are called, if its language is not known here:
+# The columns of the gradebook, if its language is not one that coursework knows:
 # [gradebook]
 # identifier = "Tunniste"
 # grade = "Arvosana"
@@ -356,8 +356,8 @@ NEW_ASSIGNMENT = """
 # due = 2026-10-05T23:59:00
 # weight = 1              # in the total of the course
 # column = "{title}"      # of the gradebook that your system exports, or how its name begins
-# times = "worksheet.csv" # who handed in when, where the names of the files do not say
-# notebooks = ["{plain}"] # if it consists of others, or of several
+# times = "worksheet.csv" # who handed in when, if the names of the files do not say
+# notebooks = ["{plain}"] # if it has other notebooks, or several
 """
 
 
@@ -369,10 +369,13 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     BadTerm
         There is one already.
     """
+    # Only this function needs what makes questions.
+    from ...authoring.source import CHAPTERS
+
     path = Path(folder, FILE)
     if path.exists():
-        raise BadTerm(f"{path} is there already.")
-    names = [source.stem for source in sorted(sources.glob("*.ipynb"))]
+        raise BadTerm(f"{path} already exists.")
+    names = [source.stem for source in sorted(sources.glob("*.ipynb")) if source.stem != CHAPTERS]
     if not names:
         raise BadTerm(f"There is no notebook with solutions in {sources}.")
     place = os.path.relpath(roster, folder) if roster else ""
