@@ -120,15 +120,20 @@ class _Exercise:
                 for number, cell in enumerate(originals)
                 if not shows_variants(originals, number)
             ]
+            made: set[str] = set()
             for cell, original in zip(notebook.cells, handed_out, strict=True):
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
+                    if "### BEGIN VARIANTS" in original.source:
+                        made = _names_made(original.source)
                     answered = [
                         owners[variable] for variable in answered_in(original.source, owners)
                     ]
                     if answered:
                         self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
-                        self.solved[len(self.cells)] = solved(original.source)
+                        answer = solved(original.source)
+                        if not made & set(re.findall(r"\w+", answer)):
+                            self.solved[len(self.cells)] = answer
                     self.names.update(_symbols(original.source))
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
@@ -148,6 +153,17 @@ class _Exercise:
         made: NotebookNode = copy.deepcopy(self.metadata)
         made.cells = cells
         return made
+
+
+def _names_made(source: str) -> set[str]:
+    """What a cell makes that students do not get; what is drawn for them they do get."""
+    return {
+        target.id
+        for node in ast.parse(source).body
+        if isinstance(node, ast.Assign) and "draw" not in ast.unparse(node.value)
+        for target in node.targets
+        if isinstance(target, ast.Name)
+    }
 
 
 def _symbols(source: str) -> dict[str, str]:
@@ -374,7 +390,7 @@ class _Student:
         if len(part.questions) == 1 and forms and self.dice.random() < share:
             code, outcome = self.dice.choice(forms)
             self.put(part, code, {name: list(outcome)})
-        else:
+        elif part.cell in self.exercise.solved:
             self.cells[part.cell].source = self.exercise.solved[part.cell]
             self.expected.update({name: ["correct", ""] for name in part.questions})
 
