@@ -45,7 +45,7 @@ def kernel(tmp_path_factory):
     ("written", "error"),
     [
         (RIGHT.replace("beta", "betta"), "NameError"),
-        (RIGHT[:-1], "SyntaxError"),
+        (RIGHT + ")", "SyntaxError"),
         (f"if True:\n    {RIGHT}".replace("beta", "betta"), "NameError"),
     ],
 )

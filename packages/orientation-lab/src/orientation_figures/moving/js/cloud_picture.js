@@ -1,6 +1,6 @@
 // Written by `python -m orientation_figures.moving.javascript` from moving/pictures/cloud.py.
 import { IDENTITY, add, dcmFromRotationVector, multiply, range, scale, simpleDcm } from './mathematics.js';
-export const COUNT = 240;
+export const COUNT = 200;
 export const SIZE = 112;
 export const STEPS = [0.6180339887498949, 0.7548776662466927, 0.5698402909980532];
 export const ESTIMATE = multiply(simpleDcm('x', 0.5), multiply(simpleDcm('y', -0.5), simpleDcm('z', 0.9)));

@@ -7,7 +7,7 @@ from orientation.rotation_vector import dcm_from_rotation_vector
 
 from ...vectors import IDENTITY, add, multiply, scale
 
-COUNT = 240
+COUNT = 200
 SIZE = 112
 #: Irrational steps spread numbers evenly between 0 and 1.
 STEPS = (0.6180339887498949, 0.7548776662466927, 0.5698402909980532)
