@@ -132,7 +132,7 @@ class _Exercise:
                     if answered:
                         self.parts.append(Part(len(self.cells), list(dict.fromkeys(answered))))
                         answer = solved(original.source)
-                        if not made & set(re.findall(r"\w+", answer)):
+                        if not made & _names_in(answer):
                             self.solved[len(self.cells)] = answer
                     self.names.update(_symbols(original.source))
                 self.cells.append(cell)
@@ -155,15 +155,20 @@ class _Exercise:
         return made
 
 
+def _names_in(source: str) -> set[str]:
+    """The names that code uses."""
+    return {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
+
+
 def _names_made(source: str) -> set[str]:
     """What a cell makes that students do not get; what is drawn for them they do get."""
-    return {
-        target.id
-        for node in ast.parse(source).body
-        if isinstance(node, ast.Assign) and "draw" not in ast.unparse(node.value)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    }
+    made: set[str] = set()
+    for node in ast.parse(source).body:
+        if isinstance(node, ast.FunctionDef):
+            made.add(node.name)
+        elif isinstance(node, ast.Assign) and "draw" not in _names_in(ast.unparse(node.value)):
+            made |= set().union(*(_names_in(ast.unparse(target)) for target in node.targets))
+    return made
 
 
 def _symbols(source: str) -> dict[str, str]:
