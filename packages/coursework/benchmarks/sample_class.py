@@ -134,7 +134,7 @@ class _Exercise:
                         answer = solved(original.source)
                         if not made & _names_in(answer):
                             self.solved[len(self.cells)] = answer
-                    self.names.update(_symbols(original.source))
+                    self.names.update(_symbols(cell.source))
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
