@@ -53,22 +53,43 @@ def write_in_a_cell(page, site):
     page.keyboard.press("Control+a")
 
 
-def test_what_is_typed_before_the_editor_has_come_goes_into_it(page, site):
-    def late(route):
-        page.wait_for_timeout(1500)
+@pytest.fixture
+def late(page, site):
+    """A chapter whose editor comes three seconds after it was asked for."""
+
+    def later(route):
+        page.wait_for_timeout(3000)
         route.continue_()
 
-    page.route("**/live.js", late)
+    page.route("**/live.js", later)
     page.goto(site + CELL)
     page.wait_for_function(SETTLED)
     page.mouse.click(*page.evaluate(MIDDLE, 1))
     assert not page.locator(".cm-editor").count()
-    page.keyboard.press("Control+a")
-    page.keyboard.type("x = 'a/b'\nx * 2")
-    page.keyboard.press("Shift+Enter")
-    cell = page.locator("div.cell", has_text="x * 2")
+    return page
+
+
+def test_what_is_typed_before_the_editor_has_come_goes_into_it(late):
+    late.keyboard.press("Control+a")
+    late.keyboard.type("x = 'a/b'\nx * 2")
+    late.keyboard.press("Shift+Enter")
+    cell = late.locator("div.cell", has_text="x * 2")
     expect(cell.locator(".cm-content")).to_have_text("x = 'a/b'x * 2")
     expect(cell.locator(".cell_output")).to_contain_text("a/ba/b", timeout=PATIENCE)
+
+
+def test_whoever_clicks_again_before_the_editor_has_come_types_once(late):
+    """In the same cell, and in another one."""
+    late.keyboard.type("one/")
+    late.wait_for_timeout(600)
+    late.mouse.click(*late.evaluate(MIDDLE, 1))
+    late.keyboard.type("two/")
+    late.mouse.click(*late.evaluate(MIDDLE, 2))
+    late.keyboard.type("three/")
+    expect(late.locator(".cm-content")).to_have_count(2)
+    first, second = late.locator(".cm-content").all_inner_texts()
+    assert (first.count("one/two/"), first.count("three/")) == (1, 0)
+    assert (second.count("three/"), second.count("two/")) == (1, 0)
 
 
 def test_another_layout_a_dead_key_and_an_input_method(page, site):

@@ -141,19 +141,21 @@
   });
   // Code is written where it stands: the editor comes when somebody goes there, and where answers are asked for, before.
   // Python waits for the first run.
-  // What is typed until then goes into it.
+  // What is typed until then goes into the cell that was asked for last.
+  let awaited;
+  const hold = (event) => {
+    const command = (event.ctrlKey || event.metaKey) && !event.altKey;
+    if (event.key[1] ? event.key !== "Enter" : command && event.key !== "a") return;
+    awaited.keys.push(event);
+    event.preventDefault();
+  };
   const write = (number, point) => {
-    if (apart) return;
-    const keys = [];
-    const hold = (event) => {
-      const command = (event.ctrlKey || event.metaKey) && !event.altKey;
-      if (event.key[1] ? event.key !== "Enter" : command && event.key !== "a") return;
-      keys.push(event);
-      event.preventDefault();
-    };
+    if (apart || awaited?.number === number) return;
+    const { keys } = (awaited = { number, keys: [] });
     addEventListener("keydown", hold, true);
-    open().then((opened) => opened.write(opened.cells[number], point, keys)).catch(tools.explain)
-      .finally(() => removeEventListener("keydown", hold, true));
+    open().then((opened) => opened.write(opened.cells[number], point, keys)).catch(tools.explain).finally(() => {
+      if (awaited?.keys === keys) awaited = removeEventListener("keydown", hold, true);
+    });
   };
   boxes.forEach((box, number) => {
     const code = box.querySelector(".cell_input > div");
