@@ -359,7 +359,13 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
             "this student have?"
         )
         reply = _undecided(name, "numbers of another edition", said)
-    elif short and any(_is_right(name, Asked(one), answer) for one in question.siblings):
+    # Variants share answers: a mistake with these very numbers may be right for other ones, and
+    # the student's own check names the mistake.
+    elif (
+        short
+        and reply.known is None
+        and any(_is_right(name, Asked(sibling), answer) for sibling in question.siblings)
+    ):
         said = "This is right for other numbers than yours."
         reply = Reply(name, "wrong", OTHER_NUMBERS, [said])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(
