@@ -65,6 +65,8 @@ def run(path):
 
 def main():
     paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
+    if missing := [str(path) for path in paths if not path.is_file()]:
+        sys.exit(f"There is no notebook {', '.join(missing)}. Name it from the folder of the book.")
     # Each has its own kernel.
     with ThreadPoolExecutor(max_workers=2) as pool:
         faults = [fault for fault in pool.map(run, paths) if fault]

@@ -15,6 +15,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import uuid
 
@@ -127,6 +128,9 @@ class FromWarmProcess:
             self.provisioner = WarmProvisioner(
                 kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self
             )
+            # Kernels that start at the same moment may choose the same port, but not the same socket.
+            self.transport = "ipc"
+            self.ip = os.path.join(tempfile.gettempdir(), f"kernel-{self.kernel_id}")
         return super().start_kernel(**settings)
 
 
