@@ -82,6 +82,7 @@ class World {
     if (!clientWidth || !clientHeight) return;
     this.half = Math.min(clientWidth, clientHeight) / 2;
     this.painter.resize(clientWidth, clientHeight);
+    if (this.picture) this.draw();   // a new size empties the canvas
     this.wake();
   }
 
