@@ -69,8 +69,7 @@ def main():
         sys.exit(f"There is no notebook {', '.join(missing)}. Name it from the folder of the book.")
     # Each has its own kernel.
     with ThreadPoolExecutor(max_workers=2) as pool:
-        faults = [fault for fault in pool.map(run, paths) if fault]
-    sys.exit("\n".join(faults) or 0)
+        sys.exit("\n".join(filter(None, pool.map(run, paths))) or 0)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import uuid
 
@@ -61,9 +60,8 @@ def reap(*signalled):
 def become_kernel(command, folder, environment):
     os.setsid()
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    nowhere = os.open(os.devnull, os.O_RDWR)
     for stream in (0, 1, 2):
-        os.dup2(nowhere, stream)
+        os.dup2(os.open(os.devnull, os.O_RDWR), stream)
     os.environ.clear()
     os.environ.update(environment)
     os.chdir(folder)
@@ -128,9 +126,9 @@ class FromWarmProcess:
             self.provisioner = WarmProvisioner(
                 kernel_id=self.kernel_id, kernel_spec=self.kernel_spec, parent=self
             )
-            # Kernels that start at the same moment may choose the same port, but not the same socket.
+            # Two kernels that start at once could choose the same port, but not the same socket.
             self.transport = "ipc"
-            self.ip = os.path.join(tempfile.gettempdir(), f"kernel-{self.kernel_id}")
+            self.ip = f"{os.environ.get('TMPDIR', '/tmp')}/kernel-{self.kernel_id}"
         return super().start_kernel(**settings)
 
 
