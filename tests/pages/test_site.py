@@ -589,13 +589,13 @@ def test_nothing_in_the_site_is_idle():
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_drawings_of_exercises_stand_on_the_papers_colour(browser, site, theme):
-    """They are pictures, black on white, and would be white boxes in a dark page."""
+    """They are pictures of their own, and were white boxes on a dark page."""
     with Visit(browser, site, "exercises/simple-orientations.html", theme, WIDE) as visit:
         picture = visit.page.locator(".bd-article img").first
         picture.scroll_into_view_if_needed()
         seen = Image.open(io.BytesIO(picture.screenshot())).convert("RGB")
         paper = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
         assert seen.getpixel((4, 4)) == tuple(map(int, re.findall(r"\d+", paper)))
-        # What is drawn can be seen on it.
+        # What is drawn can be seen on it, in colours between light and dark.
         dark, light = seen.convert("L").getextrema()
-        assert light - dark > 150
+        assert light - dark > 100

@@ -18,7 +18,7 @@ import numpy as np
 
 from orientation.direction_cosines import simple_dcm
 
-from .style import STYLE
+from .style import EITHER, STYLE, style_of_picture
 from .vectors import unit
 from .words import Words, hatted  # noqa: F401  # those who draw took it from here before
 
@@ -245,18 +245,18 @@ class Drawing(Words):
         )
 
     def picture(self):
-        """Return the drawing as an SVG file of its own, on white paper,
-        which needs no style of any page.
+        """Return the drawing as an SVG file of its own, which needs no style of any page.
+
+        It has no ground of its own, and can be read on a light page as on a dark one.
         """
-        inner = self.svg()
-        left, top, width, height = inner.partition('viewBox="')[2].partition('"')[0].split()
-        place = f'x="{left}" y="{top}" width="{width}" height="{height}"'
+        head, _, inside = self.svg().partition(">")
+        view = head.partition('viewBox="')[2].partition('"')[0]
+        classes = {name for kind, *_ in self.marks for name in ("text", *kind.split())}
         return (
-            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{left} {top} {width} {height}" '
-            f'width="{width}" '
-            f'height="{height}" color="#1d2125"><style>{escape(STYLE, quote=False)}</style><rect '
-            f'{place} fill="#fff"/>'
-            f'<g class="orientation-figure">{inner.replace("<svg ", f"<svg {place} ", 1)}</g></svg>'
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{view}" '
+            f'width="{view.split()[2]}" height="{view.split()[3]}" color="{EITHER["ink"]}" '
+            'fill="none" stroke="currentColor" stroke-width="1.5" stroke-linecap="round" '
+            f'stroke-linejoin="round"><style>{style_of_picture(classes)}</style>{inside}'
         )
 
 

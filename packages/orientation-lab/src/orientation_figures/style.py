@@ -3,6 +3,8 @@
 Moving figures need it where there is no NumPy to draw with.
 """
 
+import re
+
 # Each colour is kept at 4.5 : 1 or more on its page: LIGHT on white, DARK on #121212.
 LIGHT = {
     "N": "#3a3f45",
@@ -30,6 +32,20 @@ DARK = {
     "muted": "#a2a9b1",
     "accent": "#5fd3da",
 }
+# For a picture that must stand on any page: 4 : 1 or more on white and on #15181d alike.
+EITHER = {
+    "N": "#707a86",
+    "A": "#a66e00",
+    "B": "#dd3e35",
+    "C": "#1f8b3b",
+    "D": "#3277de",
+    "E": "#9c60c0",
+    "F": "#c84990",
+    "Z": "#748000",
+    "ink": "#797979",
+    "muted": "#727a83",
+    "accent": "#00868e",
+}
 
 # Without colour, frames differ in the stroke of their arrows (width,
 # dashes) and in the shape of the head.
@@ -48,6 +64,36 @@ STROKES = {
 }
 
 
+RULES = {
+    " svg": "width:100%;height:auto;fill:none;stroke:currentColor;stroke-width:1.5;"
+    "stroke-linecap:round;stroke-linejoin:round",
+    " .guide": "stroke-width:1.3;stroke-dasharray:4 4",
+    " .faint": "stroke-width:1;stroke-opacity:.45",
+    " .thick": "stroke-width:3",
+    " .bare": "stroke-width:.4",
+    " .tube": "stroke-width:13",
+    " .core": "stroke-width:9.5;stroke:color-mix(in srgb,currentColor 22%,var(--sheet))",
+    " .paper": "fill:var(--sheet)",
+    " .head": "fill:currentColor;stroke:none",
+    " .text": "fill:currentColor;stroke:var(--sheet);stroke-width:200;paint-order:stroke",
+    " [class*=fill]": "stroke-linecap:butt",
+    " input": "width:55%;vertical-align:middle",
+    " output": "display:block;min-height:3em",
+    **{
+        f" .fill-{part}": f"fill:color-mix(in srgb,currentColor {part}%,var(--sheet))"
+        for part in (8, 16, 26, 38)
+    },
+    **{
+        selector: rule
+        for name, (width, dashes) in STROKES.items()
+        for selector, rule in {
+            f" .{name}": f"color:var(--{name})",
+            f" .axis.{name}": f"stroke-width:{width};stroke-dasharray:{dashes}",
+        }.items()
+    },
+}
+
+
 def _style():
     """Return the style sheet that goes with every figure; a page
     may set ``--frame-a`` and so on.
@@ -61,26 +107,8 @@ def _style():
     rules = {
         "": colours(LIGHT) + "--sheet:var(--pst-color-background,var(--jp-layout-color0,#fff));"
         "margin:1rem auto;text-align:center",
-        " svg": "width:100%;height:auto;fill:none;stroke:currentColor;stroke-width:1.5;"
-        "stroke-linecap:round;stroke-linejoin:round",
-        " .guide": "stroke-width:1.3;stroke-dasharray:4 4",
-        " .faint": "stroke-width:1;stroke-opacity:.45",
-        " .thick": "stroke-width:3",
-        " .bare": "stroke-width:.4",
-        " .tube": "stroke-width:13",
-        " .core": "stroke-width:9.5;stroke:color-mix(in srgb,currentColor 22%,var(--sheet))",
-        " .paper": "fill:var(--sheet)",
-        " .head": "fill:currentColor;stroke:none",
-        " .text": "fill:currentColor;stroke:var(--sheet);stroke-width:200;paint-order:stroke",
-        " [class*=fill]": "stroke-linecap:butt",
-        " input": "width:55%;vertical-align:middle",
-        " output": "display:block;min-height:3em",
+        **RULES,
     }
-    for part in (8, 16, 26, 38):
-        rules[f" .fill-{part}"] = f"fill:color-mix(in srgb,currentColor {part}%,var(--sheet))"
-    for name, (width, dashes) in STROKES.items():
-        rules[f" .{name}"] = f"color:var(--{name})"
-        rules[f" .axis.{name}"] = f"stroke-width:{width};stroke-dasharray:{dashes}"
     dark = ",".join(
         f"{page} .orientation-figure"
         for page in ('html[data-theme="dark"]', 'body[data-jp-theme-light="false"]')
@@ -88,6 +116,22 @@ def _style():
     return (
         "".join(f".orientation-figure{part}{{{rule}}}" for part, rule in rules.items())
         + f"{dark}{{{colours(DARK)}}}"
+    )
+
+
+def style_of_picture(classes):
+    """Return the style sheet of a picture with these classes, for light pages and dark ones alike.
+
+    Bodies keep white in their colours. Letters have no border, which would be of the page's colour.
+    """
+    return re.sub(
+        r"var\(--(\w+)\)",
+        lambda name: EITHER.get(name[1], "#fff"),
+        "".join(
+            f"{part[1:]}{{{rule}}}"
+            for part, rule in RULES.items()
+            if (named := set(re.findall(r"\.([\w-]+)", part))) and named <= classes
+        ).replace("stroke:var(--sheet);stroke-width:200;paint-order:stroke", "stroke:none"),
     )
 
 

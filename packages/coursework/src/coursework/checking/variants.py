@@ -138,9 +138,7 @@ def shown(text: str, written: Mapping[str, str]) -> str:
 
 
 def image(picture: str, alt: str) -> str:
-    """A picture, given as SVG, as Markdown: on white paper of its own, with its
-    text for those who do not see it.
-    """
+    """A picture, given as SVG, as Markdown, with its text for those who do not see it."""
     (width,) = re.findall(r'width="(\S+)"', picture)[:1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
     # As HTML: Markdown readers that are careful refuse this kind of
