@@ -2,17 +2,14 @@
 and recordings that are to be judged.
 """
 
+from importlib import import_module
+
 __all__ = ["Convention", "Explanation", "assert_convention", "convention_of", "explain"]
 
 
 def __getattr__(name):
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     # The table of mix-ups is read where there is no NumPy; the search needs it.
-    if name in ("Explanation", "explain"):
-        from .mismatch import explanation
-
-        return getattr(explanation, name)
-    if name in __all__:
-        from . import kit
-
-        return getattr(kit, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = ".mismatch.explanation" if name in ("Explanation", "explain") else ".kit"
+    return getattr(import_module(module, __name__), name)

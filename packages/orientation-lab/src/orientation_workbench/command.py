@@ -163,26 +163,20 @@ def _given(argument):
 
 def _declared(words):
     """Return the conventions that the words name; each word names one."""
-    declared = {}
-    choices = {
+    groups = {
         choice["value"]: group["group"]
         for groups in KINDS.values()
         for group in groups
         for choice in group["choices"]
     }
+    groups |= dict.fromkeys(WAYS, "way") | dict.fromkeys(COUNTS, "kind")
     for word in words:
-        if word in COUNTS:
-            declared["kind"] = word
-        elif word in WAYS:
-            declared["way"] = word
-        elif word in choices:
-            declared[choices[word]] = word
-        else:
+        if word not in groups:
             raise ValueError(
                 f"{word!r} is not a kind of numbers ({', '.join(COUNTS)}), a convention of one, or "
                 f"a direction ({', '.join(WAYS)})"
             )
-    return declared
+    return {groups[word]: word for word in words}
 
 
 def _explain(chosen):

@@ -31,51 +31,6 @@ class Value:
     def __bool__(self):
         raise TypeError("a formula that is recorded chooses by where and pick, not by if")
 
-    def __add__(self, other):
-        return added(self, other)
-
-    def __radd__(self, other):
-        return added(other, self)
-
-    def __sub__(self, other):
-        return added(self, negative(other)) if _negative(other) else made("-", self, other)
-
-    def __rsub__(self, other):
-        return made("-", other, self)
-
-    def __mul__(self, other):
-        return multiplied(self, other)
-
-    def __rmul__(self, other):
-        return multiplied(other, self)
-
-    def __truediv__(self, other):
-        return divided(self, other)
-
-    def __rtruediv__(self, other):
-        return divided(other, self)
-
-    def __pow__(self, count):
-        return multiplied(self, self ** (count - 1)) if count > 1 else self
-
-    def __neg__(self):
-        return negative(self)
-
-    def __abs__(self):
-        return made("abs", self)
-
-    def __lt__(self, other):
-        return made("<", self, other)
-
-    def __gt__(self, other):
-        return made(">", self, other)
-
-    def __ge__(self, other):
-        return made(">=", self, other)
-
-    def __eq__(self, other):
-        return made("==", self, other)
-
 
 def made(operation, *parts):
     """The value that an operation makes: the same object for the
@@ -117,15 +72,11 @@ def added(first, second):
 
 
 def multiplied(first, second):
-    for one, other in ((first, second), (second, first)):
-        if _is(one, 0):
-            return 0
-        if _is(one, 1):
-            return other
-        if _is(one, -1):
-            return negative(other)
-        if _negative(one):
-            return negative(multiplied(one.parts[0], other))
+    for factor, other in ((first, second), (second, first)):
+        if type(factor) is int and factor in (0, 1, -1):
+            return {0: 0, 1: other, -1: negative(other)}[factor]
+        if _negative(factor):
+            return negative(multiplied(factor.parts[0], other))
     return made("*", first, second) if Value in (type(first), type(second)) else first * second
 
 
@@ -133,6 +84,34 @@ def divided(first, second):
     if _is(first, 0) or _is(second, 1):
         return first
     return made("/", first, second) if Value in (type(first), type(second)) else first / second
+
+
+def _compared(operation):
+    return lambda value, other: made(operation, value, other)
+
+
+#: What Python's operators do with a value: with an ``r`` those whose value stands on the right.
+_OPERATORS = {
+    "add": added,
+    "radd": lambda value, other: added(other, value),
+    "sub": lambda value, other: (
+        added(value, negative(other)) if _negative(other) else made("-", value, other)
+    ),
+    "rsub": lambda value, other: made("-", other, value),
+    "mul": multiplied,
+    "rmul": lambda value, other: multiplied(other, value),
+    "truediv": divided,
+    "rtruediv": lambda value, other: divided(other, value),
+    "pow": lambda value, count: multiplied(value, value ** (count - 1)) if count > 1 else value,
+    "neg": negative,
+    "abs": lambda value: made("abs", value),
+    "lt": _compared("<"),
+    "gt": _compared(">"),
+    "ge": _compared(">="),
+    "eq": _compared("=="),
+}
+for _name, _function in _OPERATORS.items():
+    setattr(Value, f"__{_name}__", _function)
 
 
 def _pick(scores, rows):

@@ -107,9 +107,19 @@ LANGUAGES = {
     ),
 }  # fmt: skip
 
+_COMPARISONS = ("<", ">", ">=", "==")
 # How strongly an operation binds what it is applied to: sums, signs,
 # products, what needs no brackets.
 _SUM, _SIGN, _PRODUCT, _ONE = range(4)
+#: How an operation is written, how strongly that binds, and how strongly each of its parts must.
+_INFIX = {
+    "+": ("{} + {}", _SUM, _SUM, _PRODUCT),
+    "-": ("{} - {}", _SUM, _SUM, _PRODUCT),
+    "*": ("{} * {}", _PRODUCT, _PRODUCT, _ONE),
+    "/": ("{} / {}", _PRODUCT, _PRODUCT, _ONE),
+    "negative": ("-{}", _SIGN, _PRODUCT),
+    **{sign: (f"{{}} {sign} {{}}", _SUM, _SUM, _SUM) for sign in _COMPARISONS},
+}
 
 
 def written(language: Language, results: list, names: dict) -> tuple[list[str], list[str]]:
@@ -142,39 +152,26 @@ def written(language: Language, results: list, names: dict) -> tuple[list[str], 
         if value in texts:
             return texts[value]
         text, strength = expression(value.operation, *value.parts)
-        condition = value.operation in ("<", ">", ">=", "==", "and")
-        if (
-            value.operation == "where"
-            or uses[value] > 1
-            and value.operation != "variable"
-            and not condition
-        ):
-            if value.operation == "where":
-                yes, no = map(write, value.parts[1:])
-                line, filled = language.chosen, {"condition": text, "yes": yes, "no": no}
-            else:
-                line, filled = language.part, {"value": text}
-            text, strength = f"part{len(lines)}", _ONE
-            lines.append(line.format(part=text, **filled))
+        choice = value.operation == "where"
+        if choice or uses[value] > 1 and value.operation not in ("variable", "and", *_COMPARISONS):
+            yes, no = map(write, value.parts[1:]) if choice else ("", "")
+            line = language.chosen if choice else language.part
+            lines.append(
+                line.format(part=f"part{len(lines)}", condition=text, value=text, yes=yes, no=no)
+            )
+            text, strength = f"part{len(lines) - 1}", _ONE
         texts[value] = text, strength
         return texts[value]
 
     def expression(operation, *parts):
-        match operation:
-            case "variable":
-                return names[parts[0]], _ONE
-            case "+" | "-":
-                return f"{write(parts[0])} {operation} {write(parts[1], _PRODUCT)}", _SUM
-            case "*" | "/":
-                return f"{write(parts[0], _PRODUCT)} {operation} {write(parts[1], _ONE)}", _PRODUCT
-            case "negative":
-                return f"-{write(parts[0], _PRODUCT)}", _SIGN
-            case "<" | ">" | ">=" | "==":
-                return f"{write(parts[0])} {operation} {write(parts[1])}", _SUM
-            case "and":
-                return " && ".join(map(write, parts)), _SUM
-            case "where":
-                return write(parts[0]), _SUM
+        if operation == "variable":
+            return names[parts[0]], _ONE
+        if operation in _INFIX:
+            pattern, strength, *least = _INFIX[operation]
+            return pattern.format(*map(write, parts, least)), strength
+        if operation in ("and", "where"):
+            # Of a choice, the condition: what is chosen stands in a line of its own.
+            return " && ".join(map(write, parts[: 1 if operation == "where" else None])), _SUM
         return language.functions[operation].format(*map(write, parts)), _ONE
 
     results = [write(result) for result in results]
@@ -266,20 +263,13 @@ def formula_in(
 
 
 def _demand(language, name, choice, convention):
-    if language not in LANGUAGES:
-        raise ValueError(f"{language!r} is none of the languages {', '.join(LANGUAGES)}")
-    if name not in FORMULAS:
-        raise ValueError(f"{name!r} is no formula to take away; there are {', '.join(FORMULAS)}")
-    for what, value in convention.items():
-        if what not in CONVENTIONS:
-            raise ValueError(f"{what!r} is no convention; there are {', '.join(CONVENTIONS)}")
-        if value not in CONVENTIONS[what]:
-            raise ValueError(f"{what} is {value!r}; there is {', '.join(CONVENTIONS[what])}")
-    what, allowed = CHOICES.get(name, ("", ()))
-    if choice is None and allowed:
-        raise ValueError(f"{name} needs a choice of {what}: one of {', '.join(allowed)}")
-    if choice is not None and choice not in allowed:
-        raise ValueError(
-            f"{name} takes {f'the {what} {sorted(allowed)}' if allowed else 'no sequence'}, not "
-            f"{choice!r}"
-        )
+    what, allowed = CHOICES.get(name, ("sequence", ("none",)))
+    for noun, value, known in (
+        ("language", language, LANGUAGES),
+        ("formula", name, FORMULAS),
+        (f"{what} of {name}", choice or "none", allowed),
+        *(("convention", which, CONVENTIONS) for which in convention),
+        *((which, value, CONVENTIONS.get(which, ())) for which, value in convention.items()),
+    ):
+        if value not in known:
+            raise ValueError(f"{value!r} is not a {noun}: the choice is {', '.join(known)}")

@@ -2,7 +2,6 @@
 that they give for the same poses.
 """
 
-import functools
 import itertools
 import math
 from typing import NamedTuple
@@ -15,7 +14,7 @@ from ..programs import expected_of, program_named
 from . import search, table
 from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
-from .text import SLACK, Poses, read_poses
+from .text import SLACK, read_poses
 
 #: Of so many chains, and of so many readings of the first side, it is seen whether a further pose
 #: tells the chains apart; more are told apart by a pose of three turns.
@@ -114,11 +113,7 @@ def explain(
         ("second", second, second_declared, second_program),
     ):
         declared = declared or {}
-        poses = (
-            given
-            if isinstance(given, Poses)
-            else read_poses(given, name, declared.get("kind"), noise)
-        )
+        poses = read_poses(given, name, declared.get("kind"), noise)
         manual = expected_of(program_named(program)) if program else None
         if manual and "kind" not in declared and len(poses.kinds) == 2:
             poses = poses._replace(kinds=(manual["three numbers"],))
@@ -229,13 +224,11 @@ def _is_special(poses):
     or two that are alike, as for turns about one axis, half and quarter turns.
     """
     sizes, near = np.abs(poses.numbers), 2 * poses.half + search.SINGLE_PRECISION
-    if (sizes <= near).all(axis=0).any():
-        return True
-    if sizes.shape[1] == 9:
-        pairs = ((1, 3), (2, 6), (5, 7))
-    else:
-        pairs = itertools.combinations(range(sizes.shape[1]), 2)
-    return any((np.abs(sizes[:, i] - sizes[:, j]) <= near).all() for i, j in pairs)
+    pairs = itertools.combinations(range(sizes.shape[1]), 2)
+    pairs = ((1, 3), (2, 6), (5, 7)) if sizes.shape[1] == 9 else pairs
+    return bool((sizes <= near).all(axis=0).any()) or any(
+        (np.abs(sizes[:, i] - sizes[:, j]) <= near).all() for i, j in pairs
+    )
 
 
 # --- descriptions between which only the reader can choose ----------------------------------------
@@ -280,15 +273,13 @@ def _usual_order(chain, known):
 
 
 def _limit(chain, best):
-    if _order_shared(chain) != _order_shared(best):
-        return DEARER_ON_ONE_SIDE
-    crossed = not _order_shared(best) and set(best.kinds) == {"quaternion"}
-    return DEARER_CROSSED if crossed else DEARER
-
-
-def _order_shared(chain):
-    """Whether both sides store a quaternion in one order, or neither holds one."""
-    return chain.first["choices"].get("order") == chain.second["choices"].get("order")
+    # Whether both sides store a quaternion in one order, or neither holds one.
+    shared, of_best = (
+        each.first["choices"].get("order") == each.second["choices"].get("order")
+        for each in (chain, best)
+    )
+    crossed = not of_best and set(best.kinds) == {"quaternion"}
+    return (DEARER_CROSSED if crossed else DEARER) if shared == of_best else DEARER_ON_ONE_SIDE
 
 
 def _dearness(chain):
@@ -299,11 +290,8 @@ def _dearness(chain):
 
 def _name(chain, inverses, faults, by_way, best):
     """A description with its condition, and with what the reader can declare for it."""
-    declare, conditions = ({}, {}), []
     orders = [reading["choices"].get("order") for reading in (chain.first, chain.second)]
-    for side, order in zip(declare, orders, strict=True):
-        if order:
-            side["order"] = order
+    declare, conditions = tuple({"order": order} if order else {} for order in orders), []
     if any(orders):
         where = " and ".join(
             f"{_ORDERS.get(order, order)} in the {side}"
@@ -325,20 +313,20 @@ def _name(chain, inverses, faults, by_way, best):
 
 
 def _question(names, best):
-    if not names:
-        return ""
-    asked = []
-    if any("on the way" in name.faults[0] for name in names):
-        asked.append("Did angles or a quaternion pass from one program to the other?")
-    if len({name.declare[0].get("order") for name in names}) > 1:
-        asked.append("Does the scalar part of the quaternions stand first or last?")
-    if len({name.declare[0].get("way") for name in names}) > 1:
-        asked.append(
-            "Which way does the first matrix lead: are the body's axes its rows or its columns?"
-            if "matrix" in best.kinds
-            else "Which side gives the inverse, the world as seen from the body?"
-        )
-    return " ".join(asked)
+    order, way = (
+        len({name.declare[0].get(what) for name in names}) > 1 for what in ("order", "way")
+    )
+    asked = {
+        "Did angles or a quaternion pass from one program to the other?": any(
+            "on the way" in name.faults[0] for name in names
+        ),
+        "Does the scalar part of the quaternions stand first or last?": order,
+        "Which way does the first matrix lead: are the body's axes its rows or its columns?": way
+        and "matrix" in best.kinds,
+        "Which side gives the inverse, the world as seen from the body?": way
+        and "matrix" not in best.kinds,
+    }
+    return " ".join(question for question, still_open in asked.items() if still_open)
 
 
 # --- which chains say the same --------------------------------------------------------------------
@@ -415,17 +403,12 @@ def _plain_reading(kind):
 
 def _samples(kind, poses):
     """Numbers of one kind for two orientations, neither of them special."""
-    dcms, plain = _generic_dcms(), _plain_reading(kind)
+    dcms, plain = random_orientations(2, np.random.default_rng(20)), _plain_reading(kind)
     if kind == "matrix" and np.linalg.det(poses.numbers[0].reshape(3, 3)) < 0:
         dcms = -dcms
     if poses.large and "unit" in plain["choices"]:
         plain["choices"]["unit"] = "degrees"
     return numbers_from_dcms(plain, dcms)[0]
-
-
-@functools.cache
-def _generic_dcms():
-    return random_orientations(2, np.random.default_rng(20))
 
 
 # --- the pose that decides ------------------------------------------------------------------------

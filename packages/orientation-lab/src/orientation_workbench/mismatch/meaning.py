@@ -28,7 +28,7 @@ def _angles_and_sequence(choices, numbers):
 
 
 def _radians(choices):
-    return math.pi / 180 if choices["unit"] == "degrees" else 1.0
+    return math.pi / 180 if choices.get("unit") == "degrees" else 1.0
 
 
 def dcms_from_numbers(reading, numbers):
@@ -102,11 +102,6 @@ def numbers_from_dcms(reading, dcms):
 
 def doubt(reading, half):
     """How far an entry of the matrix may be off, if each number is off by at most ``half``."""
-    kind = reading["kind"]
-    if kind == "matrix":
-        return half
-    if kind == "quaternion":
-        return 4 * half
-    if kind == "axis and angle":
-        return (4 + _radians(reading["choices"])) * half
-    return 3 * half * _radians(reading["choices"])
+    unit = _radians(reading["choices"])
+    times = {"matrix": 1, "quaternion": 4, "axis and angle": 4 + unit}
+    return times.get(reading["kind"], 3 * unit) * half

@@ -13,30 +13,18 @@ def _index(order, wanted):
     return [order.index(part) for part in wanted]
 
 
-def _is_identity(names):
-    return names == table.SAME_AXES
-
-
-def _python_matrix(names):
-    return "np.array(" + str([list(row) for row in table.axes_matrix(names)]) + ")"
-
-
-def _turn(matrix):
-    return "np.array(" + str(np.round(matrix, 6).tolist()) + ")"
+def _array(rows):
+    return f"np.array({np.asarray(rows).tolist()})"
 
 
 def _signs(choices, name):
-    if choices["signs"] == "+++":
-        return name
-    return f"({name} * np.array({[-1 if sign == '-' else 1 for sign in choices['signs']]}))"
+    signs = [-1 if sign == "-" else 1 for sign in choices["signs"]]
+    return name if -1 not in signs else f"({name} * np.array({signs}))"
 
 
 def _letters(choices):
-    return (
-        choices["sequence"]
-        if choices["axes of the turns"] == "space fixed"
-        else choices["sequence"].upper()
-    )
+    space_fixed = choices["axes of the turns"] == "space fixed"
+    return choices["sequence"] if space_fixed else choices["sequence"].upper()
 
 
 def _degrees(choices):
@@ -77,38 +65,28 @@ def _write_in_python(reading, matrix):
     bare = f"({matrix})" if "@" in matrix else matrix
     there = matrix[:-2] if matrix.endswith(".T") and "@" not in matrix else f"{bare}.T"
     if kind == "quaternion":
-        return f"Rotation.from_matrix({there}).as_quat()" + _subscript(
-            _index("xyzw", choices["order"])
-        )
+        return _pick(f"Rotation.from_matrix({there}).as_quat()", _index("xyzw", choices["order"]))
     if kind == "Euler angles":
         angles = f"Rotation.from_matrix({there}).as_euler({_letters(choices)!r}{_degrees(choices)})"
-        return _signs(choices, angles) + _subscript([int(which) - 1 for which in choices["places"]])
+        return _pick(_signs(choices, angles), [int(which) - 1 for which in choices["places"]])
+    vector = f"Rotation.from_matrix({there}).as_rotvec({_degrees(choices)[2:]})"
     if kind == "rotation vector":
-        return f"Rotation.from_matrix({there}).as_rotvec({_degrees(choices)[2:]})"
-    vector = f"(v := Rotation.from_matrix({there}).as_rotvec({_degrees(choices)[2:]}))"
-    size = "np.linalg.norm(v)"
-    parts = [f"{vector} / {size}", f"[{size}]"]
+        return vector
     if choices["place of the angle"] == "first":
-        parts = [f"[np.linalg.norm({vector})]", f"v / {size}"]
-    return f"np.concatenate([{', '.join(parts)}])"
-
-
-def _subscript(places):
-    return "" if places == sorted(places) else f"[{places}]"
+        return f"np.concatenate([[np.linalg.norm((v := {vector}))], v / np.linalg.norm(v)])"
+    return f"np.concatenate([(v := {vector}) / np.linalg.norm(v), [np.linalg.norm(v)]])"
 
 
 def _undo_in_python(relation, matrix):
     """Code for the first side's matrix, from code for the second's."""
-    for whose in ("body", "world"):
-        turn = relation.get(f"{whose} turn")
-        if turn is not None:
-            matrix = (
-                f"{_turn(turn.T)} @ {matrix}" if whose == "body" else f"{matrix} @ {_turn(turn.T)}"
-            )
-    if not _is_identity(relation["body"]):
-        matrix = f"{_python_matrix(relation['body'])}.T @ {matrix}"
-    if not _is_identity(relation["world"]):
-        matrix = f"{matrix} @ {_python_matrix(relation['world'])}"
+    if relation.get("body turn") is not None:
+        matrix = f"{_array(np.round(relation['body turn'].T, 6))} @ {matrix}"
+    if relation.get("world turn") is not None:
+        matrix = f"{matrix} @ {_array(np.round(relation['world turn'].T, 6))}"
+    if relation["body"] != table.SAME_AXES:
+        matrix = f"{_array(table.axes_matrix(relation['body']))}.T @ {matrix}"
+    if relation["world"] != table.SAME_AXES:
+        matrix = f"{matrix} @ {_array(table.axes_matrix(relation['world']))}"
     if relation["inverse"]:
         matrix = f"({matrix}).T" if "@" in matrix else f"{matrix}.T"
     return matrix.removesuffix(".T.T")
@@ -117,19 +95,13 @@ def _undo_in_python(relation, matrix):
 def python_line(chain):
     """One line of Python that gives what the first program gives, from ``second``."""
     relation, first, second = chain.relation, chain.first, chain.second
-    plain = (
-        _is_identity(relation["body"])
-        and _is_identity(relation["world"])
-        and "body turn" not in relation
-    )
+    plain = relation["body"] == relation["world"] == table.SAME_AXES
+    plain &= "body turn" not in relation
     if plain and first["kind"] == second["kind"] == "quaternion":
-        places = _index(second["choices"]["order"], first["choices"]["order"])
-        line = _pick("second", places)
-        if relation["inverse"]:
-            line += (
-                f" * np.array({[1 if part == 'w' else -1 for part in first['choices']['order']]})"
-            )
-        return line
+        order = first["choices"]["order"]
+        signs = f" * np.array({[1 if part == 'w' else -1 for part in order]})"
+        places = _index(second["choices"]["order"], order)
+        return _pick("second", places) + signs * relation["inverse"]
     return _write_in_python(first, _undo_in_python(relation, _read_in_python(second, "second")))
 
 
@@ -140,19 +112,10 @@ def formula(chain):
     relation, parts = chain.relation, []
     for whose in ("body", "world"):
         rows = relation.get(f"{whose} turn")
-        if rows is None and not _is_identity(relation[whose]):
+        if rows is None and relation[whose] != table.SAME_AXES:
             rows = np.array(table.axes_matrix(relation[whose]))
             rows = rows if whose == "body" else rows.T
-        parts.append([] if rows is None else [_rows(rows)])
+        rows = [] if rows is None else np.round(rows, 4) + 0.0
+        lines = [f"[{', '.join(f'{entry:.6g}' for entry in row)}]" for row in rows]
+        parts.append([f"[{', '.join(lines)}]"] if lines else [])
     return " ".join(["M2 =", *parts[0], "M1^T" if relation["inverse"] else "M1", *parts[1]])
-
-
-def _rows(matrix):
-    return (
-        "["
-        + ", ".join(
-            "[" + ", ".join(f"{entry + 0:.6g}" for entry in row) + "]"
-            for row in np.round(matrix, 4)
-        )
-        + "]"
-    )

@@ -290,19 +290,17 @@ def _distinct():
     renamed = {tuple(each) for each in (left @ start @ right).reshape(-1, 9).round(6) + 0.0}
     made = _all_inside(dcm).reshape(-1, 9).round(6) + 0.0
     return np.array([
-        tuple(each) not in renamed or one["inside"][0] == "quaternion" or _turned_over(one)
-        for each, one in zip(made, _inner_relations(), strict=True)
+        tuple(entries) not in renamed
+        or what == "quaternion"
+        or (built, places) == (read[::-1], "321")
+        for entries, relation in zip(made, _inner_relations(), strict=True)
+        for what, read, built, places in [relation["inside"]]
     ]) & (np.abs(made - dcm.reshape(9)).max(axis=1) > 1e-6)  # fmt: skip
 
 
 @functools.cache
 def _of_quaternions():
     return np.array([one["inside"][0] == "quaternion" for one in _inner_relations()])
-
-
-def _turned_over(relation):
-    _, read, built, places = relation["inside"]
-    return built == read[::-1] and places == "321"
 
 
 def after_inside(inside, dcms):

@@ -50,20 +50,29 @@ def _orders():
         "wxyz": "the scalar part stands first (w, x, y, z)",
         "xyzw": f"{SCALAR_LAST} (x, y, z, w)",
     }
-    for letters in itertools.permutations("wxyz"):
-        order = "".join(letters)
-        yield choice(
+    return [
+        choice(
             order,
             words.get(order, f"the four numbers are stored as {', '.join(order)}"),
             known.get(order, 1.2),
         )
+        for order in map("".join, itertools.permutations("wxyz"))
+    ]
 
 
 def _sequences():
     common = {"zyx": 0.1, "xyz": 0.15, "zxy": 0.2, "yxz": 0.25, "zxz": 0.3, "zyz": 0.3}
-    for sequence in SEQUENCES:
-        rarity = common.get(sequence, 0.6 if sequence in PROPER_EULER else 0.4)
-        yield choice(sequence, f"the turns are about {'-'.join(sequence)}", rarity)
+    return [
+        choice(
+            sequence,
+            f"the turns are about {'-'.join(sequence)}",
+            common.get(sequence, 0.6 if sequence in PROPER_EULER else 0.4),
+        )
+        for sequence in SEQUENCES
+    ]
+
+
+_ORDINAL = ("first", "second", "third")
 
 
 def _places():
@@ -71,21 +80,17 @@ def _places():
         "123": "the angles are printed in the order of the turns",
         "321": f"{REVERSED}, the last turn first",
     }
-    ordinal = {"1": "first", "2": "second", "3": "third"}
-    for digits in itertools.permutations("123"):
-        places = "".join(digits)
-        order = ", ".join(ordinal[digit] for digit in places)
-        yield choice(places, words.get(places, "the angles are printed in another order: "
-            f"{order} turn"),
-                     {"123": 0.0, "321": 0.1}.get(places, 0.5))  # fmt: skip
+    for places in map("".join, itertools.permutations("123")):
+        order = ", ".join(_ORDINAL[int(digit) - 1] for digit in places)
+        other = f"the angles are printed in another order: {order} turn"
+        yield choice(places, words.get(places, other), {"123": 0.0, "321": 0.1}.get(places, 0.5))
 
 
 def _signs():
-    ordinal = ("first", "second", "third")
-    for signs in itertools.product("+-", repeat=3):
-        negative = [ordinal[k] for k in range(3) if signs[k] == "-"]
+    for signs in map("".join, itertools.product("+-", repeat=3)):
+        negative = [which for which, sign in zip(_ORDINAL, signs) if sign == "-"]
         words = wrong_sign(*negative) if negative else "the signs are as they should be"
-        yield choice("".join(signs), words, 0.2, len(negative))
+        yield choice(signs, words, 0.2, len(negative))
 
 
 _UNIT = {
@@ -100,9 +105,9 @@ _UNIT = {
 #: first choice that a side declares, or this book's, is no fault.
 KINDS = {
     "matrix": [],
-    "quaternion": [{"group": "order", "choices": list(_orders())}],
+    "quaternion": [{"group": "order", "choices": _orders()}],
     "Euler angles": [
-        {"group": "sequence", "choices": list(_sequences())},
+        {"group": "sequence", "choices": _sequences()},
         {
             "group": "axes of the turns",
             "choices": [
@@ -163,12 +168,10 @@ def axes_matrix(names):
     """Signed permutation whose rows are the axes named: ``('y', 'x',
     '-z')`` is NED of ENU, and ENU of NED.
     """
-    rows = []
-    for name in names:
-        row = [0, 0, 0]
-        row["xyz".index(name[-1])] = -1 if name.startswith("-") else 1
-        rows.append(tuple(row))
-    return tuple(rows)
+    return tuple(
+        tuple((name[-1] == axis) * (-1 if name.startswith("-") else 1) for axis in "xyz")
+        for name in names
+    )
 
 
 def _by_axes(words):
@@ -280,9 +283,7 @@ def relations(mirrored=False):
 
 def left_handed(names):
     """Whether axes so named make a triad of the other hand."""
-    order = "".join(name[-1] for name in names)
-    odd = order not in ("xyz", "yzx", "zxy")
-    return odd != (sum(name.startswith("-") for name in names) % 2 == 1)
+    return bool(np.linalg.det(axes_matrix(names)) < 0)
 
 
 def _reverses_one(names):
@@ -367,11 +368,10 @@ def beyond(relation, expected):
 
 def _after(names, others):
     """The axes that come of renaming twice: first as ``others`` says, then as ``names`` does."""
-    found = []
-    for name in names:
-        other = others["xyz".index(name[-1])]
-        found.append(_opposite(other) if name.startswith("-") else other)
-    return tuple(found)
+    renamed = dict(zip("xyz", others))
+    return tuple(
+        _opposite(renamed[name[-1]]) if name.startswith("-") else renamed[name] for name in names
+    )
 
 
 def words_of(relation, kinds, swapped=False):
@@ -384,11 +384,11 @@ def words_of(relation, kinds, swapped=False):
     if inside := relation.get("inside"):
         return [_words_inside(*inside), *said]
     relation = relation.get("said", relation)
-    for whose in ("body", "world"):
-        if relation.get(f"{whose} turn") is not None:
-            said.append(
-                f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew"
-            )
+    said += [
+        f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew"
+        for whose in ("body", "world")
+        if relation.get(f"{whose} turn") is not None
+    ]
     if relation["hand"]:
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
         return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
@@ -413,11 +413,11 @@ def _words_inside(what, read, built, places):
             f"a quaternion on the way was stored as {', '.join(read)} and read as "
             f"{', '.join(built)}, or the other way round"
         )
-    put = f"{'-'.join(built)} (body fixed)"
-    if places == "321":
-        put = f"{'-'.join(built[::-1])} (space fixed)"
-    elif places != "123":
-        put += f", taking them in the order {', '.join(places)}"
+    put = f"{'-'.join(built)} (body fixed), taking them in the order {', '.join(places)}"
+    put = {
+        "123": f"{'-'.join(built)} (body fixed)",
+        "321": f"{'-'.join(built[::-1])} (space fixed)",
+    }.get(places, put)
     return (
         f"angles on the way: they were read off as {'-'.join(read)} (body fixed) and put together "
         f"as {put}"

@@ -141,15 +141,10 @@ def _rows_of_text(text, name):
         rows, half, more = labelled
         return rows, half, declared | more
     half = _half(NUMBER.findall(text))
-    rows = [
-        [float(number) for number in NUMBER.findall(group)]
-        for group in _PATTERNS["innermost"].findall(text)
-    ]
-    rows = [row for row in rows if row]
-    in_brackets = {len(row) for row in rows}
-    if in_brackets not in ({3}, {4}, {9}, {12}, {16}) or sum(map(len, rows)) != len(
-        NUMBER.findall(text)
-    ):
+    groups = map(NUMBER.findall, _PATTERNS["innermost"].findall(text))
+    rows = [list(map(float, group)) for group in groups if group]
+    whole = sum(map(len, rows)) == len(NUMBER.findall(text))
+    if not whole or {len(row) for row in rows} not in ({3}, {4}, {9}, {12}, {16}):
         rows = _rows_of_lines(text)
     if all(len(row) == 3 for row in rows):
         declared |= next(
@@ -162,8 +157,8 @@ def _rows_of_text(text, name):
 
 def _unit_in(text):
     """The unit of angles that a text names, as a declaration."""
-    named = [unit for unit in ("degrees", "radians") if _PATTERNS[unit].search(text)]
-    return {"unit": named[0]} if named else {}
+    units = ("degrees", "radians")
+    return next(({"unit": unit} for unit in units if _PATTERNS[unit].search(text)), {})
 
 
 def _fields(line):
@@ -246,12 +241,8 @@ def _named_columns(names):
 
 
 def _rows_of_lines(text):
-    rows = []
-    for line in re.split(r"[\n;]", text):
-        for piece in re.split(r"\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{", line):
-            if found := NUMBER.findall(piece):
-                rows.append([float(number) for number in found])
-    return rows
+    pieces = re.split(r"[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{", text)
+    return [list(map(float, numbers)) for piece in pieces if (numbers := NUMBER.findall(piece))]
 
 
 def _decimal_points(text):
@@ -335,13 +326,12 @@ def _half(found):
     """Half a unit of the last digit printed: of the numbers that are not
     small, the one with the most digits.
     """
-    sizes = [abs(float(number)) for number in found]
-    largest = max(sizes)
-    decimals = 0
-    for number, size in zip(found, sizes):
-        mantissa, _, power = number.lower().partition("e")
-        if size >= 0.1 * largest:
-            decimals = max(decimals, len(mantissa.partition(".")[2]) - int(power or 0))
+    largest = max(abs(float(number)) for number in found)
+    large = [number.lower() for number in found if abs(float(number)) >= 0.1 * largest]
+    decimals = max(
+        len(mantissa.partition(".")[2]) - int(power or 0)
+        for mantissa, _, power in (number.partition("e") for number in large)
+    )
     return 0.5 * 10.0**-decimals if decimals > 0 else 0.0
 
 
@@ -411,10 +401,8 @@ def _quaternion_among(rows, half):
         return None
     lengths = np.sqrt(np.lib.stride_tricks.sliding_window_view(array**2, 4, axis=1).sum(axis=2))
     places = np.flatnonzero((np.abs(lengths - 1) < 10 * SLACK + 2 * half).all(axis=0)).tolist()
-    for place in (width - 4, 0):
-        if place in places:
-            return place
-    return places[0] if len(places) == 1 else None
+    usual = [place for place in (width - 4, 0) if place in places]
+    return (usual or places)[0] if usual or len(places) == 1 else None
 
 
 def _orthogonal(rows):

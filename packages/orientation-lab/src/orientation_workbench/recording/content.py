@@ -51,6 +51,8 @@ FIELD = {
     "multiples of its length": (0.7, 1.5),
 }
 DEGREES = {"rad/s": 1.0, "°/s": np.pi / 180, "mrad/s": 1e-3, "m°/s": np.pi / 180e3}
+#: The instruments, in the order in which one gives the others its clock.
+SENSORS = ("gyroscope", "accelerometer", "magnetometer")
 
 
 class Group(NamedTuple):
@@ -233,8 +235,8 @@ def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
 
 def _unit(heading: str) -> str:
     """What stands in brackets in a heading, or behind its last blank."""
-    found = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
-    return (found[1] if found else heading.rpartition("_")[2]).strip().lower()
+    brackets = re.search(r"[(\[]([^)\]]*)[)\]]", heading)
+    return (brackets[1] if brackets else heading.rpartition("_")[2]).strip().lower()
 
 
 def _time(table: Table) -> tuple[int | None, Array, str, bool]:
@@ -449,13 +451,10 @@ def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str
     ]
     if felt is not None and points_one_way(felt.values) or not apart:
         return []
+    moved = [group for group in groups if group.called in ("linear acceleration", "accelerometer")]
+    felt = felt or next(iter(moved), None)
     if felt is None:
-        moved = [
-            group for group in groups if group.called in ("linear acceleration", "accelerometer")
-        ]
-        if not moved:
-            return []
-        felt = moved[0]
+        return []
     gravity = np.stack(
         [np.interp(felt.time, apart[0].time, column) for column in apart[0].values.T], axis=-1
     )
@@ -502,9 +501,21 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
     return f"counts, {middle:.4g} to one g", middle, 0.0
 
 
-def unit_of_field(length: float) -> tuple[str, float]:
-    """The unit in which vectors of this length have that of the Earth's field, and the length."""
-    for unit, (low, high) in FIELD.items():
-        if low <= length <= high:
-            return unit, length
-    return "a unit of its own", length
+def unit_of_field(length: float) -> str:
+    """The unit in which vectors of this length have that of the Earth's field."""
+    units = [unit for unit, (low, high) in FIELD.items() if low <= length <= high]
+    return units[0] if units else "a unit of its own"
+
+
+def unit_of_rates(names: Sequence[str]) -> str:
+    """The unit of angular velocity that headings name; empty where they name none."""
+    text = " ".join(names).lower()
+    marks = {"mrad/s": "mrad", "rad/s": "rad", "m°/s": "mdps|mdeg", "°/s": "deg|°|dps"}
+    return next((unit for unit, pattern in marks.items() if re.search(pattern, text)), "")
+
+
+def unit_in_brackets(heading: str) -> str:
+    """The unit of acceleration in a heading's brackets, if it is one that is in use."""
+    text = heading.lower().replace("^2", "²").replace("s2", "s²")
+    unit = re.search(r"[(\[]\s*(m/s²|m?g|cm/s²)\s*[)\]]", text)
+    return unit[1] if unit else ""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .motion import pieces, steps_of, turned
+from .motion import lasting, pieces, steps_of, turned
 
 if TYPE_CHECKING:
     from .table import Array
@@ -42,6 +42,16 @@ class FieldFit(NamedTuple):
     axes: Array
     stretch: float
 
+    def corrected(self, values: Array) -> Array:
+        """Values as they would be without the iron that moves along."""
+        return (values - self.offset) @ self.shape.T
+
+
+def spread_of_lengths(values: Array) -> float:
+    """Standard deviation of the lengths of vectors, as a share of their mean."""
+    lengths = np.linalg.norm(values, axis=1)
+    return lengths.std() / lengths.mean()
+
 
 def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     """Fit offset and shape of a magnetometer to the lengths alone, without a gyroscope.
@@ -68,13 +78,9 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     >>> fit.offset.round(6) + 0.0, np.diag(fit.shape).round(3)
     (array([5., 0., 0.]), array([1.233, 0.986, 0.822]))
     """
-    if len(values) < 12:
-        return None
-    middle, scale = (
-        np.median(values, axis=0),
-        np.linalg.norm(values - np.median(values, axis=0), axis=1).max(),
-    )
-    if scale == 0:
+    middle = np.median(values, axis=0)
+    scale = np.linalg.norm(values - middle, axis=1).max()
+    if len(values) < 12 or scale == 0:
         return None
     x, y, z = scaled = (values - middle).T / scale
     columns = [
@@ -92,44 +98,36 @@ def fit_ellipsoid(values: Array, most: float = 0.1) -> FieldFit | None:
     v = np.linalg.svd(np.stack(columns, axis=1), full_matrices=False)[2][-1]
     quadric, linear = np.array([[v[0], v[5], v[4]], [v[5], v[1], v[3]], [v[4], v[3], v[2]]]), v[6:9]
     sizes, axes = np.linalg.eigh(quadric)
-    if np.abs(sizes).min() < 1e-6 * np.abs(sizes).max():
-        return None
-    centre = -np.linalg.solve(quadric, linear)
+    centre = -np.linalg.pinv(quadric) @ linear
     sizes = sizes / (centre @ quadric @ centre - v[9])
-    if sizes.min() <= 0:  # a hyperboloid fits better: the poses cover too little
+    if sizes.min() <= 1e-6 * sizes.max():  # a hyperboloid fits better: the poses cover too little
         return None
     shape = axes * np.sqrt(sizes) @ axes.T
     places = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]
     for _ in range(20):
         away = scaled.T - centre
-        seen = away @ shape
-        lengths = np.linalg.norm(seen, axis=1)
-        ways = seen / lengths[:, None]
+        lengths = np.linalg.norm(away @ shape, axis=1)
+        ways = away @ shape / lengths[:, None]
         slopes = [ways[:, i] * away[:, j] + (i != j) * ways[:, j] * away[:, i] for i, j in places]
         slopes = np.column_stack([*slopes, -ways @ shape])
         change, _, rank, _ = np.linalg.lstsq(slopes, 1 - lengths, rcond=1e-9)
         if rank < 9:
             return None
         for (i, j), part in zip(places, change[:6], strict=True):
-            shape[i, j] += part
-            shape[j, i] = shape[i, j]
+            shape[i, j] = shape[j, i] = shape[i, j] + part
         centre = centre + change[6:]
         if np.abs(change).max() < 1e-10:
             break
-    left = 1 - lengths
-    alike = (
-        0.0 if left.std() == 0 else float(np.clip(np.corrcoef(left[1:], left[:-1])[0, 1], 0, 0.99))
-    )
     # What neighbours say together counts once.
-    noise = left.std() * np.sqrt(len(left) / (len(left) - 9) * (1 + alike) / (1 - alike))
+    noise = (1 - lengths).std() * lasting(1 - lengths, 0.99)
+    noise *= np.sqrt(len(values) / (len(values) - 9))
     covariance = noise**2 * np.linalg.inv(slopes.T @ slopes)
     in_shape = np.linalg.eigvalsh(covariance[:6, :6])[-1] / np.linalg.eigvalsh(shape)[0] ** 2
     in_offset = np.linalg.eigvalsh(shape @ covariance[6:, 6:] @ shape)[-1]
     uncertainty = float(np.sqrt(in_shape + in_offset))
-    if np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005:  # noise bends what lies in a plane
-        return None
     stretches = np.linalg.eigvalsh(shape)
-    if not uncertainty < most or stretches[0] <= 0 or stretches[-1] > 3 * stretches[0]:
+    planar = np.linalg.eigvalsh(np.cov(ways.T))[0] < 0.005  # noise bends what lies in a plane
+    if planar or not uncertainty < most or not 0 < stretches[-1] <= 3 * stretches[0]:
         return None
     size = float(np.linalg.det(shape) ** (1 / 3))
     return FieldFit(
@@ -170,9 +168,9 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
         if count < 4:
             continue
         dcms = turned(rates[part], steps_of(time[part]))[: count * size]
-        those = field[part][: count * size]
         blocks = dcms.reshape(count, size, 3, 3)
-        outer.append(np.einsum("bnji,bnk->bijk", blocks, those.reshape(count, size, 3)) / size)
+        those = field[part][: count * size].reshape(count, size, 3)
+        outer.append(np.einsum("bnji,bnk->bijk", blocks, those) / size)
         plain.append(blocks.mean(axis=1).swapaxes(-1, -2))
         runs += [number] * count
     if len(runs) < 12:
@@ -180,13 +178,11 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     scale = np.median(np.linalg.norm(field - np.median(field, axis=0), axis=1)) or 1.0
     a = np.concatenate(outer).reshape(-1, 9) / scale
     c = -np.concatenate(plain).reshape(-1, 3)
-    runs = np.repeat(runs, 3)
-    axis = np.tile(np.arange(3), len(runs) // 3)
-    both = np.concatenate([a, c], axis=1)
+    runs = np.array(runs)
+    both = np.concatenate([a, c], axis=1).reshape(len(runs), 3, 12)
     for run in np.unique(runs):  # the field of a run is what is left of its mean
-        for k in range(3):
-            rows = (runs == run) & (axis == k)
-            both[rows] -= both[rows].mean(axis=0)
+        both[runs == run] -= both[runs == run].mean(axis=0)
+    both = both.reshape(-1, 12)
     weights = np.ones(len(both))
     for _ in range(4):
         weighted = both * weights[:, None]
@@ -212,7 +208,7 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     centre = np.linalg.solve(shape, offset) * scale
     means = np.concatenate(outer) / scale
     carried = np.einsum("bijk,jk->bi", means, shape) - np.concatenate(plain) @ offset
-    fields = [carried[runs[::3] == run].mean(axis=0) for run in np.unique(runs)]
+    fields = [carried[runs == run].mean(axis=0) for run in np.unique(runs)]
     strength = float(np.median(np.linalg.norm(fields, axis=1)) * scale)
     # The way in which A is known least, and the noise of a block,
     # give how far a direction can be off.
@@ -221,22 +217,11 @@ def fit_field(time: Array, rates: Array, field: Array, seconds: float = 0.25) ->
     uncertainty = (
         (spread_a + spread_c * scale / max(strength, 1e-12) / size_of_shape) if strength else np.inf
     )
-    lengths, before = (
-        np.linalg.norm(values, axis=1) for values in ((field - centre) @ shape.T, field)
-    )
-    if (
-        stretches[0] > 3 * stretches[-1]
-        or lengths.std() / lengths.mean() > before.std() / before.mean() + 0.02
-    ):
-        return None  # a correction that makes things worse is none
-    return FieldFit(
-        shape,
-        centre,
-        strength,
-        float(uncertainty),
-        axes,
-        float(stretches[0] / stretches[-1]),
-    )
+    stretch = float(stretches[0] / stretches[-1])
+    fit = FieldFit(shape, centre, strength, float(uncertainty), axes, stretch)
+    # A correction that makes things worse is none.
+    worse = spread_of_lengths(fit.corrected(field)) > spread_of_lengths(field) + 0.02
+    return None if worse or stretch > 3 else fit
 
 
 def uneven_lengths(means: Array) -> tuple[str, Array, Array, float]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from orientation import MultiplicativeKalmanFilter, dcm_from_two_directions
 
-from .motion import steps_of, to_rotation_vectors, turned
+from .motion import lasting, steps_of, to_rotation_vectors, turned
 
 if TYPE_CHECKING:
     from .motion import Stretch
@@ -110,14 +110,10 @@ def too_sure(judgements: Sequence[Judgement]) -> tuple[float, float]:
 
 def _start(forces: Array, field: Array | None) -> Array:
     up = forces.mean(axis=0)
-    if field is None:
-        other = np.eye(3)[np.abs(up).argmin()]
-    else:
-        mean = field.mean(axis=0)
-        other = np.cross(up, np.cross(mean, up))
-    if np.linalg.norm(np.cross(up, other)) < 1e-3 * np.linalg.norm(up) * np.linalg.norm(other):
-        other = np.eye(3)[np.abs(up).argmin()]
-    return dcm_from_two_directions([up, other], [[0, 0, 1], [1, 0, 0]])
+    north = np.zeros(3) if field is None else np.cross(up, np.cross(field.mean(axis=0), up))
+    if np.linalg.norm(np.cross(up, north)) <= 1e-3 * np.linalg.norm(up) * np.linalg.norm(north):
+        north = np.eye(3)[np.abs(up).argmin()]
+    return dcm_from_two_directions([up, north], [[0, 0, 1], [1, 0, 0]])
 
 
 def in_blocks(
@@ -146,26 +142,22 @@ def in_blocks(
     at_end = dcms[ends]
     turns = to_rotation_vectors(at_end[1:] @ at_end[:-1].swapaxes(-1, -2))
     means = turns / np.diff(time[ends])[:, None]
-    # A step is turned by the mean of the rates at its two ends: here by the mean
-    # over it, which is put at its end.
-    means = np.concatenate([means[:1], means])
-    found = []
+    averaged = []
     for values in vectors:
         carried = np.einsum("nji,nj->ni", dcms[: count * size], values[: count * size])
-        found.append(np.einsum("nij,nj->ni", at_end, carried.reshape(count, size, 3).mean(axis=1)))
-    return time[ends], means, found
+        blocks = carried.reshape(count, size, 3).mean(axis=1)
+        averaged.append(np.einsum("nij,nj->ni", at_end, blocks))
+    # A step is turned by the mean of the rates at its two ends: here by the mean
+    # over it, which is put at its end.
+    return time[ends], np.concatenate([means[:1], means]), averaged
 
 
 def _earth(forces: Array, field: Array) -> Array:
     """The field along a ground with x to magnetic north and z up,
     by its usual dip against gravity.
     """
-    sines = (
-        (forces * field).sum(axis=1)
-        / np.linalg.norm(forces, axis=1)
-        / np.linalg.norm(field, axis=1)
-    )
-    sine = float(np.clip(np.median(sines), -0.999, 0.999))
+    sizes = np.linalg.norm(forces, axis=1) * np.linalg.norm(field, axis=1)
+    sine = float(np.clip(np.median((forces * field).sum(axis=1) / sizes), -0.999, 0.999))
     return np.array([np.sqrt(1 - sine**2), 0, sine])
 
 
@@ -228,14 +220,13 @@ def filter_inputs(
             quiet = [values[one.first : one.last] for one in lying]
             return float(np.sqrt(np.mean([each.var(axis=0, ddof=1).mean() for each in quiet])))
 
-        by_field = max(spread(field), 1e-3) if field is not None else ASSUMED.field
         # A scale that is off by half a per cent errs by that much of each turn.
         turning = 0.005 * float(np.sqrt(np.mean(rates**2)))
         noise = Noise(
             float(np.hypot(spread(rates) * np.sqrt(step), turning)),
             ASSUMED.bias,
             max(spread(forces), 1e-3),
-            by_field,
+            max(spread(field), 1e-3) if field is not None else ASSUMED.field,
         )
     # While it moves, pushes are taken for gravity, and last for many samples: each counts for less.
     push = np.linalg.norm(forces, axis=1) - 1
@@ -243,17 +234,17 @@ def filter_inputs(
     for one in lying:
         moving[one.first : one.last] = False
     usual = np.sqrt(np.mean(push[moving] ** 2)) if moving.any() else 0.0
-    doubt = np.where(moving, np.hypot(usual, push) * _lasting(push), 0.0)
+    doubt = np.where(moving, np.hypot(usual, push) * lasting(push), 0.0)
     if field is not None:  # iron shows in the field's length, and lasts as well
         uneven = np.linalg.norm(field, axis=1) - 1
         noise = noise._replace(
-            field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * _lasting(uneven))
+            field=max(noise.field, float(np.sqrt(np.mean(uneven**2))) * lasting(uneven))
         )
     found = []
     for first, last in parts or [(0, len(time))]:
         part = slice(first, last)
         means = (rates[part] + np.concatenate([rates[first : first + 1], rates[part][:-1]])) / 2
-        vectors = [forces[part]] if field is None else [forces[part], field[part]]
+        vectors = [values[part] for values in (forces, field) if values is not None]
         at, turning, seen = in_blocks(time[part], rates[part], vectors)
         fewer = np.sqrt(max(1, round((last - first) / len(at))))
         found.append(
@@ -267,16 +258,6 @@ def filter_inputs(
             )
         )
     return found
-
-
-def _lasting(values: Array) -> float:
-    """By how much less the samples of something that lasts tell than as many
-    that know nothing of each other.
-    """
-    if values.std() == 0:
-        return 1.0
-    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), 0.999)
-    return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
 def judge(given: FilterInput, progress: Callable[[float], None] | None = None) -> Judgement:

@@ -134,6 +134,16 @@ def autocorrelation(rates: Array, lags: int = 5) -> float:
     return float(np.sqrt(max(0.0, np.mean(squares) - 1 / count)))
 
 
+def lasting(values: Array, most: float = 0.999) -> float:
+    """By how much less the samples of something that lasts tell than as many
+    that know nothing of each other; neighbours are taken to be at most so much alike.
+    """
+    if values.std() == 0:
+        return 1.0
+    alike = min(max(np.corrcoef(values[1:], values[:-1])[0, 1], 0.0), most)
+    return float(np.sqrt((1 + alike) / (1 - alike)))
+
+
 def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     """Find where an instrument hardly moves, and whether it lies or is held.
 
@@ -155,8 +165,6 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     blocks = rates[: count * size].reshape(count, size, 3)
     spread = np.sqrt(blocks.var(axis=1, ddof=1).mean(axis=1))
     calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
-    if not calm.any():
-        return []
     # A bias may drift: calm blocks are compared with those within ten seconds, and less closely
     # with all.
     means, places = blocks.mean(axis=1), np.flatnonzero(calm)
@@ -166,24 +174,19 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         usual = max(3 * spread[k], np.radians(1.0))
         calm[k] &= np.linalg.norm(means[k] - np.median(others, axis=0)) < usual
         calm[k] &= np.linalg.norm(means[k] - np.median(means[places], axis=0)) < QUIET
-    found, first = [], None
-    for k in range(count + 1):
-        inside = k < count and calm[k]
-        if inside and first is None:
-            first = k
-        elif inside and spread[k] > 2.5 * spread[first:k].min():
-            found.append((first, k))
-            first = k
-        elif not inside and first is not None:
-            found.append((first, k))
-            first = None
-    result = []
-    for first, last in found:
-        part = rates[first * size : last * size]
-        deviation = float(np.sqrt(part.var(axis=0, ddof=1).mean()))
-        lies = bool(autocorrelation(part) < 0.2 or deviation < TREMBLE)
-        result.append(Stretch(first * size, last * size, lies, deviation))
-    return result
+    # A stretch ends where it gets restless, and also where it gets much less calm.
+    runs: list[list[int]] = []
+    for k in np.flatnonzero(calm):
+        if not runs or k > runs[-1][-1] + 1 or spread[k] > 2.5 * spread[runs[-1]].min():
+            runs.append([])
+        runs[-1].append(int(k))
+    found = []
+    for run in runs:
+        first, last = run[0] * size, (run[-1] + 1) * size
+        deviation = float(np.sqrt(rates[first:last].var(axis=0, ddof=1).mean()))
+        lies = bool(autocorrelation(rates[first:last]) < 0.2 or deviation < TREMBLE)
+        found.append(Stretch(first, last, lies, deviation))
+    return found
 
 
 # --- axes, signs, unit and scale of a gyroscope ---------------------------------------------------

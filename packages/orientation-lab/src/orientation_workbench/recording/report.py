@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -13,8 +15,6 @@ from .allan import noise_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from numpy.typing import ArrayLike
 
     from .examined import Examined
 
@@ -55,26 +55,22 @@ def as_csv(examined: Examined, convention: str = "wxyz") -> str:
         ("field", "1", examined.field),
     ):
         if values is not None:
-            names += [f"{kind} {axis} ({unit})" for axis in "xyz"]
             columns.append(values)
+            names += [f"{kind} {axis} ({unit})" for axis in "xyz"]
     if examined.judgements:
-        if convention == "yaw-pitch-roll":
-            names += ["yaw (deg)", "pitch (deg)", "roll (deg)"]
-        else:
-            names += [f"q{letter}" for letter in convention]
-        width = len(names) - sum(part.shape[1] for part in columns)
-        orientations = np.full((len(examined.time), width), np.nan)
+        own = ["yaw (deg)", "pitch (deg)", "roll (deg)"]
+        own = own if convention == "yaw-pitch-roll" else [f"q{letter}" for letter in convention]
+        orientations = np.full((len(examined.time), len(own)), np.nan)
         for judgement in examined.judgements:
             times = judgement.times
             inside = np.flatnonzero((examined.time >= times[0]) & (examined.time <= times[-1]))
             dcms = judgement.dcms[np.searchsorted(times, examined.time[inside])]
-            if convention == "yaw-pitch-roll":
-                orientations[inside] = np.degrees(body_fixed_from_dcm(dcms, "zyx"))
-            else:
-                orientations[inside] = np.roll(
-                    quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1
-                )
-        columns.append(orientations)
+            orientations[inside] = (
+                np.degrees(body_fixed_from_dcm(dcms, "zyx"))
+                if convention == "yaw-pitch-roll"
+                else np.roll(quaternion_from_dcm(dcms), -1 * (convention == "xyzw"), axis=1)
+            )
+        names, columns = [*names, *own], [*columns, orientations]
     lines = [",".join(f"{value:.9g}" for value in row) for row in np.concatenate(columns, axis=1)]
     return "\n".join([",".join(names), *lines]) + "\n"
 
@@ -87,32 +83,23 @@ def as_code(examined: Examined) -> str:
     and ``field`` in multiples of its length.
     """
     facts, lines = examined.facts, ["import numpy as np", ""]
-
-    def array(values: ArrayLike) -> str:
-        return f"np.array({np.asarray(values, float).tolist()})"
-
-    if examined.rates is not None and "unit of the gyroscope" in facts:
-        lines.append(f"rates = gyroscope * {float(facts['unit of the gyroscope'])!r}")
-        if "axes of the gyroscope" in facts:
-            lines.append(f"rates = rates @ {array(facts['axes of the gyroscope'])}.T")
-        if "bias of the gyroscope" in facts:
-            lines.append(f"rates = rates - {array(facts['bias of the gyroscope'])}")
-        if np.any(facts.get("multiplied", 1.0) != 1.0):
-            lines.append(f"rates = rates * {array(facts['multiplied'])}")
-    if examined.forces is not None:
-        lines.append(f"forces = accelerometer / {float(facts['gravity'])!r}")
-        if "offset of the accelerometer" in facts:
-            lines.append(
-                "forces = forces - "
-                f"{array(facts['offset of the accelerometer'] / facts['gravity'])}"
-            )
-            lines.append(f"forces = forces / {array(facts['scales of the accelerometer'])}")
-    if examined.field is not None:
-        lines.append("field = magnetometer")
-        if "offset of the magnetometer" in facts:
-            lines.append(f"field = field - {array(facts['offset of the magnetometer'])}")
-            lines.append(f"field = field @ {array(facts['shape of the magnetometer'])}.T")
-        lines.append(f"field = field / {float(facts['strength of the field'])!r}")
+    lengths = {"g": facts.get("gravity"), "b": facts.get("strength of the field")}
+    for values, name, formula in (
+        (examined.rates, "unit of the gyroscope", "rates = gyroscope * {}"),
+        (examined.rates, "axes of the gyroscope", "rates = rates @ {}.T"),
+        (examined.rates, "bias of the gyroscope", "rates = rates - {}"),
+        (examined.rates, "multiplied", "rates = rates * {}"),
+        (examined.forces, "gravity", "forces = accelerometer / {}"),
+        (examined.forces, "offset of the accelerometer", "forces = forces - {} / {g!r}"),
+        (examined.forces, "scales of the accelerometer", "forces = forces / {}"),
+        (examined.field, "strength of the field", "field = magnetometer / {}"),
+        (examined.field, "offset of the magnetometer", "field = field - {} / {b!r}"),
+        (examined.field, "shape of the magnetometer", "field = field @ {}.T"),
+    ):
+        numbers = np.asarray(facts.get(name, 1.0), float)
+        if values is not None and name in facts and (name != "multiplied" or (numbers != 1).any()):
+            text = f"np.array({numbers.tolist()})" if numbers.ndim else repr(float(numbers))
+            lines.append(formula.format(text, **lengths))
     return "\n".join(lines)
 
 
@@ -195,16 +182,17 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         from matplotlib.figure import Figure
     except ImportError:
         return []
-    pictures = []
+    pictures: list[tuple[str, str]] = []
     few = slice(None, None, max(1, len(examined.time) // 1500))
+    blue, red, thin = "#1f5fbf", "#c62828", 0.8
 
-    def drawing(height: float) -> tuple[Figure, Axes]:
-        # Its words can be read on a telephone.
+    @contextmanager
+    def drawing(height: float, words: str, across: str, up: str) -> Iterator[Axes]:
+        # The words of the figure can be read on a telephone.
         figure = Figure(figsize=(6.2, height), layout="constrained")
-        return figure, figure.subplots()
-
-    def kept(figure: Figure, words: str) -> None:
-        text = io.StringIO()
+        axes, text = figure.subplots(), io.StringIO()
+        axes.set(xlabel=across, ylabel=up)
+        yield axes
         figure.savefig(text, format="svg", metadata={"Date": None})
         svg = text.getvalue()
         svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg") :], flags=re.DOTALL)
@@ -212,99 +200,68 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         pictures.append((svg, words))
 
     if examined.rates is not None:
-        figure, axes = drawing(2.6)
-        axes.plot(
-            examined.time[few],
-            np.degrees(np.linalg.norm(examined.rates[few], axis=1)),
-            linewidth=0.8,
-            color="#1f5fbf",
-        )
-        for stretch in examined.still:
-            axes.axvspan(
-                examined.time[stretch.first],
-                examined.time[stretch.last - 1],
-                color="#2e7d32" if stretch.still else "#a66300",
-                alpha=0.2,
-            )
-        axes.set(xlabel="time (s)", ylabel="rate (°/s)")
         still = sum(stretch.still for stretch in examined.still)
-        kept(
-            figure,
+        words = (
             f"How fast it turns. Shaded: {still} stretches in which it lies still, "
-            f"{len(examined.still) - still} in which it is held.",
+            f"{len(examined.still) - still} in which it is held."
         )
+        with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
+            rates = np.degrees(np.linalg.norm(examined.rates[few], axis=1))
+            axes.plot(examined.time[few], rates, color=blue, linewidth=thin)
+            for stretch in examined.still:
+                ends = examined.time[[stretch.first, stretch.last - 1]]
+                axes.axvspan(*ends, color="#2e7d32" if stretch.still else "#a66300", alpha=0.2)
     if "Allan deviation" in examined.facts:
         times, deviations = examined.facts["Allan deviation"]
         noise = noise_of(times, deviations)
-        figure, axes = drawing(3.2)
-        for values, letter, style in zip(deviations.T, "xyz", ("-", "--", ":"), strict=True):
-            axes.loglog(times, values, style, label=letter)
-        walk, lowest = noise.angle_random_walk.max(), noise.bias_instability
-        if np.isfinite(walk):
-            axes.loglog(times, walk / np.sqrt(times), linewidth=0.6, color="#777")
-            axes.plot(1, walk, "o", color="#c62828")
-            axes.annotate(
-                f"angle random walk {walk:.2g} °/√s", (1, walk), (6, 6), textcoords="offset points"
-            )
-        if np.isfinite(lowest).any():
-            worst = int(np.nanargmax(lowest))
-            place = (noise.time[worst], lowest[worst])
-            axes.plot(*place, "s", color="#c62828")
-            axes.annotate(
-                f"bias instability {lowest[worst]:.2g} °/s",
-                place,
-                (6, -12),
-                textcoords="offset points",
-            )
-        axes.set(xlabel="averaged over (s)", ylabel="Allan deviation (°/s)")
-        axes.legend()
-        kept(
-            figure,
+        words = (
             "Allan deviation of the gyroscope in its longest still stretch. "
             "Where it falls by half for four times the time, it is noise; what that line says at "
             "one second is the angle random walk, and the lowest point is the instability of the "
-            "bias, if the stretch is long enough to have one.",
+            "bias, if the stretch is long enough to have one."
         )
+        with drawing(3.2, words, "averaged over (s)", "Allan deviation (°/s)") as axes:
+            for values, letter, style in zip(deviations.T, "xyz", ("-", "--", ":"), strict=True):
+                axes.loglog(times, values, style, label=letter)
+            walk, lowest = noise.angle_random_walk.max(), noise.bias_instability
+            marks = []
+            if np.isfinite(walk):
+                axes.loglog(times, walk / np.sqrt(times), linewidth=0.6, color="#777")
+                marks.append((1, walk, "o", (6, 6), f"angle random walk {walk:.2g} °/√s"))
+            if np.isfinite(lowest).any():
+                k = int(np.nanargmax(lowest))
+                told = f"bias instability {lowest[k]:.2g} °/s"
+                marks.append((noise.time[k], lowest[k], "s", (6, -12), told))
+            for x, y, marker, beside, told in marks:
+                axes.plot(x, y, marker, color=red)
+                axes.annotate(told, (x, y), beside, textcoords="offset points")
+            axes.legend()
     if examined.field is not None and "offset of the magnetometer" in examined.facts:
         facts = examined.facts
         inverse = np.linalg.inv(facts["shape of the magnetometer"])
-        strength = facts["strength of the field"]
-        before = examined.field[few] * strength @ inverse.T + facts["offset of the magnetometer"]
-        figure, axes = drawing(2.4)
-        axes.plot(
-            examined.time[few],
-            np.linalg.norm(before, axis=1) / strength,
-            "--",
-            linewidth=0.8,
-            color="#c62828",
+        offset = facts["offset of the magnetometer"] / facts["strength of the field"]
+        before, now = (
+            np.linalg.norm(values, axis=1)
+            for values in (examined.field[few] @ inverse.T + offset, examined.field[few])
         )
-        axes.plot(
-            examined.time[few],
-            np.linalg.norm(examined.field[few], axis=1),
-            linewidth=0.8,
-            color="#1f5fbf",
-        )
-        axes.set(xlabel="time (s)", ylabel="length of the field", ylim=(0, None))
-        kept(
-            figure,
+        words = (
             "Length of the magnetic field, as a share of its usual one. Dashed: as it came; solid: "
-            "corrected.",
+            "corrected."
         )
+        with drawing(2.4, words, "time (s)", "length of the field") as axes:
+            axes.plot(examined.time[few], before, "--", color=red, linewidth=thin)
+            axes.plot(examined.time[few], now, color=blue, linewidth=thin)
+            axes.set_ylim(0, None)
     if examined.judgements:
-        figure, axes = drawing(2.6)
-        for judgement in examined.judgements:
-            axes.plot(judgement.times, judgement.apart, linewidth=0.8, color="#1f5fbf")
-            axes.plot(judgement.times, judgement.claims, "--", linewidth=1, color="#c62828")
-        # At either end a run has seen little, and claims little: that would dwarf the rest.
-        usual = np.concatenate(
-            [each for judged in examined.judgements for each in (judged.apart, judged.claims)]
-        )
-        axes.set(
-            xlabel="time (s)", ylabel="tilt (°)", ylim=(0, 1.5 * np.percentile(usual, 98) + 1e-3)
-        )
-        kept(
-            figure,
+        words = (
             "Solid: by how much the filter run forwards and backwards differ in tilt. "
-            "Dashed: how much they should by their own claims.",
+            "Dashed: how much they should by their own claims."
         )
+        with drawing(2.6, words, "time (s)", "tilt (°)") as axes:
+            for judgement in examined.judgements:
+                axes.plot(judgement.times, judgement.apart, color=blue, linewidth=thin)
+                axes.plot(judgement.times, judgement.claims, "--", color=red, linewidth=thin)
+            # At either end a run has seen little, and claims little: that would dwarf the rest.
+            usual = [values for run in examined.judgements for values in (run.apart, run.claims)]
+            axes.set_ylim(0, 1.5 * np.percentile(np.concatenate(usual), 98) + 1e-3)
     return pictures

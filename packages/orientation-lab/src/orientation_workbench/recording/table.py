@@ -299,16 +299,14 @@ def _number(field: str, comma: bool = False) -> float | None:
 def _numbers_per_line(lines: Sequence[str], delimiter: str | None) -> float:
     """The median count of numbers in the lines of the middle, were they parted so."""
     middle = [line for line in lines[len(lines) // 4 :] if line.strip()][:200]
-    counts = []
-    for line in middle:
-        fields = _split(line, delimiter)
-        counts.append(
-            sum(
-                _number(field) is not None or _is_comma(field) and delimiter != ","
-                for field in fields
-                if field
-            )
+    counts = [
+        sum(
+            _number(field) is not None or _is_comma(field) and delimiter != ","
+            for field in _split(line, delimiter)
+            if field
         )
+        for line in middle
+    ]
     return float(np.median(counts)) if counts else 0
 
 
