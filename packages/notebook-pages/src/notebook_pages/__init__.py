@@ -1,6 +1,6 @@
-"""What turns the chapters into the web site: one small Sphinx extension.
+"""Turn the chapters into the web site: one small Sphinx extension.
 
-Each module has one purpose and a ``setup`` of its own; none of them knows what the book is about.
+Each module has one purpose and its own ``setup``. None of them knows what the book is about.
 """
 
 import gc
@@ -52,8 +52,8 @@ def setup(app):
         take_away,
     )
 
-    # Pages that are read back are large trees. By default Python would search them for memory to
-    # free so often that this takes longer than reading them.
+    # The pages that are read back are large trees. With the default thresholds, the garbage
+    # collector would search them so often that this takes longer than reading them.
     gc.set_threshold(50_000, 20, 50)
     pages = (
         execution,

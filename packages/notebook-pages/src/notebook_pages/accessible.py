@@ -1,4 +1,4 @@
-"""Corrections of what other extensions write, where a screen reader would stumble."""
+"""Correct the HTML of other extensions where it would confuse a screen reader."""
 
 from docutils import nodes
 from myst_nb.sphinx_ import HideCodeCellNode
@@ -6,7 +6,7 @@ from sphinx.writers.html5 import HTML5Translator
 
 
 def visit_hidden(translator, node):
-    """A fold whose name is what it shows; MyST-NB gives it another name."""
+    """Name a fold after its content; MyST-NB gives it another name."""
     classes = " ".join(["hide", *node["classes"]])
     translator.body.append(f'<details class="{classes}"><summary>{node["prompt_show"]}</summary>\n')
 
@@ -16,7 +16,7 @@ def depart_hidden(translator, node):
 
 
 def visit_citation(translator, node):
-    """A plain box: docutils writes a list without items, and a withdrawn role."""
+    """Write a plain box: docutils writes a list without items, and a withdrawn role."""
     translator.body.append(translator.starttag(node, "div", CLASS="citation"))
 
 
@@ -25,7 +25,7 @@ def depart_citation(translator, node):
 
 
 def visit_entry(translator, node):
-    """An empty corner of a table heads nothing: an ordinary cell, not a heading."""
+    """Write the empty corner of a table as an ordinary cell, since it heads nothing."""
     HTML5Translator.visit_entry(translator, node)
     if not node.astext().strip() and translator.body[-1].startswith("<th"):
         translator.body[-1] = translator.body[-1].replace("<th", "<td", 1)
@@ -37,8 +37,9 @@ def depart_entry(translator, node):
 
 
 def name_of_caption(node):
-    """The identifier of what names a figure with a caption: browsers no
-    longer take its name from the caption.
+    """Return the ID of the element that names a figure with a caption.
+
+    Browsers no longer take the name of a figure from its caption.
     """
     has_caption = any(isinstance(part, nodes.caption) for part in node)
     return f"{node['ids'][0]}-name" if has_caption and node["ids"] else None
@@ -53,7 +54,7 @@ def visit_figure(translator, node):
 
 
 def visit_caption(translator, node):
-    """The number of a figure is its name; without one, the words of its caption are."""
+    """Name a figure by its number or, without one, by the words of its caption."""
     start = len(translator.body)
     HTML5Translator.visit_caption(translator, node)
     if isinstance(node.parent, nodes.figure) and (name := name_of_caption(node.parent)):

@@ -1,6 +1,6 @@
-"""Every picture says in words what it shows, or the build warns.
+"""Check that every picture has a text description; the build warns if one is missing.
 
-Checked are the pictures of the text and those that cells put out, after Sphinx has chosen
+The check covers the pictures of the text and those that cells display, after Sphinx has chosen
 which form of an output the page shows.
 """
 

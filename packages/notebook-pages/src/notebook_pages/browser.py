@@ -1,6 +1,6 @@
 """The browser that prints the book and opens its pages in the tests.
 
-``python -m notebook_pages.browser`` succeeds where there is one, and else says how to get it.
+``python -m notebook_pages.browser`` succeeds if there is one; otherwise it says how to get it.
 """
 
 import shutil
@@ -16,7 +16,7 @@ NAMES = (
 FLAGS = (
     # In containers everything runs as root.
     "--no-sandbox",
-    # The others keep the browser from talking to its maker.
+    # The other options keep the browser from contacting its maker.
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
@@ -33,13 +33,13 @@ MISSING = (
 
 
 def find():
-    """The path of Chromium or Chrome on this machine, or ``None``."""
+    """Return the path of Chromium or Chrome on this machine, or ``None``."""
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
 @contextmanager
 def open_browser():
-    """Headless Chromium, driven by Playwright."""
+    """Open headless Chromium, driven by Playwright."""
     from playwright.sync_api import sync_playwright
 
     if find() is None:

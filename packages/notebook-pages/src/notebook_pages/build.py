@@ -1,4 +1,4 @@
-"""``python -m notebook_pages.build``: build the book, and accept nothing less than all of it."""
+"""``python -m notebook_pages.build``: build the book, and fail unless all of it was built."""
 
 import shutil
 import subprocess
@@ -11,11 +11,11 @@ import yaml
 from . import unchanged
 from .paths import BUILD, HTML, contents, exam_edition, let_everybody_read, pages
 
-EXAM_CONTENTS = BUILD / "_toc.yml"  # what is in an exam edition
+EXAM_CONTENTS = BUILD / "_toc.yml"  # the contents of an exam edition
 
 
 def missing_pages():
-    """Pages that did not come out as real HTML with a title of their own."""
+    """Return the pages that did not become real HTML with a title of their own."""
     files = {page: HTML / f"{page}.html" for page in pages()}
     return [
         page
@@ -31,9 +31,7 @@ def forget_site():
 
 
 def contents_of_this_edition():
-    """What Jupyter Book is told of the contents; of an edition that was
-    built before, nothing is left over.
-    """
+    """Choose the table of contents of this edition, and remove what another edition left behind."""
     if EXAM_CONTENTS.exists() != exam_edition():
         forget_site()
     EXAM_CONTENTS.unlink(missing_ok=True)
@@ -47,8 +45,8 @@ def contents_of_this_edition():
 def make_pages():
     """Run the command ``jupyter-book`` and return its exit code.
 
-    It runs in this process, which has loaded the same packages, and goes on to use
-    what it finds out of the notebooks.
+    It runs in this process, which has already loaded the same packages, and which can reuse what it
+    learns about the notebooks.
     """
     from jupyter_book.cli.main import main as jupyter_book
 
@@ -69,7 +67,7 @@ def main():
     if unchanged.is_unchanged(made_from):
         print(f"Nothing has changed since the last build: {HTML / 'index.html'}")
         return
-    # These imports load Sphinx, so do them only if there is something to build.
+    # These imports load Sphinx, so import them only if there is something to build.
     from . import install, lite, whole_book
 
     print("Building the book ...", flush=True)
@@ -83,8 +81,8 @@ def main():
         print("These pages are missing from the build:", ", ".join(missing), file=sys.stderr)
         code = 1
     if code:
-        # Sphinx warns about a page only when it reads it. Without this, a second try would find
-        # nothing to do and call the same faulty book built.
+        # Sphinx warns about a page only when it reads it. Without this, a second build would find
+        # nothing to do and would report success for the same faulty book.
         forget_site()
         sys.exit("The book could not be built: see the warnings above.")
     lite.write(HTML)

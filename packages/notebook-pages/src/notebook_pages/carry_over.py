@@ -1,10 +1,9 @@
-"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: let tabs that
-show the edition published last go on.
+"""``python -m notebook_pages.carry_over PREVIOUS [SITE]``: keep old tabs working.
 
-A page that is open asks, when its code first runs, for files named by their content. ``PREVIOUS``,
-the address or the folder at which the last edition is published, lists them (``lasting.json``):
-those that ``SITE``, about to be published there, has not are put beside its own. Of the edition
-before that nothing is kept: such a page says that it is to be loaded anew.
+When its code first runs, an open page requests files that are named by their content. ``PREVIOUS``,
+the address or the folder of the edition published last, lists them (``lasting.json``). Those that
+``SITE``, about to be published there, lacks are copied into it. Files of the edition before that
+are not kept: such a page asks its reader to reload it.
 """
 
 import json
@@ -22,8 +21,9 @@ PATIENCE = 60  # seconds
 
 
 def reader(previous: str) -> Callable[[str], bytes | None]:
-    """What gives a file of the last edition by its path: its bytes,
-    or ``None`` where there is none.
+    """Return a function that reads a file of the last edition by its path.
+
+    It returns the bytes, or ``None`` if there is no such file.
     """
     if "://" not in previous:
         return lambda path: (
@@ -50,11 +50,10 @@ def reader(previous: str) -> Callable[[str], bytes | None]:
 
 
 def carry_over(previous: str, site: Path = HTML) -> list[str] | None:
-    """Put into ``site`` what the edition at ``previous`` names by its
-    content; return the paths, or ``None``.
+    """Copy the files that the edition at ``previous`` names by their content into ``site``.
 
-    ``None`` means that nothing is published there, or no list: it
-    is the first edition that has one.
+    Returns their paths, or ``None`` if nothing is published there or it has no list, as is the case
+    before the first edition that has one.
     """
     read = reader(previous)
     listed = read(LASTING)

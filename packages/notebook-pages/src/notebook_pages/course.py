@@ -1,9 +1,8 @@
-"""The site of a course: its exercises as pages whose cells run and
-whose answers are checked in the page.
+"""The site of a course: its exercises as pages whose cells run and whose answers are checked there.
 
-What makes courses offers what it has as files (notebooks, wheels, the archive for students), by the
-entry point ``coursework.pages``, and knows nothing of pages; here nothing is known of questions. A
-book is written for these files in a workshop, and built.
+The package that makes courses offers its files (notebooks, wheels, the archive for students) by the
+entry point ``coursework.pages`` and knows nothing about pages; this module knows nothing about
+questions. It writes a book for these files in a workshop folder and builds it.
 """
 
 import json
@@ -16,10 +15,10 @@ from pathlib import Path
 
 import nbformat
 
-#: What the pages of a book here are made with, where this is a working copy.
+# The source of this package, if this is a working copy.
 WORKING_COPY = Path(__file__).resolve().parents[4]
 SETTINGS = Path(__file__).with_name("course.yml")
-#: Of what is handed over: see ``parts_of`` in ``coursework.authoring.publish``.
+# The format of the parts: see ``parts_of`` in ``coursework.authoring.publish``.
 FORMAT = 1
 INDEX = """# {title}
 
@@ -39,9 +38,9 @@ def publish(parts, workshop, site):
     Raises
     ------
     ValueError
-        The parts are of another format.
+        The parts have another format.
     RuntimeError
-        The pages were not made; what was printed says why.
+        The pages could not be made; the printed messages say why.
     """
     if parts["format"] != FORMAT:
         raise ValueError(
@@ -78,7 +77,7 @@ def _places(packages):
 
 
 def write_book(parts, workshop):
-    """Write the sources of the site; what an earlier build has left for the next one stays."""
+    """Write the sources of the site, and keep what an earlier build left for the next one."""
     workshop.mkdir(parents=True, exist_ok=True)
     for outdated in ("exercises", "packages", "wheels"):
         shutil.rmtree(workshop / outdated, ignore_errors=True)
@@ -113,8 +112,9 @@ def write_book(parts, workshop):
 
 
 def _wheel_table(wheel, workshop):
-    """What the book says of a wheel; its packages lie unpacked in the
-    workshop, where cells are tried before.
+    """Return the book's settings for a wheel.
+
+    Its packages are unpacked in the workshop, where the build tries the cells.
     """
     shutil.copy(wheel, workshop / "wheels")
     with zipfile.ZipFile(wheel) as box:
@@ -137,7 +137,7 @@ def _name(title):
 
 
 def title_of(notebook):
-    """The heading of a notebook, or else its name."""
+    """Return the heading of a notebook, or its name if it has none."""
     for cell in nbformat.read(notebook, as_version=4).cells:
         if cell.cell_type == "markdown" and cell.source.startswith("# "):
             return cell.source.splitlines()[0].removeprefix("# ").strip()

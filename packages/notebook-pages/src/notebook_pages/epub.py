@@ -1,7 +1,7 @@
-"""The whole book as an EPUB 3: pages that flow, formulas in MathML, drawings with their words.
+"""The whole book as an EPUB 3, with formulas in MathML and drawings with text descriptions.
 
-It is made from the built pages, as the PDF is, by the same steps; a
-reading program sets the formulas itself.
+It is made from the built pages by the same steps as the PDF; the reading program sets the formulas
+itself.
 """
 
 import io
@@ -18,7 +18,7 @@ from .spoken import spoken
 
 STYLE = WEBSITE / "epub.css"
 MATHML, SVG = "http://www.w3.org/1998/Math/MathML", "http://www.w3.org/2000/svg"
-#: An HTML parser writes all names in lower case, but in XML these have capitals.
+# HTML parsers write all names in lower case, but in XML these have capitals.
 CAPITALS = {
     name.lower(): name
     for name in """
@@ -86,7 +86,7 @@ it shows.</meta>
 
 
 def as_mathml(formula):
-    """A formula for reading programs: its MathML, and its words for those that know none."""
+    """Return the MathML of a formula, and its words for programs that do not support it."""
     math = formula.select_one("math").extract()
     math["alttext"] = spoken(math)
     # Of the bold letters, reading programs know only those that are characters of their own.
@@ -97,12 +97,13 @@ def as_mathml(formula):
 
 
 def written_out(styles):
-    """Style sheets with each ``:is(...)`` in full: older reading programs do not
-    know it, nor does their checker.
+    """Return the style sheets with each ``:is(...)`` written out.
+
+    Older reading programs do not know this selector, and neither does their checker.
     """
     return re.sub(
         r"([^{},]*):is\(([^()]*)\)([^{},]*)",
-        lambda found: ",".join(found[1] + one + found[3] for one in found[2].split(",")),
+        lambda match: ",".join(match[1] + selector + match[3] for selector in match[2].split(",")),
         styles,
     )
 
@@ -125,10 +126,10 @@ def in_xml(text):
         element.name = CAPITALS.get(element.name, element.name)
         if element.name in ("svg", "math"):
             element["xmlns"] = SVG if element.name == "svg" else MATHML
-        kept = {}
+        attributes = {}
         for name, value in element.attrs.items():
             words = " ".join(value) if isinstance(value, list) else value
-            # Attributes that only scripts and the site's styles use.
+            # These attributes are used only by scripts and by the site's styles.
             if name.startswith(("data-", "on")) or name in (
                 "tabindex",
                 "translate",
@@ -139,8 +140,8 @@ def in_xml(text):
                 continue
             if name in ("width", "height") and element.name in ("col", "table", "td", "th"):
                 continue
-            kept[CAPITALS.get(name, name)] = words
-        element.attrs = kept
+            attributes[CAPITALS.get(name, name)] = words
+        element.attrs = attributes
     return text
 
 
@@ -167,7 +168,7 @@ def files(site, title, author):
             elif home[name] != page:
                 link["href"] = f"{place(home[name])}.xhtml#{name}"
             elif name not in here:
-                # Its target was for a screen only.
+                # The target of this link exists only on the screen.
                 link.unwrap()
         body = str(text)
         properties = [
@@ -216,7 +217,7 @@ def files(site, title, author):
 
 
 def make(site, title, author):
-    """The bytes of the EPUB of the built book in ``site``; the same for the same book."""
+    """Return the EPUB of the built book in ``site`` as bytes, reproducible for the same book."""
     date = moment_of_sources().timetuple()[:6]
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:

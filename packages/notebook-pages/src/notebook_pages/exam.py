@@ -1,8 +1,8 @@
-"""The exam edition: the book without worked solutions, and without a sentence that leads to one.
+"""The exam edition: the book without worked solutions, and without sentences that lead to one.
 
-``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The pages of
-solutions are left out of the contents (see :mod:`notebook_pages.paths`), so that nothing is made of
-them; here the sentences that refer to them go.
+``exam_edition: true`` in ``_config.yml`` makes it, or BOOK_EXAM=1 for one build. The contents leave
+out the pages of solutions (see :mod:`notebook_pages.paths`), so that nothing is made of them. This
+module removes the sentences that refer to them.
 """
 
 import re
@@ -14,10 +14,10 @@ from sphinx.config import Config
 
 from .paths import exam_edition, is_solutions
 
-#: Between two sentences of a paragraph.
+# The space between two sentences of a paragraph.
 BETWEEN = re.compile(r"(?<=[.!?])\s+")
-#: The label of a worked solution begins like this. The whole label of a page of them looks like
-#: this.
+# The label of a worked solution begins like this; the label of a page of solutions matches it
+# completely.
 LABEL = re.compile(r"solutions?(?:-|$)")
 
 
@@ -30,39 +30,37 @@ def leads_to_solution(node: nodes.Node) -> bool:
 
 
 def sentences(paragraph: nodes.paragraph) -> list[list[nodes.Node]]:
-    """The children of ``paragraph`` by sentence: lists of nodes, text cut where a sentence ends."""
-    found: list[list[nodes.Node]] = [[]]
+    """Return the children of ``paragraph`` by sentence, with text nodes split between sentences."""
+    by_sentence: list[list[nodes.Node]] = [[]]
     for child in paragraph.children:
         if not isinstance(child, nodes.Text):
-            found[-1].append(child)
+            by_sentence[-1].append(child)
             continue
         for place, piece in enumerate(BETWEEN.split(child.astext())):
             if place:
-                found.append([])
+                by_sentence.append([])
             if piece:
-                found[-1].append(nodes.Text(piece))
-    return [sentence for sentence in found if sentence]
+                by_sentence[-1].append(nodes.Text(piece))
+    return [sentence for sentence in by_sentence if sentence]
 
 
 def without_solutions(paragraph: nodes.paragraph) -> None:
-    """Take the sentences that lead to a solution out of ``paragraph``; the
-    whole of it, if no other is left.
-    """
-    kept = [
+    """Remove the sentences that lead to a solution from ``paragraph``, or all if none remains."""
+    remaining = [
         sentence
         for sentence in sentences(paragraph)
         if not any(leads_to_solution(node) for child in sentence for node in child.findall())
     ]
-    if not kept:
+    if not remaining:
         paragraph.parent.remove(paragraph)
         return
     paragraph.clear()
-    for place, sentence in enumerate(kept):
+    for place, sentence in enumerate(remaining):
         paragraph += [*([nodes.Text(" ")] if place else []), *sentence]
 
 
 def strip(app: Sphinx, doctree: nodes.document) -> None:
-    """Leave in a page nothing that leads to a solution."""
+    """Remove everything that leads to a solution from a page."""
     for paragraph in list(doctree.findall(nodes.paragraph)):
         if any(leads_to_solution(node) for node in paragraph.findall()):
             without_solutions(paragraph)
@@ -70,7 +68,7 @@ def strip(app: Sphinx, doctree: nodes.document) -> None:
 
 def begin(app: Sphinx, config: Config) -> None:
     if exam_edition():
-        # Do this before other extensions record the references of a page.
+        # Run this before other extensions record the references of a page.
         app.connect("doctree-read", strip, priority=100)
 
 

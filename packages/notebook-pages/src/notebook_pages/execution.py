@@ -1,9 +1,8 @@
-"""Run the notebooks once, side by side, and again when their code
-or something that they use changes.
+"""Run the notebooks in parallel, and again when their code or anything that they use changes.
 
-The key of jupyter-cache is the code in the cells. A change in ``src/orientation`` would leave it,
-and every stored output, as it was; so a run is thrown away when what the notebook uses is no longer
-what it was run with. A changed sentence runs nothing.
+The key of jupyter-cache is the code in the cells, so it does not notice a change in
+``src/orientation`` and would keep every stored output. We therefore delete a run when the files
+that the notebook uses have changed since. A changed sentence runs nothing.
 """
 
 import json
@@ -18,8 +17,8 @@ from .paths import WEBSITE, fingerprint
 from .used import fingerprint_of_used, notebook_of
 from .warm_kernels import WarmAsyncKernelManager
 
-#: These notebooks are shown as they were released, and the tests run them; see ``execute`` in
-#: _config.yml.
+# These notebooks are shown as they were released, and the tests run them; see ``execute`` in
+# _config.yml.
 STORED = "exercises/"
 #: This file beside the cache lists the files that each notebook used when it ran.
 NOTES = "made-with.json"
@@ -32,8 +31,7 @@ def name_cache(app, config):
 
 
 def throw_away_old_runs(paths, folder):
-    """Take out of the cache in ``folder`` all runs of those notebooks
-    that use what has changed since.
+    """Delete the runs of those notebooks that use changed files from the cache in ``folder``.
 
     Returns the paths of those notebooks.
     """
@@ -46,15 +44,15 @@ def throw_away_old_runs(paths, folder):
         if record.uri in changed:
             cache.remove_cache(record.pk)
     notes.parent.mkdir(parents=True, exist_ok=True)
-    # Write this only after deleting the runs, so that an interruption leaves none that is out of
-    # date.
+    # Write this only after deleting the runs, so that an interruption leaves no outdated run.
     notes.write_text(json.dumps(made_with | now), "utf8")
     return changed
 
 
 def pages_to_read_again(app, env, added, changed, removed):
-    """The pages whose notebooks use what has changed; Sphinx finds by itself
-    those that have changed themselves.
+    """Return the pages whose notebooks use changed files.
+
+    Sphinx itself finds the pages that have changed.
     """
     if env.mystnb_config.execution_mode != "cache":
         return []
@@ -69,7 +67,7 @@ def pages_to_read_again(app, env, added, changed, removed):
 
 
 class Worker(ExecutionWorkerLocalMProc):
-    """As jupyter-cache runs a notebook, in a kernel that is there at once."""
+    """Run a notebook as jupyter-cache does, but in a kernel that starts at once."""
 
     @staticmethod
     def execute(project_nb, data):
@@ -104,7 +102,7 @@ def run_side_by_side(app, env, docnames):
             if cache.get_cached_project_nb(record.uri) is None:
                 records.append(record)
     if len(records) > 1:
-        # A cell that fails is not cached: MyST-NB meets it again and reports it.
+        # Cells that fail are not cached: MyST-NB runs them again and reports the failure.
         Executor(cache).run_and_cache(
             filter_pks=[record.pk for record in records],
             timeout=env.mystnb_config.execution_timeout,

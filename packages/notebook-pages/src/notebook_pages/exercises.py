@@ -1,6 +1,4 @@
-"""Exercises: how hard each is and how long it takes, and the way to the
-checked questions of a chapter and back.
-"""
+"""Mark exercises with their difficulty and duration, and link chapters with their questions."""
 
 from docutils import nodes
 from docutils.parsers.rst import directives
@@ -29,18 +27,18 @@ class MarkedExercise(ExerciseDirective):
 
     def run(self):
         level, minutes = self.options.pop("difficulty", None), self.options.pop("minutes", None)
-        found = super().run()
+        nodes_of_exercise = super().run()
         if level and minutes:
             words = f"Difficulty {level} of {HARDEST}, about {minutes} minutes"
-            (exercise,) = [node for node in found if isinstance(node, nodes.Admonition)]
+            (exercise,) = [node for node in nodes_of_exercise if isinstance(node, nodes.Admonition)]
             exercise.insert(
                 1, nodes.paragraph("", words, classes=["effort", f"difficulty-{level}"])
             )
-        return found
+        return nodes_of_exercise
 
 
 def lead_on(app, doctree):
-    """A chapter ends with the way to its checked questions; their page begins with the way back."""
+    """End a chapter with a link to its checked questions, and begin their page with a link back."""
     page = app.env.docname
     if (whole := next(doctree.findall(nodes.section), None)) is None:
         return
@@ -58,7 +56,7 @@ def lead_on(app, doctree):
 
 
 def name_nothing_twice(app, doctree, page):
-    """Sphinx-exercise gives the text of every exercise, and of every solution, the same name."""
+    """Remove the IDs that sphinx-exercise gives to the texts of all exercises alike."""
     for section in doctree.findall(nodes.section):
         if section["ids"] in (["exercise-content"], ["solution-content"]):
             section["ids"] = []
@@ -70,7 +68,7 @@ def chapter_of(app, page):
 
 
 def reference(page, target, words):
-    """A link to another page, which Sphinx resolves."""
+    """Return a link to another page, which Sphinx resolves."""
     return addnodes.pending_xref(
         "", nodes.inline("", words), refdomain="std", reftype="doc", refdoc=page,
         reftarget=f"/{target}", refexplicit=True, refwarn=True,

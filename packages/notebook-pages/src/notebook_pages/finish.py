@@ -1,11 +1,10 @@
-"""The last pass over the built pages: what can be written into them only when everything is there.
+"""The last pass over the built pages, for what can be written only when everything is there.
 
-- The address of each script and style carries a version, made of its contents: no cache mixes old
-  ones with new pages.
-- Each page names the policy by which it lives (Content-Security-Policy): what the browser may load,
-  and from where.
-- Pages with code say what it weighs to start Python.
-- No line begins with blanks, outside of programs: they are two kilobytes of a chapter.
+- The address of each script and style carries a version, a hash of its content, so that no cache
+  mixes old scripts with new pages.
+- Each page states its Content-Security-Policy: what the browser may load, and from where.
+- Pages with code say how large the download of Python is.
+- Indentation is removed outside code, which saves two kilobytes of a chapter.
 """
 
 import base64
@@ -22,15 +21,14 @@ VERSIONED = re.compile(
     r'(<(?:script|link)\b[^>]*?\s(?:src|href)=")([^"?#:]+\.(?:js|css|svg|png|webmanifest))(?:\?v=\w*)?"'
 )
 INLINE = re.compile(r"<script(?: [^>]*)?>(.*?)</script>", re.DOTALL)
-#: Code, and fields that a reader writes in, keep their blanks; then the blanks at the beginning of
-#: a line.
+# Match code and text areas, which keep their white space, or else the indentation of a line.
 INDENTED = re.compile(r"(<(pre|textarea)\b.*?</\2>)|\n\s+", re.DOTALL)
 CHARSET = re.compile(
     r'(<meta charset="utf-8" ?/?>)(?:<meta http-equiv="Content-Security-Policy"[^>]*>)?'
 )
-#: Allow styles in the HTML because KaTeX and the drawings place their parts with them. Allow only
-#: the scripts that the build has written, each by its fingerprint. `blob:` is for results of cells
-#: that the reader has run.
+# Allow styles in the HTML because KaTeX and the drawings place their parts with them. Allow only
+# the scripts that the build has written, each by its hash. `blob:` is for results of cells that the
+# reader has run.
 POLICY = {
     "default-src": "'self'",
     "script-src": "'self' 'wasm-unsafe-eval' blob:",
@@ -46,9 +44,7 @@ POLICY = {
 
 
 def pages_of(site):
-    """The pages of the book in ``site``; notebooks in ``lite`` are not pages, nor
-    figures for other people's pages.
-    """
+    """Return the pages of the book in ``site``, without notebooks and embeddable figures."""
     return [
         path
         for path in sorted(site.rglob("*.html"))
@@ -57,7 +53,7 @@ def pages_of(site):
 
 
 def policy(text, elsewhere):
-    """The policy of the page ``text``, whose Python may fetch from ``elsewhere``."""
+    """Return the policy of the page ``text``, whose Python may fetch from ``elsewhere``."""
     scripts = [
         match[1] for match in INLINE.finditer(text) if "src=" not in match[0].partition(">")[0]
     ]
@@ -92,8 +88,8 @@ def write(site):
         before = page.read_text("utf8")
 
         def with_version(match, folder=page.parent):
-            found = version(Path(posixpath.normpath(folder / match[2])))
-            return f'{match[1]}{match[2]}?v={found}"' if found else match[0]
+            fingerprint = version(Path(posixpath.normpath(folder / match[2])))
+            return f'{match[1]}{match[2]}?v={fingerprint}"' if fingerprint else match[0]
 
         text = VERSIONED.sub(with_version, before)
         text = INDENTED.sub(lambda match: match[1] or "\n", text)

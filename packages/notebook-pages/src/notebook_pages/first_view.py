@@ -1,9 +1,9 @@
-"""What a page shows first, and what comes later.
+"""Decide which blocks of a page are laid out first, and which later.
 
-Most of the work of opening a long page is to lay out what nobody sees yet. The build marks the
-blocks below the first view with the class ``later``; layout.html has the browser leave them alone
-until they are near the screen, and book.js takes the marks off, a few blocks at a time, as soon as
-the first view stands: then the page is what it always was.
+Most of the work of opening a long page is the layout of blocks that nobody sees yet. The build
+marks the blocks below the first view with the class ``later``. layout.html has the browser skip
+them until they are near the screen, and book.js removes the marks, a few blocks at a time, as soon
+as the first view is shown.
 """
 
 import re
@@ -12,14 +12,14 @@ from docutils import nodes
 from sphinx import addnodes
 
 LATER = "later"
-#: The start of a block with this mark. The word alone also occurs in sentences.
+# The start of a block with this mark. The word alone also occurs in sentences.
 MARKED = re.compile(rf'class="(?:[^"]* )?{LATER}(?: [^"]*)?"')
-#: More characters than the first view of a large screen can show, and the number that a large block
-#: counts for.
+# More characters than the first view of a large screen can show, and the number that a large block
+# counts for.
 FIRST_VIEW, LARGEST = 3200, 800
-#: The characters of one line, the least that a block counts for.
+# The characters of one line, which is the least that a block counts for.
 LINE = 80
-#: Elements without a box of their own, or whose box cannot be left empty.
+# Elements without a box of their own, or whose box cannot be left empty.
 WITHOUT_BOX = (
     nodes.title,
     nodes.raw,
@@ -32,7 +32,7 @@ WITHOUT_BOX = (
 
 
 def blocks_of(doctree):
-    """The blocks of a page, in their order: what stands in its sections."""
+    """Iterate over the blocks in the sections of a page, in order."""
     for block in doctree.findall(nodes.Element):
         if isinstance(block.parent, nodes.section) and not isinstance(block, WITHOUT_BOX):
             yield block
@@ -49,9 +49,9 @@ def mark(app, doctree, docname):
 
 
 def first_part(body):
-    """The HTML of a page up to the first block below the first view."""
+    """Return the HTML of a page up to the first block below the first view."""
     return MARKED.split(body, maxsplit=1)[0]
 
 
 def setup(app):
-    app.connect("doctree-resolved", mark, priority=990)  # after all that changes what a page holds
+    app.connect("doctree-resolved", mark, priority=990)  # after every change to the page's content

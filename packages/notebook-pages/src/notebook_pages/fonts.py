@@ -1,10 +1,10 @@
-"""The typefaces, cut down to what pages use, and the rules by which pages find them.
+"""The typefaces, reduced to the characters that pages use, and the CSS rules that load them.
 
-Each face is a file of its own, with its fingerprint in its name. The rules stand in the page
-itself, so that the files are asked for at once, and no style sheet waits for them. What a face
-lacks comes from the whole of it, fetched only when a page has such a sign. Until the typefaces are
-there, which layout.html awaits for a moment, the text stands in the reader's own, made as wide as
-the book's.
+Each face is a file of its own, with a hash in its name. The rules are in the page itself, so that
+the browser requests the files at once without waiting for a style sheet. Characters that a reduced
+face lacks come from the whole face, which is fetched only when a page has such a character. Until
+the typefaces arrive, for which layout.html waits a moment, the text is set in the reader's own,
+scaled to the same width.
 """
 
 import io
@@ -22,8 +22,8 @@ from .paths import NODE_MODULES, fingerprint
 KATEX = NODE_MODULES / "katex" / "dist"
 SERIF = NODE_MODULES / "@fontsource" / "source-serif-4" / "files"
 SANS = NODE_MODULES / "@fontsource-variable" / "source-sans-3" / "files"
-#: Characters of the text: those that the book uses, and a few more. A page with any other character
-#: fetches the whole face.
+# Characters of the text: those that the book uses, and a few more. A page with any other character
+# fetches the whole face.
 LATIN = (
     "U+20-7E,U+A0,U+A9,U+B0-B2,U+B5,U+B7,U+D7,U+E0,U+E4,U+E8-E9,U+F6,U+F8,U+FC,U+2009,U+2013-2014,U+2018-2019,"
     "U+201C-201D,U+2026,U+202F,U+2032,U+2212"
@@ -61,8 +61,8 @@ FACES = (
     *((f"KaTeX_Size{n}", "400", "normal", _katex(f"Size{n}-Regular"), None, False)
       for n in (1, 2, 3, 4)),
 )  # fmt: skip
-#: Use the reader's own typefaces until the book's have arrived, scaled to the same average width of
-#: English text.
+# Use the reader's own typefaces until the book's have arrived, scaled to the same average width of
+# English text.
 UNTIL_THEN = {
     "Georgia": 106.7, "Noto Serif": 98.9, "DejaVu Serif": 92.9, "Times New Roman": 117,
     "Roboto": 94, "Arial": 93.8, "DejaVu Sans": 82.5,
@@ -72,15 +72,16 @@ FEATURES = ["kern", "liga", "mark", "mkmk", "ccmp", "locl", "tnum"]
 
 
 def codes(signs):
-    """The numbers that a ``unicode-range`` names."""
+    """Iterate over the code points that a ``unicode-range`` names."""
     for part in re.findall(r"U\+([0-9A-F]+(?:-[0-9A-F]+)?)", signs):
         first, _, last = part.partition("-")
         yield from range(int(first, 16), int(last or first, 16) + 1)
 
 
 def beyond(file, signs, seldom):
-    """The ``unicode-range`` of what ``file`` has beyond ``signs``: of
-    ``seldom``, or of all that is in it.
+    """Return the ``unicode-range`` of the characters of ``file`` beyond ``signs``.
+
+    It is limited to ``seldom``, if that is given.
     """
     left = sorted(
         (set(codes(seldom)) if seldom else set(TTFont(file).getBestCmap())) - set(codes(signs))
@@ -91,9 +92,7 @@ def beyond(file, signs, seldom):
 
 
 def cut(file, signs, weights):
-    """The bytes of the face ``file`` with ``signs`` alone; of one
-    that varies, with those ``weights``.
-    """
+    """Return the face ``file`` as bytes, with only ``signs`` and, if variable, only ``weights``."""
     from fontTools import subset
     from fontTools.varLib import instancer
 
@@ -110,7 +109,7 @@ def cut(file, signs, weights):
         font = instancer.instantiateVariableFont(
             TTFont(whole), {"wght": tuple(map(int, weights.split()))}
         )
-    # Make the same bytes each time.
+    # Keep the dates, so that the bytes are the same each time.
     font["head"].modified = font["head"].created
     font.recalcTimestamp = False
     font.flavor = "woff2"
@@ -121,7 +120,7 @@ def cut(file, signs, weights):
 
 @cache
 def cut_faces():
-    """The folder with all faces cut; made once for each version of them, for it takes seconds."""
+    """Return the folder with all reduced faces, made once for each version to save seconds."""
     folder = (
         NODE_MODULES
         / ".cache"
@@ -138,14 +137,12 @@ def cut_faces():
 
 @cache
 def files():
-    """What is to stand in the folder of fonts: for each name
-    there, the file that it is a copy of.
-    """
-    found = {}
+    """Return the source file of each file in the folder of fonts, by name."""
+    copies = {}
     for _, _, _, file, _, whole in FACES:
         for source in (cut_faces() / file.name, *([file] if whole else [])):
-            found[f"{file.stem}-{sha256(source.read_bytes()).hexdigest()[:8]}.woff2"] = source
-    return found
+            copies[f"{file.stem}-{sha256(source.read_bytes()).hexdigest()[:8]}.woff2"] = source
+    return copies
 
 
 def name_of(source):
@@ -162,7 +159,7 @@ def face_rule(folder, family, weight, style, source, reach):
 
 @cache
 def face_rules(folder):
-    """The rules for the page, whose fonts stand in ``folder``."""
+    """Return the rules for a page whose fonts are in ``folder``."""
     rules = [
         face_rule(folder, family, weight, style, cut_faces() / file.name, signs if whole else None)
         for family, weight, style, file, signs, whole in FACES
@@ -175,8 +172,9 @@ def face_rules(folder):
 
 
 def whole_face_rules(folder):
-    """The rules for a sheet from which the fonts stand in ``folder``: the whole
-    faces, for what the cut ones lack.
+    """Return the rules of the whole faces, for characters that the reduced ones lack.
+
+    ``folder`` is the folder of the fonts as seen from the style sheet.
     """
     return "\n".join(
         face_rule(
@@ -193,8 +191,9 @@ def whole_face_rules(folder):
 
 
 def katex_rules(folder):
-    """KaTeX's rules, without those that the page itself has, for a sheet from
-    which the fonts stand in ``folder``.
+    """Return KaTeX's rules without those that the page itself has.
+
+    ``folder`` is the folder of the fonts as seen from the style sheet.
     """
     known = {face[3].name for face in FACES}
 
@@ -208,7 +207,7 @@ def katex_rules(folder):
     rules = re.sub(r"@font-face\{[^}]*\}", rule, (KATEX / "katex.min.css").read_text("utf8"))
     if any(name.startswith("KaTeX") for name in known):
         raise RuntimeError("KaTeX's style sheet no longer names its fonts as expected")
-    # KaTeX has not used these for years.
+    # KaTeX no longer uses these classes.
     return re.sub(r"\.katex \.fontsize-ensurer[\w.-]+,", "", rules)
 
 
@@ -227,8 +226,8 @@ def write(app):
             shutil.copyfile(source, folder / name)
 
 
-#: Marks in the HTML of a part of a page which show that it uses a face. Faces that are not listed
-#: here are on every page.
+# Patterns in the HTML of a part of a page which show that it uses a face. Faces that are not listed
+# here are on every page.
 SEEN_BY = {
     ("Source Serif 4", "400", "italic"): r"<(?:em|cite|dfn)\b",
     ("KaTeX_Main", "400", "normal"): r"class=katex\b",
@@ -243,12 +242,12 @@ SEEN_BY = {
 
 
 def faces_in(html):
-    """The faces in which ``html`` is set."""
+    """Return the faces that ``html`` uses."""
     return [face for face in FACES if re.search(SEEN_BY.get(face[:3], ""), html)]
 
 
 def add_to_head(app, pagename, templatename, context, doctree):
-    """Give the page its rules, and what is to be fetched at once: the faces of its first view."""
+    """Give the page its font rules, and preload the faces of its first view."""
     folder = context["pathto"](str(FOLDER), 1)
     body = context.get("body", "")
     context["font_faces"] = face_rules(folder)

@@ -1,10 +1,9 @@
-"""What lets readers keep the book in their browser, or install it as an app:
-by choice, and with its size told.
+"""Let readers keep the book in their browser or install it as an app, after stating its size.
 
-``manifest.webmanifest`` and two icons make the site installable; ``offline.json`` lists what there
-is to keep (the pages, and Python), each file with a fingerprint and its bytes. The rest is
-live/js/keep.js, editions.js and service-worker.js. ``lasting.json`` lists the files that are named
-by their content: where the next edition is published they stay, for the tabs that are open then
+``manifest.webmanifest`` and two icons make the site installable. ``offline.json`` lists the files
+to keep (the pages, and Python), each with a hash and its size. The rest is done by live/js/keep.js,
+editions.js and service-worker.js. ``lasting.json`` lists the files that are named by their content:
+they stay where the next edition is published, for tabs that are still open then
 (:mod:`notebook_pages.carry_over`).
 """
 
@@ -20,8 +19,8 @@ LIST = "offline.json"
 LASTING = "lasting.json"
 WORKER = "service-worker.js"
 MANIFEST = "manifest.webmanifest"
-#: A path that contains a hash of the content, in our folders and in the names that JupyterLite
-#: gives to its scripts.
+# A path that contains a hash of the content, in our folders and in the names that JupyterLite gives
+# to its scripts.
 BY_CONTENT = re.compile(
     r"runtime/(?:(?:scripts|pyodide|sealed|lock)-|wheels/)[0-9a-f]{12}/.+|lite/.+\.[0-9a-f]{8,20}\.[a-z0-9]+"
 )
@@ -30,13 +29,12 @@ KEPT = {".html", ".js", ".css", ".woff2", ".svg", ".png", ".webmanifest", ".ipyn
 
 
 def icon(size, drawing):
-    """The book's icon as a picture of ``size`` by ``size`` pixels: the lines of
-    ``drawing``, the SVG of the favicon.
-    """
+    """Draw the book's icon, ``size`` pixels square, from the lines of the SVG ``drawing``."""
     from PIL import Image, ImageDraw
 
     scale = 4 * size / 32  # four times as large, for smooth edges
-    picture = Image.new("RGB", (4 * size, 4 * size), "white")  # whoever shows it cuts its corners
+    # Leave the corners square, because each system cuts them in its own way.
+    picture = Image.new("RGB", (4 * size, 4 * size), "white")
     pencil = ImageDraw.Draw(picture)
     width = float(re.search(r'stroke-width="([\d.]+)"', drawing)[1]) * scale
     for x, y, command, ends, colour in re.findall(
@@ -75,7 +73,7 @@ def write_manifest(site, title):
 
 
 def write_list(site):
-    """Write what a reader may keep of the finished site, in two parts: ``book`` and ``python``."""
+    """Write the list of files that a reader may keep, in two parts: ``book`` and ``python``."""
     packages = json.loads((site / FOLDER / LOCK).read_text("utf8"))["packages"].values()
     wheels = [
         site / FOLDER / package["file_name"]
@@ -112,8 +110,8 @@ def write_list(site):
     (site / LASTING).write_text(
         json.dumps([path for path in paths if BY_CONTENT.fullmatch(path)]), "utf8"
     )
-    # The service worker of a book at the root of an address also gets requests for other pages
-    # there, so tell it which belong to the book. (The build writes the script again each time.)
+    # The service worker of a book at the root of an address also receives requests for other pages
+    # there, so list what belongs to the book. The build writes the script again each time.
     ours = sorted({path.partition("/")[0] for path in (*paths, LASTING)} - {"lite", WORKER})
     script = re.sub(r"^self\.bookHolds=[^;\n]*;\n", "", (site / WORKER).read_text("utf8"))
     (site / WORKER).write_text(f"self.bookHolds={json.dumps(ours)};\n{script}", "utf8")
@@ -135,5 +133,5 @@ def finish(app, exception):
 
 def setup(app):
     app.connect("html-page-context", add_to_head)
-    # Run after page.py, which removes what no page uses.
+    # Run after page.py, which removes unused files.
     app.connect("build-finished", finish, priority=960)

@@ -1,5 +1,4 @@
-"""The lecture of a page: the steps that its author marked, each with what
-it shows and notes for the speaker.
+"""The lecture of a page: the steps that its author marked, each with speaker's notes.
 
 A mark is a comment in the text, which neither the page nor Jupyter shows::
 
@@ -8,12 +7,12 @@ A mark is a comment in the text, which neither the page nor Jupyter shows::
 
     Let them say first which arrow stays. -->
 
-The first paragraph is the line that stands beside what is shown; ``shows:`` names labels of the
-page (none, for a line alone), and without it the step shows the next figure, formula, box, table,
-list or cell. What follows an empty line is for the speaker. A page without marks is shown section
-by section: each heading with a figure, or else with its first displayed formula. A page that moves
-its own figure as it is scrolled, an essay, puts ``data-stop`` into each of the sections that are
-its steps: the heading is the line, and the text is for the speaker.
+The first paragraph is the line beside the displayed elements. ``shows:`` names labels of the page
+(none, for a line alone); without it, the step shows the next figure, formula, box, table, list or
+cell. The text after an empty line is for the speaker. A page without marks is shown section by
+section: each heading with a figure, or else with its first displayed formula. A page that animates
+its own figure as it is scrolled, an essay, has ``data-stop`` in each section that is a step: the
+heading is the line, and the text is for the speaker.
 """
 
 import re
@@ -34,7 +33,7 @@ MARK = re.compile(r"\s*<!--\s*step:\s*(?P<line>.*?)(?:\n\s*\n(?P<notes>.*?))?\s*
 SHOWS = re.compile(r"^shows:(.*)$", re.MULTILINE)
 LECTURES = "chapters/"
 STOP = re.compile(r"\bdata-stop=")
-#: Parts that an audience sees rather than hears.
+# Elements that an audience sees rather than hears.
 SHOWN = (
     nodes.figure, nodes.math_block, nodes.Admonition, nodes.table, nodes.container,
     nodes.literal_block, nodes.image, nodes.enumerated_list, nodes.bullet_list, question,
@@ -52,7 +51,7 @@ def typesetter():
 
 
 def in_words(text, whole):
-    """HTML of a line, or of the ``whole`` of some paragraphs, of Markdown with formulas."""
+    """Render a line, or the paragraphs of a ``whole`` text, from Markdown with formulas to HTML."""
     tokens = (typesetter().parse if whole else typesetter().parseInline)(text)
     for block in tokens:
         keep_punctuation(block.children or [])
@@ -60,7 +59,7 @@ def in_words(text, whole):
 
 
 def keep_punctuation(tokens):
-    """Let no line begin with the comma after a formula: it is set within the formula."""
+    """Keep the comma after a formula on its line by setting it within the formula."""
     for formula, after in pairwise(tokens):
         if formula.type == "math_inline" and after.content[:1] in (*PUNCTUATION, "?", "!"):
             formula.content += rf"\text{{{after.content[0]}}}"
@@ -68,9 +67,7 @@ def keep_punctuation(tokens):
 
 
 def name_of(node, number):
-    """An id by which the browser finds what this node has become; a cell
-    stands for the figure that it draws.
-    """
+    """Return an ID by which the browser finds this node; for a cell, that of its figure."""
     figure = next(node.findall(nodes.figure), None)
     shown = figure if figure is not None else node
     if isinstance(shown, nodes.math_block) and shown.get("label"):
@@ -81,14 +78,14 @@ def name_of(node, number):
 
 
 def labelled(doctree):
-    """The id of each label of a page, as authors write it."""
-    found = {}
+    """Return the ID of each label of a page, by the label as authors write it."""
+    ids = {}
     for node in doctree.findall(nodes.Element):
         for name in (*node.get("names", ()), *node.get("ids", ())):
-            found.setdefault(name, node["ids"][0] if node["ids"] else name)
+            ids.setdefault(name, node["ids"][0] if node["ids"] else name)
         if isinstance(node, nodes.math_block) and node.get("label"):
-            found[node["label"]] = nodes.make_id(f"equation-{node['label']}")
-    return found
+            ids[node["label"]] = nodes.make_id(f"equation-{node['label']}")
+    return ids
 
 
 def unknown(label, node):
@@ -104,7 +101,7 @@ def heading_of(node):
 
 
 def marked(doctree):
-    """Take the marks out of a page, and return their steps."""
+    """Remove the marks from a page, and return their steps."""
     marks = [(node, MARK.fullmatch(node.astext())) for node in doctree.findall(nodes.raw)]
     marks = [(node, mark) for node, mark in marks if mark]
     labels = labelled(doctree) if marks else {}
@@ -116,8 +113,8 @@ def marked(doctree):
             line = SHOWS.sub("", line)
             shows = [labels.get(label) or unknown(label, node) for label in named[1].split()]
         else:
-            following = [one for one in around[place + 1 :] if isinstance(one, SHOWN)]
-            shows = [name_of(one, number) for one in following[:1]]
+            following = [block for block in around[place + 1 :] if isinstance(block, SHOWN)]
+            shows = [name_of(block, number) for block in following[:1]]
         steps.append(
             {
                 "line": " ".join(line.split()),
@@ -132,23 +129,23 @@ def marked(doctree):
 
 
 def unmarked(doctree):
-    """Steps for a page whose author marked none: what each section shows, under its heading."""
+    """Return steps for a page without marks: each section's figures or formula, by its heading."""
     steps = []
     for section in doctree.findall(nodes.section):
         if (title := next(section.findall(nodes.title), None)) is None:
             continue
         figures = [
-            one
+            figure
             for block in section
             if not isinstance(block, nodes.section)
-            for one in block.findall(nodes.figure)
+            for figure in block.findall(nodes.figure)
         ]
         formulas = [block for block in section if isinstance(block, nodes.math_block)]
         asked = [block for block in section if isinstance(block, question) and block["predicts"]]
-        shown = [[one] for one in figures] or [[]]
+        shown = [[figure] for figure in figures] or [[]]
         shown[0] += formulas[:1]
-        for together in [*filter(None, shown), *([one] for one in asked)]:
-            shows = [name_of(one, f"{len(steps)}-{place}") for place, one in enumerate(together)]
+        for together in [*filter(None, shown), *([block] for block in asked)]:
+            shows = [name_of(node, f"{len(steps)}-{place}") for place, node in enumerate(together)]
             steps.append(
                 {"line": title.astext(), "notes": "", "shows": shows, "section": section["ids"][0]}
             )
@@ -171,7 +168,7 @@ def as_html(step):
 
 
 def add_lecture(app, pagename, templatename, context, doctree):
-    """Give the page its steps, in a template that nobody sees, and the script that shows them."""
+    """Give the page its steps, in a hidden template, and the script that shows them."""
     if doctree is None:
         return
     stops = STOP.search(context.get("body", ""))

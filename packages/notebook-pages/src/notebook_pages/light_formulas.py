@@ -1,9 +1,10 @@
-"""What KaTeX draws, said in a third of the words: formulas are most of what a page weighs.
+"""Shorten KaTeX's HTML to a third, because formulas are most of a page's size.
 
-KaTeX writes for every browser and for its own program. Here its HTML is read as a tree and written
-again with what book.css draws alike. The words of the drawing, which no screen reader hears, are
-``i`` for a box, ``var`` and ``b`` for a letter, slanted or bold, and ``s``, ``u`` and ``q`` for the
-three spaces. ``tests/pages`` compare where each letter stands with KaTeX's own, in three engines.
+KaTeX writes for every browser and for its own program. This module reads its HTML as a tree and
+writes it again for book.css, which draws it alike. The tags of the drawing, which no screen reader
+reads, are ``i`` for a box, ``var`` and ``b`` for a slanted or bold letter, and ``s``, ``u`` and
+``q`` for the three spaces. ``tests/pages`` compare the position of each letter with KaTeX's own, in
+three engines.
 """
 
 import re
@@ -33,7 +34,7 @@ class Box:
     tag: str = "i"
     classes: list = field(default_factory=list)
     style: dict = field(default_factory=dict)
-    inside: list = field(default_factory=list)  # of boxes and of text
+    inside: list = field(default_factory=list)  # boxes and text
     rest: dict = field(default_factory=dict)  # other attributes
 
     def has(self, *names):
@@ -41,7 +42,7 @@ class Box:
 
     @property
     def is_letter(self):
-        """Whether there is nothing but text in it."""
+        """Whether the box contains only text."""
         return all(isinstance(part, str) for part in self.inside)
 
     @property
@@ -51,14 +52,15 @@ class Box:
 
 @cache
 def styled():
-    """The names of classes that KaTeX's style sheet knows; it also writes many
-    that only its own program needs.
+    """Return the class names in KaTeX's style sheet.
+
+    Its HTML has many more, which only its own program needs.
     """
     return frozenset(re.findall(r"\.([a-zA-Z][\w-]*)", KATEX_STYLES.read_text("utf8")))
 
 
 def read(element):
-    """The box of an element of KaTeX's HTML."""
+    """Return the box of an element of KaTeX's HTML."""
     rest = dict(element.attrib)
     classes = [name for name in rest.pop("class", "").split() if name in styled()]
     style = dict(pair.split(":") for pair in rest.pop("style", "").split(";") if pair)
@@ -80,8 +82,9 @@ def in_em(number):
 
 
 def rows_of(table):
-    """The rows of a table of KaTeX, without their struts, and the height of
-    these, which is one in a whole table.
+    """Return the rows of a table of KaTeX without their struts, and the height of these.
+
+    The struts of a whole table have one height.
     """
     lines = table.inside[0].inside[0].inside
     struts = {line.inside[0].style["height"] for line in lines}
@@ -91,7 +94,7 @@ def rows_of(table):
 
 
 def moved(line, strut):
-    """A raised or lowered letter as one element: the strut of its row keeps the room for it."""
+    """Return a raised or lowered letter as one element; the strut of its row reserves its space."""
     place = {"top": f"{(em(line.style['top']) + em(strut)) / SMALL:.4g}em"}
     for side, usual in (("left", 0), ("right", 0.05)):
         margin = em(line.style.get(f"margin-{side}", "0em"))
@@ -101,7 +104,7 @@ def moved(line, strut):
 
 
 def hat(letter, mark, strut):
-    """A hat stands above the middle of its letter: one letter and one hat, in place of a table."""
+    """Replace the table of a letter with a hat by the letter and the hat, centred above it."""
     above = round(em(strut) + em(mark.style["top"]), 4)
     body = mark.inside[0]
     place = {"left": body.style.get("left"), "top": above and in_em(above)}
@@ -110,8 +113,9 @@ def hat(letter, mark, strut):
 
 
 def table(box, holder):
-    """A table of KaTeX, within ``holder``: a letter with a mark or an index, or
-    lines that stand at their heights.
+    """Shorten a table of KaTeX within ``holder``.
+
+    It is a letter with a mark or an index, or lines at given heights.
     """
     lines, strut = rows_of(box)
     if holder.has("msupsub") and len(lines) == 1 and lines[0].inside[0].has(*SMALLER):
@@ -124,30 +128,32 @@ def table(box, holder):
         plain = mark.inside[0].has("accent-body") and mark.inside[0].inside[0].is_letter
         if stands and plain and letter.is_letter and len(mark.inside[0].inside[0].inside[0]) == 1:
             return hat(letter, mark, strut)
-    found = Box("i", ["rows"], {} if strut == "3em" else {"--strut": strut})
+    rows = Box("i", ["rows"], {} if strut == "3em" else {"--strut": strut})
     for line in lines:
         line.inside = spread([row(part) for part in line.inside])
-        found.inside.append(line)
-    return found
+        rows.inside.append(line)
+    return rows
 
 
 def spread(boxes):
-    """The boxes of a row: what a group holds stands in its place, and what KaTeX leaves free beside
-    a fraction is the margin of the fraction."""
-    found = []
+    """Return the boxes of a row, with groups replaced by their content.
+
+    The free space that KaTeX leaves beside a fraction becomes the margin of the fraction.
+    """
+    parts = []
     for box in boxes:
-        found += spread(box.inside) if isinstance(box, Box) and box.is_group else [box]
-    free = [isinstance(box, Box) and box.classes == ["nulldelimiter"] for box in found]
-    for place, box in enumerate(found):
+        parts += spread(box.inside) if isinstance(box, Box) and box.is_group else [box]
+    free = [isinstance(box, Box) and box.classes == ["nulldelimiter"] for box in parts]
+    for place, box in enumerate(parts):
         if isinstance(box, Box) and box.classes == ["mfrac"]:
             if free[place - 1 : place] == free[place + 1 : place + 2] == [True]:
-                found[place - 1] = found[place + 1] = ""
+                parts[place - 1] = parts[place + 1] = ""
                 box.classes = ["frac"]
-    return found
+    return parts
 
 
 def row(box):
-    """A box and all that is in it, in fewer words."""
+    """Return a box and its content in their short form."""
     if not isinstance(box, Box):
         return box
     style = dict(box.style)
@@ -178,9 +184,9 @@ def row(box):
         classes = [name for name in classes if name not in ("delimsizing", "mult")]
     if "delimcenter" in classes and style == {"top": "0em"}:
         classes, style = [name for name in classes if name != "delimcenter"], {}
-    for name, (what, usual) in USUAL.items():
-        if name in classes and style.get(what) == usual:
-            del style[what]
+    for name, (property, usual) in USUAL.items():
+        if name in classes and style.get(property) == usual:
+            del style[property]
     tag = box.tag
     for name, short in (("mathnormal", "var"), ("mathbf", "b")):
         if classes == [name] and box.is_letter:
@@ -191,10 +197,10 @@ def row(box):
         and inside[0].classes in (["script"], ["hat"])
     ):
         return inside[0]
-    found = Box(tag, classes, style, inside, box.rest)
-    if tag == "i" and (found.is_group or ROWS & set(classes)):
-        found.inside = spread(inside)
-    return found
+    written = Box(tag, classes, style, inside, box.rest)
+    if tag == "i" and (written.is_group or ROWS & set(classes)):
+        written.inside = spread(inside)
+    return written
 
 
 def walk(box):
@@ -211,26 +217,27 @@ def attribute(name, value):
 
 
 def short(value):
-    """A length without what says nothing."""
+    """Return a length without its redundant characters."""
     return re.sub(r"(?<![\d.])0(?=\.\d)", "", re.sub(r"^-?0em$", "0", value))
 
 
 @cache
 def names_of_styles():
-    """The names that book.css gives to the styles that stand oftenest:
-    capitals are raised or lowered letters.
+    """Return the names that book.css gives to the most frequent styles.
+
+    Capitals are raised or lowered letters.
     """
     sheet = (WEBSITE / "static" / "book.css").read_text("utf8")
-    found = {}
+    names = {}
     for name, styles in re.findall(r"^\.katex \.([A-Za-z]) \{ (.*); \}$", sheet, re.MULTILINE):
         pairs = [pair.split(": ") for pair in styles.split("; ")]
-        style = ";".join(f"{what}:{short(value)}" for what, value in pairs)
-        found[(*(["script"] if name.isupper() else []), style)] = name
-    return found
+        style = ";".join(f"{property}:{short(value)}" for property, value in pairs)
+        names[(*(["script"] if name.isupper() else []), style)] = name
+    return names
 
 
 def write(part):
-    """The HTML of a box."""
+    """Return the HTML of a box."""
     if isinstance(part, str):
         return escape(part, quote=False)
     attributes = {name: re.sub(r"\s+", " ", value) for name, value in part.rest.items()}
@@ -247,9 +254,7 @@ def write(part):
 
 
 def spoken(box):
-    """MathML for the ear, without what tells how it would look and
-    without rows that group nothing.
-    """
+    """Return MathML for screen readers, without rows that group nothing and without appearance."""
     if isinstance(box, str):
         return box
     inside = [
@@ -270,14 +275,14 @@ def spoken(box):
     return Box(box.tag, [], {}, inside, rest)
 
 
-IN_A_CELL = {"scriptlevel": "0", "displaystyle": "false"}  # of a table, where this is so anyhow
+IN_A_CELL = {"scriptlevel": "0", "displaystyle": "false"}  # the defaults in a table
 
 
 def lighten(html, tex):
-    """KaTeX's ``html`` of a formula in fewer words: for the ear as MathML, for the eye as boxes.
+    """Shorten KaTeX's ``html`` of a formula: MathML for screen readers, and boxes for the eye.
 
-    Browsers must not translate its letters. Its TeX is in ``data-tex``, where readers who copy the
-    formula get it from, and where the search finds equations.
+    Browsers must not translate its letters. Its TeX is in ``data-tex``, from which readers copy the
+    formula and by which the search finds equations.
     """
     whole = ElementTree.fromstring(html)
     formula = whole if whole.get("class") == "katex" else whole[0]

@@ -1,8 +1,8 @@
 """A resolved page of the book as plain Markdown, for Jupyter or any editor.
 
-The page's tree is read after Sphinx has numbered and linked everything, so that a
-reference is simply its text: "Figure 2.1", "Exercise 2.1", "Moore"; to another page it is
-a link where the book has an address. Only markup that every Markdown reader knows comes out.
+The page's tree is read after Sphinx has numbered and linked everything, so that a reference is
+simply its text, such as "Figure 2.1", "Exercise 2.1" or "Moore"; a reference to another page is a
+link if the book has an address. The output contains only markup that every Markdown reader knows.
 """
 
 from textwrap import indent
@@ -24,7 +24,7 @@ def quote(text):
 
 
 class MarkdownWriter:
-    """Turns the nodes of one page into Markdown."""
+    """Turn the nodes of one page into Markdown."""
 
     def __init__(self, env, docname):
         self.figure_numbers = env.toc_fignumbers.get(docname, {})
@@ -33,15 +33,15 @@ class MarkdownWriter:
         base = env.config.html_baseurl
         self.address = f"{base.rstrip('/')}/{docname}.html" if base else ""
         self.pieces = []  # (is_cell, Markdown or the cell's node)
-        self.answers = []  # to the questions of the page, which stand at its end
+        self.answers = []  # replies to the questions of the page, written at its end
 
     # ---- what has a number -------------------------------------------------
 
     def digits(self, kind, node):
-        """The number of ``node`` among those of its kind, such as "2.1", or ``None``."""
+        """Return the number of ``node`` among those of its kind, such as "2.1", or ``None``."""
         numbers = self.figure_numbers.get(kind, {})
-        found = [numbers[name] for name in node.get("ids", ()) if name in numbers]
-        return ".".join(map(str, found[0])) if found else None
+        numbers_of_node = [numbers[name] for name in node.get("ids", ()) if name in numbers]
+        return ".".join(map(str, numbers_of_node[0])) if numbers_of_node else None
 
     def number(self, kind, node):
         digits = self.digits(kind, node)
@@ -174,7 +174,7 @@ class MarkdownWriter:
         return quote(f"**{title}**\n\n{self.blocks(children, level)}".strip())
 
     def question(self, node, level):
-        """A question with its choices; the replies to them are kept for the end of the page."""
+        """Write a question with its choices; the replies are kept for the end of the page."""
         name = questions.name_of(node)
         title = f"Predict, then see ({node['place']})" if node["predicts"] else f"{name}."
         parts, replies = [f"**{title}**"], []
@@ -199,7 +199,7 @@ class MarkdownWriter:
     # ---- the page ----------------------------------------------------------
 
     def page(self, document):
-        """The page as a list of ``(is_cell, text or node)``, in order."""
+        """Return the page as a list of ``(is_cell, text or node)``, in order."""
         self.walk(document, 0)
         if self.answers:
             self.say("\n\n".join(["## Answers to the predictions and the recap", *self.answers]))

@@ -29,7 +29,7 @@ CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
 # The length, in visible characters, of a formula that need not be broken: half a line of the
 # narrowest page.
 SHORT = 18
-#: Commands that TeX needs but that show nothing, or show it above or around another character.
+# Commands that TeX needs but that show nothing, or show it above or around another character.
 UNSEEN = re.compile(
     r"\\(?:math\w+|hat|bar|dot|ddot|vec|tilde|left|right|[dt]?frac|quad)\b|\\[,;:! ]|[{}^_&\s]"
 )
@@ -75,16 +75,14 @@ class KaTeX:
 
 @cache
 def katex(process):
-    """The process that sets formulas for the Python process of this
-    number; forks have pipes of their own.
-    """
+    """Return the KaTeX process of the Python process with this number; forks need their own."""
     return KaTeX()
 
 
 @cache
 def to_html(tex, display):
-    """KaTeX's HTML for ``tex``; raises ValueError with KaTeX's own words."""
-    # KaTeX puts the rows of a matrix so close together that fractions in them would touch.
+    """Return KaTeX's HTML for ``tex``; raise ValueError with KaTeX's own message."""
+    # KaTeX sets the rows of a matrix so close together that fractions in them would touch.
     answer = katex(os.getpid())(tex, display, "1.6" if r"\frac" in tex else "1.15")
     if "fault" in answer:
         raise ValueError(answer["fault"].replace("\u0332", ""))
@@ -101,15 +99,14 @@ def render(node, display):
 
 
 def signs(tex):
-    """How many signs a reader sees of a formula, about."""
+    """Return roughly how many characters of a formula a reader sees."""
     return len(re.sub(r"\\[a-zA-Z]+", "x", UNSEEN.sub("", tex)))
 
 
 def keep_punctuation(app, doctree, docname):
-    """Let no line begin with the full stop, comma or ’s after a formula,
-    nor end with the bracket before it.
+    """Keep punctuation on the same line as the formula before or after it.
 
-    A short formula is not broken; of a longer one, which may be, they become the ends.
+    A short formula is not broken. A longer one, which may be, gets the punctuation at its ends.
     """
     for formula in list(doctree.findall(nodes.math)):
         parent = formula.parent

@@ -1,23 +1,22 @@
-"""Whether two texts are the same but for the last digits of their
-numbers, and by how much these moved.
+"""Compare two texts up to the last digits of their numbers, and measure how much these moved.
 
-No two kinds of processor round alike: the order of a sum differs, and whether a product is rounded
-before it is added. What a cell prints may move by that, and by no more.
+Different processors round differently: the order of a sum differs, and some round a product before
+adding it. The output of a cell may move by that much, and by no more.
 """
 
 import re
 from typing import NamedTuple
 
-#: The largest change allowed in a printed number, relative to its size, or absolute below 1.
+# The largest change allowed in a printed number, relative to its size, or absolute below 1.
 ALLOWED = 1e-13
-#: The largest change allowed in the coordinates of a drawing, in its pixels. They are written to
-#: one decimal, and the step between two points is wrong by the errors of both.
+# The largest change allowed in the coordinates of a drawing, in its pixels. They are written to one
+# decimal, and the step between two points has the errors of both.
 ALLOWED_IN_DRAWINGS = 0.21
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-#: A number that is not part of a name or a colour.
+# A number that is not part of a name or a colour.
 FREE = re.compile(rf"(?<![\w#])(?<![\w#][.])(?:{NUMBER})(?![\w])")
-#: The attributes that place the lines and the letters of a drawing.
+# The attributes that place the lines and the letters of a drawing.
 PLACING = re.compile(r'(?<= )(d|x|y|x1|x2|y1|y2|cx|cy|r|rx|ry|points|transform)="([^"]*)"')
 #: The ID of a part of a drawing, which is a hash of the whole drawing.
 PART = re.compile(r"\b(?:g[0-9a-f]{10}|p[0-9a-f]{8})(?=-\d)")
@@ -25,7 +24,7 @@ TOKEN = re.compile(rf"[A-Za-z]+|{NUMBER}")
 
 
 class Move(NamedTuple):
-    """A number that moved; of what is no number, ``by`` is infinite."""
+    """A number that moved; ``by`` is infinite for a difference that is not a number."""
 
     stored: str
     now: str
@@ -34,7 +33,7 @@ class Move(NamedTuple):
 
     @property
     def share(self):
-        """Which part of what is allowed it has moved."""
+        """Return the ratio of the move to the allowed one."""
         return self.by / self.allowed if self.allowed else float("inf")
 
     @property
@@ -48,7 +47,7 @@ class Move(NamedTuple):
 
 
 def moves(stored, now):
-    """All numbers that differ between two texts, as a list of :class:`Move`; the largest first.
+    """Return all numbers that differ between two texts as :class:`Move`, the largest first.
 
     >>> for move in moves("off by 0.1 and 2 rad", "off by 0.10000000000001700 and 3 rad"):
     ...     print(move, move.too_far)
@@ -59,19 +58,21 @@ def moves(stored, now):
         return []
     stored, now = (PART.sub("part", text) for text in (stored, now))
     places = [PLACING.findall(text) for text in (stored, now)]
-    found = _numbers(PLACING.sub(r'\1=""', stored), PLACING.sub(r'\1=""', now), FREE, _allowed)
-    for (_, one), (_, other) in zip(*places):
-        found += _in_a_drawing(one, other)
-    return sorted(found, key=lambda move: -move.by)
+    differences = _numbers(
+        PLACING.sub(r'\1=""', stored), PLACING.sub(r'\1=""', now), FREE, _allowed
+    )
+    for (_, stored_places), (_, current_places) in zip(*places):
+        differences += _in_a_drawing(stored_places, current_places)
+    return sorted(differences, key=lambda move: -move.by)
 
 
 def _numbers(stored, now, number, allowed):
     if number.sub("0", stored) != number.sub("0", now):
         return [_elsewhere(stored, now)]
     return [
-        Move(one, other, abs(float(one) - float(other)), allowed(one, other))
-        for one, other in zip(number.findall(stored), number.findall(now))
-        if one != other
+        Move(before, after, abs(float(before) - float(after)), allowed(before, after))
+        for before, after in zip(number.findall(stored), number.findall(now))
+        if before != after
     ]
 
 
@@ -81,21 +82,21 @@ def _in_a_drawing(stored, now):
     if letters[0] != letters[1] or len(tokens[0]) != len(tokens[1]):
         return [_elsewhere(stored, now)]
     return [
-        Move(one, other, abs(float(one) - float(other)), ALLOWED_IN_DRAWINGS)
-        for one, other in zip(*tokens)
-        if one != other and not one[0].isalpha()
+        Move(before, after, abs(float(before) - float(after)), ALLOWED_IN_DRAWINGS)
+        for before, after in zip(*tokens)
+        if before != after and not before[0].isalpha()
     ]
 
 
-def _allowed(one, other):
-    """Counts are exact: what is written as a whole number must be the same."""
-    if any(text.lstrip("+-").isdigit() for text in (one, other)):
+def _allowed(before, after):
+    """Return the allowed move; counts are exact, so numbers written as integers must not move."""
+    if any(text.lstrip("+-").isdigit() for text in (before, after)):
         return 0.0
-    return ALLOWED * max(1.0, abs(float(one)))
+    return ALLOWED * max(1.0, abs(float(before)))
 
 
 def _elsewhere(stored, now):
-    """The first place that differs, with a little of what stands around it."""
+    """Return the first difference, with a little of the text around it."""
     start = next(
         (k for k, (a, b) in enumerate(zip(stored, now)) if a != b), min(len(stored), len(now))
     )
@@ -104,19 +105,20 @@ def _elsewhere(stored, now):
 
 
 def moves_of_outputs(stored, now):
-    """The moves between the outputs of a cell; ``None`` where there
-    is more of one than of the other.
-    """
+    """Return the moves between the outputs of a cell, or ``None`` if their kinds differ."""
     texts = [[_texts(output) for output in outputs] for outputs in (stored, now)]
-    if [list(one) for one in texts[0]] != [list(one) for one in texts[1]]:
+    if [list(kinds) for kinds in texts[0]] != [list(kinds) for kinds in texts[1]]:
         return None
     return [
-        move for one, other in zip(*texts) for kind in one for move in moves(one[kind], other[kind])
+        move
+        for before, after in zip(*texts)
+        for kind in before
+        for move in moves(before[kind], after[kind])
     ]
 
 
 def _texts(output):
-    """What of an output is text, by its kind."""
+    """Return the texts of an output, by their kind."""
     data = {
         kind: content
         for kind, content in output.get("data", {}).items()

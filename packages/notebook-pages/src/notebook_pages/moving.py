@@ -1,8 +1,8 @@
-"""Figures that move: their scripts on the pages that hold them, and nothing of widgets' own.
+"""Moving figures: put their scripts on the pages that show them, without any script of widgets.
 
-A cell that ends in a moving figure of the book puts out a still, with the state of the figure, and
-a widget for Jupyter. The page shows the still, and one script for each kind of figure, which
-book.js asks for when the first view stands, brings it to life.
+A cell that ends in a moving figure of the book displays a still, with the state of the figure, and
+a widget for Jupyter. The page shows the still. One script for each kind of figure, which book.js
+requests after the first view, makes it interactive.
 """
 
 import shutil
@@ -17,7 +17,7 @@ from .paths import NODE_MODULES, REGISTERED, esbuild, fingerprint, named
 from .used import files_used
 
 WIDGET = "application/vnd.jupyter.widget-view+json"
-EMBEDDED = "embed"  # the folder of the site that holds a page for each figure alone
+EMBEDDED = "embed"  # the folder of the site with a page for each single figure
 # On a narrow screen the drawing of a figure stays in view, under the bar at the top of the page.
 PAGE_STYLE = """
 .cell_output .output:has(> .moving) { overflow: visible; }
@@ -26,32 +26,33 @@ PAGE_STYLE = """
 
 
 def prefer_stills(app, config):
-    """A widget needs a kernel: pages show the other forms of such an output."""
+    """Prefer the other forms of an output to a widget, which needs a kernel."""
     config.nb_mime_priority_overrides = [*config.nb_mime_priority_overrides, ("*", WIDGET, None)]
 
 
 def drop_widget_state(app, doctree):
-    """Take out the widgets' state and the scripts that MyST-NB would load for it from elsewhere."""
+    """Remove the widgets' state, and the scripts that MyST-NB would load from other servers."""
     scripts = app.env.nb_metadata.get(app.env.docname, {}).get("js_files", {})
     for key in [key for key in scripts if key.startswith("ipywidgets_")]:
         del scripts[key]
 
 
 def kinds_on(doctree):
-    """The kinds of moving figures on a page, in their order."""
+    """Return the kinds of moving figures on a page, in order."""
     from bs4 import BeautifulSoup
 
-    found = {}
+    kinds = {}
     for node in doctree.findall(nodes.raw):
         if "data-figure=" in node.astext():
             figures = BeautifulSoup(node.astext(), "html.parser").select("[data-figure]")
-            found |= dict.fromkeys(figure["data-figure"] for figure in figures)
-    return list(found)
+            kinds |= dict.fromkeys(figure["data-figure"] for figure in figures)
+    return list(kinds)
 
 
 def scripts_and_styles(kinds):
-    """What a page with these kinds of figures loads, texts by their names;
-    and what its figures fetch later.
+    """Return the scripts and styles of a page with these kinds of figures, texts by name.
+
+    Returns also the files that its figures fetch later.
     """
     bundle = named(REGISTERED["figures"])
     texts, later = {}, {}
@@ -61,7 +62,7 @@ def scripts_and_styles(kinds):
         later |= {name: text for kind in own for name, text in bundle.beside(kind).items()}
     for kind in set(kinds) & set(bundle.BUILT):
         script = built(bundle.BUILT[kind])
-        # An older page never loads a newer script.
+        # The name contains a hash, so that an older page never loads a newer script.
         name = f"{kind}-{sha256(script.encode()).hexdigest()[:8]}.js"
         later[name] = script
         texts |= {
@@ -72,10 +73,9 @@ def scripts_and_styles(kinds):
 
 
 def figures_as_written(app):
-    """Where the scripts and styles of moving figures lie as they were
-    written, by this build or before.
+    """Return the folder with the moving figures' scripts and styles before they are minified.
 
-    Small ones are made of these each time: made small twice, a script is another one.
+    The minified ones are made from these each time, because minifying twice changes a script.
     """
     return Path(app.doctreedir) / "moving"
 
@@ -101,9 +101,7 @@ def add_scripts(app, pagename, templatename, context, doctree):
 
 
 def write_embedded(app, exception):
-    """A page for each figure alone, which others put into theirs; anew only if
-    what they are made from has changed.
-    """
+    """Write a page for each single figure, for embedding, if its sources have changed."""
     if exception or app.builder.format != "html" or "embedding" not in REGISTERED:
         return
     site = Path(app.outdir)
@@ -123,8 +121,9 @@ def write_embedded(app, exception):
 
 
 def bring(app, exception):
-    """Put scripts and styles of figures into the site; the shared script brings those styles that
-    only a living figure needs.
+    """Put the scripts and styles of figures into the site.
+
+    The shared script adds the styles that only an interactive figure needs.
     """
     written = figures_as_written(app)
     if exception or app.builder.format != "html" or not written.is_dir():
@@ -149,7 +148,7 @@ def bring(app, exception):
 
 @cache
 def built(script):
-    """The text of a script with all that it imports, those of npm's packages among it."""
+    """Bundle a script with all that it imports, including npm packages."""
     return esbuild("--bundle", "--minify", "--format=iife", "--log-level=warning", script)
 
 
@@ -157,6 +156,6 @@ def setup(app):
     app.connect("config-inited", prefer_stills)
     app.connect("doctree-read", drop_widget_state)
     app.connect("html-page-context", add_scripts, priority=960)  # after page.py has set the styles
-    # before page.py makes the scripts small
+    # Run this before page.py minifies the scripts.
     app.connect("build-finished", write_embedded, priority=900)
     app.connect("build-finished", bring, priority=910)

@@ -1,7 +1,7 @@
 """``python -m notebook_pages.notebooks [paths]``: run every notebook and store it with its outputs.
 
-This is how notebooks are committed: run from a clean kernel from the first cell to the last, and
-free of what differs from one machine or day to another.
+This is how notebooks are committed: run with a clean kernel from the first cell to the last, and
+without anything that differs from one machine or day to another.
 """
 
 import sys
@@ -23,26 +23,26 @@ KEPT_IN_CELLS = ("tags", "mystnb")
 
 
 def all_notebooks(book):
-    """The book's notebooks, in the folder ``book``."""
+    """Return the paths of the book's notebooks, in the folder ``book``."""
     return sorted(path for place in PLACES for path in book.glob(place))
 
 
 def normalise(notebook):
-    """Keep of the metadata what the book uses; name the cells by their place."""
+    """Keep only the metadata that the book uses, and name the cells by their position."""
     notebook.metadata = nbformat.from_dict(METADATA)
     notebook.nbformat, notebook.nbformat_minor = 4, 5
     for position, cell in enumerate(notebook.cells):
         cell["id"] = f"cell-{position}"
         cell.metadata = {key: cell.metadata[key] for key in KEPT_IN_CELLS if key in cell.metadata}
         for output in cell.get("outputs", []):
-            # It refers to a model in a kernel that no longer exists.
+            # This output refers to a model in a kernel that no longer exists.
             output.get("data", {}).pop(WIDGET, None)
         cell.source = "\n".join(line.rstrip() for line in cell.source.strip().splitlines())
     return notebook
 
 
 def run(path):
-    """Run the notebook at ``path`` and store it; return what went wrong, if anything."""
+    """Run the notebook at ``path`` and store it; return a message if something went wrong."""
     notebook = nbformat.read(path, as_version=4)
     notebook.cells = [cell for cell in notebook.cells if cell.source.strip()]
     normalise(notebook)
@@ -67,7 +67,7 @@ def main():
     paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
     if missing := [str(path) for path in paths if not path.is_file()]:
         sys.exit(f"There is no notebook {', '.join(missing)}. Name it from the folder of the book.")
-    # Each has its own kernel.
+    # Each notebook has its own kernel.
     with ThreadPoolExecutor(max_workers=2) as pool:
         sys.exit("\n".join(filter(None, pool.map(run, paths))) or 0)
 

@@ -1,7 +1,7 @@
 """The page ``licences.html``: third-party works in the site, with their licences.
 
-The names, versions and texts are those that the works themselves bring: packages of npm, wheels
-for browsers, and the distributions of Python whose styles and scripts are copied into the site.
+The names, versions and texts come from the works themselves: npm packages, wheels for browsers, and
+the Python distributions whose styles and scripts are copied into the site.
 """
 
 import email
@@ -33,7 +33,7 @@ TEXTS = ("license", "licence", "copying", "notice")
 
 
 class Work(NamedTuple):
-    """Somebody's work: its licence by name, where its source is, and the licence's text."""
+    """A third-party work: its name, its licence, where its source is, and the licence's text."""
 
     name: str
     version: str
@@ -47,7 +47,7 @@ def is_text_of_licence(name: str) -> bool:
 
 
 def of_npm() -> Iterator[Work]:
-    """The packages that the site is made of; those that only make it are marked ``dev``."""
+    """Iterate over the npm packages in the site; those marked ``dev`` only build it."""
     for place, entry in json.loads(LOCK.read_text("utf8"))["packages"].items():
         if not place or entry.get("dev") or entry.get("optional"):
             continue
@@ -66,7 +66,7 @@ def of_npm() -> Iterator[Work]:
 
 
 def of_metadata(about: email.message.Message, texts: list[str]) -> Work:
-    """A work as the metadata of a distribution of Python names it."""
+    """Return a work from the metadata of a Python distribution."""
     addresses = dict(line.split(", ", 1) for line in about.get_all("Project-URL", []))
     classifiers = [
         line.rpartition(" :: ")[2]
@@ -108,9 +108,9 @@ def of_distributions() -> Iterator[Work]:
 
 
 def works() -> list[Work]:
-    """Other people's works in the site, by name."""
-    found = {work.name: work for work in (*of_npm(), *of_wheels(), *of_distributions())}
-    return sorted(found.values(), key=lambda work: work.name.lower().lstrip("@"))
+    """Return the third-party works in the site, by name."""
+    by_name = {work.name: work for work in (*of_npm(), *of_wheels(), *of_distributions())}
+    return sorted(by_name.values(), key=lambda work: work.name.lower().lstrip("@"))
 
 
 def add_page(app):

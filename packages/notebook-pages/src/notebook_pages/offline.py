@@ -1,6 +1,6 @@
-"""The site as one zip, to be read from disk or from a USB stick, with the network off.
+"""The site as one zip file, for reading from a disk without a network.
 
-Its bytes depend on what is in it and on nothing else: files stand in order, with one date.
+Its bytes depend only on its content: the files are in order and have one date.
 """
 
 import io
@@ -10,7 +10,7 @@ import zipfile
 from .paths import LICENCES_SAID, WEBSITE, moment_of_sources
 
 SERVER = WEBSITE / "serve.py"
-#: A page from a disk preloads nothing, and browsers complain about the hints.
+# A page from a disk preloads nothing, and browsers complain about the hints.
 AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 README = """{title}
 {line}
@@ -36,7 +36,7 @@ two from the network the first time, and say so.)
 
 
 def pack(files, name, title):
-    """The zip of ``files``, contents by path, in a folder called ``name``."""
+    """Return the zip of ``files``, contents by path, in a folder called ``name``."""
     readme = README.format(title=title, line="=" * len(title), licences=LICENCES_SAID)
     files = {
         path: AHEAD.sub(b"", content) if path.endswith(".html") else content

@@ -1,8 +1,7 @@
 """The packages that readers and students install: a wheel for each project that the book names.
 
-They hold no grader and no author's tools. The version of each follows from its sources, so that pip
-installs a newer one over an older one, and says that nothing is to be done where nothing has
-changed.
+They contain neither the grader nor the author's tools. The version of each depends on its sources,
+so that pip replaces an older one and does nothing if nothing has changed.
 """
 
 import os
@@ -20,12 +19,12 @@ from pathlib import Path
 
 from .paths import REGISTERED, REPOSITORY
 
-#: Every file in an archive has this time, so that equal contents give equal bytes.
+# Every file in an archive has this time, so that equal contents give equal bytes.
 TIME = (2026, 1, 1, 0, 0, 0)
 #: Further sources of a wheel, if a project has them.
 ABOUT = ("pyproject.toml", "README.md", "LICENSE", "LICENSE-CODE")
-#: The file in which a project states its version: its ``pyproject.toml``, or else the first of its
-#: packages.
+# The file in which a project states its version: its ``pyproject.toml``, or else the first of its
+# packages.
 STATED = re.compile(r'^(__version__|version) = "(?P<version>.*)"$', re.M)
 
 
@@ -35,8 +34,8 @@ class Project:
     Parameters
     ----------
     folder, packages, left_out : str, sequences of str
-        Its folder, the packages that the wheel holds, and parts of those that readers do not get;
-        from the root of the repository.
+        Its folder, the packages that the wheel contains, and the parts of them that readers do not
+        get, as paths from the root of the repository.
     repository : path, optional
     """
 
@@ -52,9 +51,11 @@ class Project:
 
     @cached_property
     def about(self) -> Mapping[str, object]:
-        """What ``pyproject.toml`` says of it."""
-        said = tomllib.loads((self.repository / self.folder / "pyproject.toml").read_text("utf8"))
-        about: dict[str, object] = said["project"]
+        """The table ``project`` of its ``pyproject.toml``."""
+        settings = tomllib.loads(
+            (self.repository / self.folder / "pyproject.toml").read_text("utf8")
+        )
+        about: dict[str, object] = settings["project"]
         return about
 
     @property
@@ -62,7 +63,7 @@ class Project:
         return str(self.about["name"])
 
     def sources(self) -> list[Path]:
-        """The files that the wheel is made of."""
+        """Return the files that the wheel is made of."""
         files = [
             path
             for place in self.packages
@@ -81,19 +82,19 @@ class Project:
 
     @cache  # noqa: B019  (there are as many as the book names, and they last)
     def version(self) -> str:
-        """The version of the wheel: as the sources state it, or ``1.1.0.dev20261122093000``.
+        """Return the version of the wheel: as the sources state it, or ``1.1.0.dev20261122093000``.
 
-        pip replaces an installed package only by one of another version. So the stated version is
-        for the sources of its tag alone. Before the tag, the version is the stated one still in
-        development, with the time in UTC when the sources were last changed: committed or, where
-        something is not committed or there is no repository, written. Sources changed after the
-        tag are in development of the next version, so that versions only ever rise.
+        pip replaces an installed package only by one of another version. So only the sources at its
+        tag have the stated version. Before the tag, the version is a development release of the
+        stated one, with the time in UTC of the last change of the sources: that of the commit or,
+        if something is not committed or there is no repository, of the files. Sources changed after
+        the tag are a development release of the next version, so that versions only ever increase.
         """
         file = self._stating(self.repository)
-        found = STATED.search(file.read_text("utf8"))
-        if found is None:
+        statement = STATED.search(file.read_text("utf8"))
+        if statement is None:
             raise RuntimeError(f"{file} must state the version")
-        stated = found["version"]
+        stated = statement["version"]
         tag, committed, changed = (
             f"{self.name}-{stated}",
             self._git("log", "-1", "--format=%ct"),
@@ -107,15 +108,13 @@ class Project:
                 *front, last = stated.split(".")
                 stated = ".".join([*front, str(int(last) + 1)])
             changed = unknown + self._named("diff", "--name-only", "--relative", "HEAD")
-        # If a file is gone, the date of its folder tells when.
+        # If a file is gone, use the date of its folder.
         written = [(path if path.exists() else path.parent).stat().st_mtime for path in changed]
         latest = datetime.fromtimestamp(max([int(committed or 0), *written]), UTC)
         return f"{stated}.dev{latest:%Y%m%d%H%M%S}"
 
     def _git(self, *arguments: str) -> str:
-        """What git says of the sources, or nothing where there is no git, or
-        no repository that it would read.
-        """
+        """Return git's output about the sources, or nothing without a readable repository."""
         if not shutil.which("git"):
             return ""
         paths = [*(str(self.folder / name) for name in ABOUT), *self.packages]
@@ -131,7 +130,7 @@ class Project:
         ]
 
     def _stating(self, repository: str | Path) -> Path:
-        """The file that states the version."""
+        """Return the file that states the version."""
         file = "pyproject.toml" if "version" in self.about else None
         return (
             Path(repository, self.folder, file)
@@ -140,13 +139,11 @@ class Project:
         )
 
     def wheel_name(self) -> str:
-        """The name of the wheel's file."""
+        """Return the file name of the wheel."""
         return f"{self.name.replace('-', '_')}-{self.version()}-py3-none-any.whl"
 
     def build_wheel(self, folder: str | Path) -> Path:
-        """Build the wheel, from a copy: setuptools leaves files
-        behind, and here the version is set.
-        """
+        """Build the wheel from a copy: setuptools leaves files, and the version is set here."""
         with tempfile.TemporaryDirectory() as place:
             for path in self.sources():
                 target = Path(place, path.relative_to(self.repository))
@@ -180,9 +177,7 @@ class Project:
 
 
 class Ready:
-    """A project of which there is only the wheel; the same is asked of it as of a
-    :class:`Project`.
-    """
+    """A project of which there is only the wheel, with the interface of :class:`Project`."""
 
     def __init__(self, file: str, packages: Iterable[str]) -> None:
         self.file, self.packages = REPOSITORY / file, tuple(packages)
@@ -204,7 +199,7 @@ class Ready:
 
 
 def write_zip(target: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write contents by name into a zip, always the same way."""
+    """Write contents by name into a reproducible zip."""
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED) as box:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, TIME)
@@ -213,15 +208,15 @@ def write_zip(target: Path, files: Mapping[str, str | bytes]) -> None:
             box.writestr(entry, files[name])
 
 
-#: The wheels that the book names, its own project last.
+# The wheels that the book names, with its own project last.
 PROJECTS = [
-    Ready(one["file"], one["packages"])
-    if "file" in one
-    else Project(one["project"], one["packages"], one.get("leave-out", ()))
-    for one in REGISTERED.get("wheels", ())
+    Ready(entry["file"], entry["packages"])
+    if "file" in entry
+    else Project(entry["project"], entry["packages"], entry.get("leave-out", ()))
+    for entry in REGISTERED.get("wheels", ())
 ]
 
 
 def build_wheels(folder: str | Path) -> list[Path]:
-    """Build the wheels for students; give their files."""
+    """Build the wheels for students, and return their files."""
     return [project.build_wheel(folder) for project in PROJECTS]

@@ -1,4 +1,4 @@
-"""The page around the text: templates, styles, and nothing that it does not use."""
+"""The page around the text: templates, styles and scripts, without any that it does not use."""
 
 import json
 import re
@@ -34,8 +34,8 @@ STYLE = "style.css"
 UNUSED_SCRIPTS = (
     "thebe", "toggle", "design-tabs", "DOCUMENTATION_OPTIONS", "sphinx_highlight", "doctools",
 )  # fmt: skip
-#: The scripts of the page itself, in order, which a page fetches as one file, and those that only
-#: some pages have.
+# The scripts of every page, in order, which a page fetches as one file, and those that only some
+# pages have.
 PAGE_SCRIPTS = (
     "documentation_options.js",
     "progress.js",
@@ -49,8 +49,8 @@ PAGE_SCRIPTS = (
 )
 SOMETIMES = ("progress", "questions")
 JOINED = re.compile(r"_static/(page(?:-\w+)*\.js)")
-#: The theme measures all boxes at once to find those that scroll, which lays out the whole page,
-#: and then each in turn again. book.js watches them instead.
+# The theme measures all boxes at once to find those that scroll, which lays out the whole page, and
+# then each one in turn again. book.js observes them instead.
 MEASURES = re.compile(r"\.forEach\(e=>\{e\.tabIndex=e\.scrollWidth>e\.clientWidth\|\|[^{}]*\}\)")
 VALUE = re.compile(r"--(?:bs|mystnb|pst|sbt)-[\w-]+")
 UNUSED_FILES = (
@@ -89,7 +89,7 @@ def add_own_files(app, config):
 
 
 def drop_thebe(app, doctree, docname):
-    """Take out what sphinx-thebe, always on in Jupyter Book, appends to each page."""
+    """Remove what sphinx-thebe, always active in Jupyter Book, appends to each page."""
     for node in list(doctree.findall(nodes.raw)):
         if "x-thebe-config" in node.astext() or node.astext().startswith("<script>kernelName"):
             node.parent.remove(node)
@@ -105,7 +105,7 @@ HIDDEN = (
 
 PLACED = re.compile(r'<use transform="translate\(([-.\d]+) ([-.\d]+)\)" href=')
 USE = re.compile(r'<use ([^>]*)href="#([^"]*)"([^>]*)/>')
-#: A piece of code within the text or in the signature of a function.
+# A piece of code within the text or in the signature of a function.
 LITERAL = re.compile(r'<code class="([^"]*)"><span class="pre">([^<]*)</span></code>')
 NAME = re.compile(
     r'(<(?:span|em) class="(?:sig|n|o|default)[^"]*">)<span class="pre">([^<]*)</span>'
@@ -124,13 +124,13 @@ MOVED = re.compile(r"(?<=translate\()[^)]*")
 
 
 def tenths(numbers):
-    """Numbers of tenths, as a drawing writes them."""
+    """Return tenths as numbers, as a drawing writes them."""
     text = " ".join(f"{number / 10:g}" for number in numbers)
     return re.sub(r"(?<!\d)0(?=\.)", "", text).replace(" -", "-")
 
 
 def in_steps(path):
-    """The same path in steps from point to point, in tenths of a pixel: finer nobody sees it."""
+    """Return a path with relative coordinates in tenths of a pixel, fine enough for the eye."""
     written, before, here = "", "", [0, 0]
     for letter, numbers in re.findall(r"([MLQCZ])([^A-Z]*)", path[0]):
         points = [round(10 * float(number)) for number in numbers.split()]
@@ -145,7 +145,7 @@ def in_steps(path):
 
 
 def in_short(drawing):
-    """A drawing with its places in tenths of a pixel; what is cut out of a plot is its style."""
+    """Return a drawing with coordinates in tenths of a pixel; plots keep their precision."""
 
     def place(numbers):
         return tenths(round(10 * float(number)) for number in re.findall(r"-?[\d.]+", numbers[0]))
@@ -160,15 +160,15 @@ BEGIN = re.compile(r'<svg\b(?:[^">]|"[^"]*")*>')
 
 
 def name_styles(drawing):
-    """Say each style that a plot repeats once, in the plot, so that it goes where that goes.
+    """Define each repeated style of a plot once, inside the plot, so that it stays with the plot.
 
-    The name follows from the style: plots of several pages may stand in one document. The book's
-    own drawings have classes, and are left as they are.
+    The name follows from the style, because plots of several pages may be in one document. The
+    book's own drawings have classes and are left as they are.
     """
-    found = Counter(STYLED.findall(drawing))
+    uses = Counter(STYLED.findall(drawing))
     names = {
         style: f"s{sha256(style.encode()).hexdigest()[:6]}"
-        for style, times in found.items()
+        for style, times in uses.items()
         if times > 2
     }
     if not names or " class=" in drawing:
@@ -181,10 +181,9 @@ def name_styles(drawing):
 
 
 def share_outlines(body):
-    """Move the outlines of letters from the drawings of a page into one
-    table at its end, each of them once.
+    """Move the outlines of letters from the drawings of a page into one table at its end.
 
-    A blank between two words has no outline: it goes, with every place where it stands.
+    A space between two words has no outline, so it is removed wherever it is used.
     """
     numbers = {}
 
@@ -215,14 +214,15 @@ def share_outlines(body):
 
 
 def lighten(body):
-    """Say once what a page would repeat.
+    """Remove repetitions from a page.
 
-    Every figure brings the style sheet of all figures and the outlines of its letters, since in a
-    notebook it stands alone. There it is a figure to a screen reader, too; here it lies in one that
-    has a name, or its drawing has one. Names, brackets, blanks and operators of a program have the
-    colour of the text around them, and need no element each; nor does a single word within an
-    element, nor a part of a string. The stills of a page that moves its own figure (``data-stop``)
-    are seen on paper and without scripts: where there are scripts, the browser need not read them.
+    Every figure contains the style sheet of all figures and the outlines of its letters, since in a
+    notebook it is alone. There a screen reader needs its role, too; here it is inside an element
+    with a name, or its drawing has one. Names, brackets, spaces and operators of a program have the
+    colour of the text around them and need no element each. Neither does a single word within an
+    element, nor a part of a string. The stills of a page that animates its own figure
+    (``data-stop``) are seen on paper and without scripts, so a browser with scripts need not parse
+    them.
     """
     seen = set()
 
@@ -275,13 +275,11 @@ def theme_styles(static):
     return [path for name in THEME_STYLES for path in sorted(static.glob(name))]
 
 
-def make_small(static, files, told):
-    """Write files again without blanks and long names, all in one go; ``told`` is
-    the least fault that is told of.
-    """
+def make_small(static, files, log_level):
+    """Minify files in place, in one process, and report messages from ``log_level`` up."""
     options = [
         "--minify",
-        f"--log-level={told}",
+        f"--log-level={log_level}",
         "--allow-overwrite",
         f"--outdir={static}",
         f"--outbase={static}",
@@ -291,9 +289,7 @@ def make_small(static, files, told):
 
 
 def number_values(site, rules):
-    """The rules with numbers for the long names of the theme's values,
-    unless something else asks for them.
-    """
+    """Number the theme's variables, whose names are long, unless something else uses them."""
     others = [*pages_of(site), *site.glob("_static/moving/*"), WEBSITE / "print.css"]
     known = {name for path in others for name in VALUE.findall(path.read_text("utf8"))}
     numbers = {
@@ -303,7 +299,7 @@ def number_values(site, rules):
 
 
 def names_of(site):
-    """Where purge.mjs keeps the names that the pages of a site hold."""
+    """Return the file in which purge.mjs stores the names that the pages of a site contain."""
     return site.with_name("names-in-pages.json")
 
 
@@ -314,17 +310,22 @@ def find_names(app, exception):
 
 
 def sorted_out(site, name, rules, *others):
-    """What purge.mjs leaves of a style sheet; and, if the first of ``others`` is ``--later``, what
-    it moves into another one.
+    """Return what purge.mjs keeps of a style sheet.
 
-    It is the same as in the last build if the pages hold the same names, as they nearly always do:
-    it is kept under ``name``.
+    If the first of ``others`` is ``--later``, return also what it moves into another one. The
+    result is cached under ``name``, because the pages nearly always contain the same names as in
+    the last build.
     """
     inputs = [PURGE, NODE_MODULES / ".package-lock.json", names_of(site)]
     inputs += [path for path in others if isinstance(path, Path)]
-    told = "\0".join([rules, *map(str, others), *(path.read_text("utf8") for path in inputs)])
-    key, kept = sha256(told.encode()).hexdigest(), site.with_name(f"purged-{name}.json")
-    if kept.exists() and (before := json.loads(kept.read_text("utf8")))["key"] == key:
+    inputs_as_text = "\0".join(
+        [rules, *map(str, others), *(path.read_text("utf8") for path in inputs)]
+    )
+    key, cache_file = (
+        sha256(inputs_as_text.encode()).hexdigest(),
+        site.with_name(f"purged-{name}.json"),
+    )
+    if cache_file.exists() and (before := json.loads(cache_file.read_text("utf8")))["key"] == key:
         return before["parts"]
     with tempfile.TemporaryDirectory() as folder:
         sheet, later = Path(folder, "sheet.css"), Path(folder, "later.css")
@@ -332,17 +333,17 @@ def sorted_out(site, name, rules, *others):
         others = ["--later", later] if others[:1] == ("--later",) else others
         subprocess.run([NODE, PURGE, NODE_MODULES, names_of(site), sheet, *others], check=True)
         parts = [path.read_text("utf8") for path in (sheet, later) if path.exists()]
-    kept.write_text(json.dumps({"key": key, "parts": parts}), "utf8")
+    cache_file.write_text(json.dumps({"key": key, "parts": parts}), "utf8")
     return parts
 
 
 def purged(site, name, rules, *others):
-    """The rules that some page uses, or one of the scripts or style sheets ``others``."""
+    """Return the rules that some page, or one of the scripts or style sheets ``others``, uses."""
     return sorted_out(site, name, rules, *others)[0]
 
 
 def as_script(styles):
-    """A style sheet, which goes, as the beginning of a script that brings it."""
+    """Return a style sheet as the beginning of a script that adds it, and delete its file."""
     make_small(styles.parent, [styles], "warning")
     rules = json.dumps(styles.read_text("utf8").strip())
     styles.unlink()
@@ -351,8 +352,9 @@ def as_script(styles):
 
 
 def take_later(site, styles):
-    """Leave in a style sheet what pages use as they come, for that is awaited before the first
-    view; the rest, which only scripts make them use, as the beginning of a script.
+    """Keep in a style sheet only what pages need for the first view, which waits for it.
+
+    Return the rest, which is used only after scripts have run, as the beginning of a script.
     """
     later = styles.with_suffix(".later.css")
     parts = sorted_out(site, styles.stem, styles.read_text("utf8"), "--later")
@@ -363,14 +365,15 @@ def take_later(site, styles):
 
 
 def bundle_styles(site):
-    """Write the styles of all pages as one file: no icon font, no rule that no page uses, no blank.
+    """Write the styles of all pages as one minified file, without icon fonts and unused rules.
 
-    The theme's are one layer. KaTeX's are for the words of light_formulas.py; what is set while one
-    reads, of what a cell puts out, has KaTeX's own rules with the styles of the editor.
+    The theme's are one layer. KaTeX's are for the output of light_formulas.py. Formulas that are
+    set in the browser, in the results of cells, have KaTeX's own rules with the styles of the
+    editor.
     """
     static = site / "_static"
     parts = theme_styles(static)
-    # Otherwise Sphinx had nothing to build and copied nothing.
+    # If this file is missing, Sphinx had nothing to build and copied nothing.
     if (static / "basic.css").exists():
         theme = "\n".join(path.read_text("utf8") for path in parts)
         theme = re.sub(
@@ -386,11 +389,11 @@ def bundle_styles(site):
                 katex_rules("fonts").replace("span", "i"),
             ),
         )
-        # Each waits for its own process.
+        # Threads suffice, because each waits for its own process.
         with ThreadPoolExecutor() as pool:
-            kept = pool.map(lambda sheet: purged(site, *sheet), sheets)
+            purged_sheets = pool.map(lambda sheet: purged(site, *sheet), sheets)
         rules = [
-            *kept,
+            *purged_sheets,
             whole_face_rules("fonts"),
             *(path.read_text("utf8") for path in own),
         ]
@@ -402,11 +405,13 @@ def bundle_styles(site):
 
 
 def join_scripts(site):
-    """Write the scripts of the page itself as one file, for each choice of them that some page
-    makes. Each script begins with the styles that it alone needs.
+    """Write the scripts of every page as one file, for each choice of them that some page makes.
+
+    Each script begins with the styles that only it needs.
     """
     static = site / "_static"
-    if not (static / PAGE_SCRIPTS[0]).exists():  # Sphinx had nothing to build and copied nothing
+    # If this file is missing, Sphinx had nothing to build and copied nothing.
+    if not (static / PAGE_SCRIPTS[0]).exists():
         return
     theme = static / PAGE_SCRIPTS[-1]
     text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
@@ -437,10 +442,10 @@ def finish(app, exception):
         return
     static = Path(app.outdir) / "_static"
     # Remove unused styles first: the words of a script may look like names of styles.
-    kept = theme_styles(static)
+    styles_in_use = theme_styles(static)
     for pattern in UNUSED_FILES:
         for path in static.glob(pattern):
-            if path.is_file() and path not in kept:
+            if path.is_file() and path not in styles_in_use:
                 path.unlink()
     bundle_styles(Path(app.outdir))
     join_scripts(Path(app.outdir))
@@ -453,7 +458,7 @@ def setup(app):
     app.connect("config-inited", add_own_files)
     app.connect("doctree-resolved", drop_thebe, priority=950)
     app.connect("html-page-context", trim_page, priority=950)
-    # Run before moving.py asks for them.
+    # Run before moving.py asks for the names.
     app.connect("build-finished", find_names, priority=905)
     app.connect("build-finished", finish, priority=950)
     app.add_js_file("book.js", loading_method="defer")

@@ -1,4 +1,4 @@
-"""Where things are, and a fingerprint of what the pages are made from."""
+"""The paths of files and folders, and a fingerprint of the sources of pages."""
 
 import hashlib
 import os
@@ -31,7 +31,7 @@ Wheel = TypedDict(
 
 
 class Data(TypedDict):
-    """Files that readers take away."""
+    """Files that readers can download."""
 
     package: str
     folder: str
@@ -40,9 +40,7 @@ class Data(TypedDict):
 
 
 class Registered(TypedDict, total=False):
-    """What a book says of itself, in the table
-    ``[tool.notebook-pages]`` of its ``pyproject.toml``.
-    """
+    """The settings of a book, in the table ``[tool.notebook-pages]`` of its ``pyproject.toml``."""
 
     name: str
     plugin: str
@@ -72,7 +70,7 @@ class Contents(TypedDict):
 
 
 def _book() -> tuple[Path, Registered]:
-    """The folder of the book: the nearest one, from here upwards, that registers something."""
+    """Find the folder of the book: the nearest one, from here upwards, with such settings."""
     for folder in (here := Path.cwd(), *here.parents):
         file = folder / "pyproject.toml"
         if file.is_file() and (
@@ -82,7 +80,7 @@ def _book() -> tuple[Path, Registered]:
     return here, {}
 
 
-#: The folder of the book, and its settings for this package in its ``pyproject.toml``.
+# The folder of the book, and its settings for this package in its ``pyproject.toml``.
 REPOSITORY, REGISTERED = _book()
 #: The folder with the downloads of the set-up: npm's packages, and wheels for browsers.
 FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
@@ -96,9 +94,9 @@ NODE = Path(_nodejs.origin).parent / "bin" / "node"
 
 
 def esbuild(*arguments: str | Path) -> str:
-    """Run esbuild with these arguments, and return what it writes to its standard output.
+    """Run esbuild with these arguments, and return its standard output.
 
-    It is the program itself that runs: what npm lays before it starts Node in order to find it.
+    This starts the program itself, not npm's launcher, which would start Node only to find it.
     """
     (program,) = NODE_MODULES.glob("@esbuild/*/bin/esbuild")
     environment = os.environ | {"NODE_PATH": str(NODE_MODULES)}
@@ -108,49 +106,45 @@ def esbuild(*arguments: str | Path) -> str:
 
 
 def named(place: str) -> object:
-    """The object of a book or of another project that the table names
-    by ``module`` or ``module:name``.
-    """
+    """Import the object that the settings name by ``module`` or ``module:name``."""
     module, _, name = place.partition(":")
-    found: object = import_module(module)
-    return getattr(found, name) if name else found
+    module_found: object = import_module(module)
+    return getattr(module_found, name) if name else module_found
 
 
-#: The licences of the book, by the part that each covers: ``{"Text": ["CC BY 4.0",
-#: "https://..."]}``. None is assumed.
+# The licences of the book, by the part that each covers: ``{"Text": ["CC BY 4.0",
+# "https://..."]}``. There is no default.
 LICENCES = REGISTERED.get("licences", {})
-LICENCES_SAID = " ".join(f"{what}: {name}." for what, (name, _) in LICENCES.items())
+LICENCES_SAID = " ".join(f"{part}: {name}." for part, (name, _) in LICENCES.items())
 
 
-#: The packages in this repository that the book's notebooks import: the folder of each by its name.
+# The packages in this repository that the book's notebooks import: the folder of each by its name.
 PACKAGES = {
     Path(place).name: REPOSITORY / place
     for wheel in REGISTERED.get("wheels", ())
     for place in wheel["packages"]
 }
-#: One time for everything that a run writes if no other is known, so that two files of the same
-#: print are equal.
+# The time for everything that a run writes if no other is known, so that two files of the same
+# print are equal.
 STARTED = datetime.now(UTC)
-#: Read YAML with the library in C if there is one, since Python takes ten times as long.
+# Read YAML with the C library if there is one, since Python takes ten times as long.
 YAML = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-# Commands run in the folder of a book.
+# These paths are relative, because commands run in the folder of a book.
 BUILD = Path("_build")
 HTML = BUILD / "html"
 
 
 def let_everybody_read(folder: Path) -> None:
-    """Let a server read the pages that runs as nobody, whatever the umask of who builds them."""
+    """Make the pages readable to a server that runs as another user, whatever the umask."""
     for path in (folder, *folder.rglob("*")):
         mode = path.stat().st_mode
-        wanted = mode | (0o555 if path.is_dir() else 0o444)
-        if wanted != mode:
-            path.chmod(wanted)
+        readable = mode | (0o555 if path.is_dir() else 0o444)
+        if readable != mode:
+            path.chmod(readable)
 
 
 def exam_edition(book: Path = Path()) -> bool:
-    """Whether the book is built without worked solutions: BOOK_EXAM=1, or
-    ``exam_edition`` in ``_config.yml``.
-    """
+    """Whether to omit worked solutions: BOOK_EXAM=1, or ``exam_edition`` in ``_config.yml``."""
     if chosen := os.environ.get("BOOK_EXAM"):
         return chosen != "0"
     file = book / "_config.yml"
@@ -159,23 +153,23 @@ def exam_edition(book: Path = Path()) -> bool:
 
 
 def is_solutions(page: str) -> bool:
-    """Whether a page holds worked solutions: its name says so."""
+    """Whether a page contains worked solutions, according to its name."""
     return page.rpartition("/")[2].startswith("solutions")
 
 
 def contents() -> Contents:
-    """``_toc.yml``, in an exam edition without the pages of worked solutions."""
-    found: Contents = yaml.load(Path("_toc.yml").read_text("utf8"), YAML)
+    """Read ``_toc.yml``, in an exam edition without the pages of worked solutions."""
+    table: Contents = yaml.load(Path("_toc.yml").read_text("utf8"), YAML)
     if exam_edition():
-        for part in found["parts"]:
+        for part in table["parts"]:
             part["chapters"] = [
                 chapter for chapter in part["chapters"] if not is_solutions(chapter["file"])
             ]
-    return found
+    return table
 
 
 def parts() -> list[tuple[str, list[str]]]:
-    """The parts of the book: the caption of each, and the names of its pages."""
+    """Return the parts of the book: the caption of each, and the names of its pages."""
     return [
         (part["caption"], [chapter["file"] for chapter in part["chapters"]])
         for part in contents()["parts"]
@@ -183,12 +177,12 @@ def parts() -> list[tuple[str, list[str]]]:
 
 
 def pages() -> list[str]:
-    """The names of all pages of the book, the front page first."""
+    """Return the names of all pages of the book, the front page first."""
     return ["index", *(page for _, chapters in parts() for page in chapters)]
 
 
 class Edition(NamedTuple):
-    """Which edition of the book this is; texts, empty where there is nothing to say."""
+    """The edition of the book; its fields are empty strings where nothing is known."""
 
     name: str
     date: str  # such as 2026-11-22
@@ -196,19 +190,19 @@ class Edition(NamedTuple):
 
     @property
     def day(self) -> str:
-        """The date as it is read, such as 1 May 2031."""
+        """The date as people read it, such as 1 May 2031."""
         return (
             f"{(date := datetime.fromisoformat(self.date)).day} {date:%B %Y}" if self.date else ""
         )
 
     @property
     def words(self) -> str:
-        """Such as: Fifth edition, 1 May 2031."""
+        """Name and date, such as: Fifth edition, 1 May 2031."""
         return ", ".join(filter(None, [self.name, self.day]))
 
 
 def edition(book: Path = Path()) -> Edition:
-    """The edition that ``CITATION.cff`` names in the folder ``book``."""
+    """Return the edition that ``CITATION.cff`` in the folder ``book`` names."""
     file = book / "CITATION.cff"
     known = yaml.load(file.read_text("utf8"), YAML) if file.exists() else {}
     known |= known.pop("preferred-citation", {})
@@ -219,8 +213,9 @@ def edition(book: Path = Path()) -> Edition:
 
 
 def moment_of_sources() -> datetime:
-    """When the sources were last changed: SOURCE_DATE_EPOCH, or else the last
-    commit, or else when this run began.
+    """Return the time of the last change of the sources.
+
+    It is SOURCE_DATE_EPOCH, or the time of the last commit, or the time when this run began.
     """
     seconds = os.environ.get("SOURCE_DATE_EPOCH")
     if seconds is None and shutil.which("git"):
@@ -230,7 +225,7 @@ def moment_of_sources() -> datetime:
 
 
 def fingerprint(*paths: Path) -> str:
-    """Twelve hexadecimal digits that change when any file in ``paths`` does."""
+    """Return twelve hexadecimal digits that change when any file in ``paths`` does."""
     digest = hashlib.sha256()
     for path in paths:
         files = sorted(path.rglob("*")) if path.is_dir() else [path]
@@ -242,10 +237,10 @@ def fingerprint(*paths: Path) -> str:
 
 
 def where(node: "Node | None") -> str | None:
-    """The place of ``node`` in its source, as a reader of the warning needs it.
+    """Return the place of ``node`` in its source, in the form that a warning needs.
 
-    MyST-NB gives the lines of a notebook as 10000 times the cell's number,
-    plus the line in the cell, plus one.
+    MyST-NB gives the lines of a notebook as 10000 times the cell's number, plus the line in the
+    cell, plus one.
     """
     while node is not None and not (node.source and node.line):
         node = node.parent

@@ -1,8 +1,8 @@
 """The whole book as one PDF: the built pages in one document, printed by Chromium.
 
-Nothing is set anew. Equations, figures and numbers are those of the pages; what only
-a screen can do is taken out, links between pages become links inside the document,
-and print.css lays it out on paper.
+Nothing is typeset again. Equations, figures and numbers are those of the pages. Interactive parts
+are removed, links between pages become links inside the document, and print.css lays it out on
+paper.
 """
 
 import io
@@ -25,8 +25,8 @@ from .spoken import spoken
 
 FACES = (
     # Fixed weights of the site's variable fonts, which a PDF would store as drawings; and a
-    # typeface for code, which on a screen is the reader's own, with the Greek letters that the
-    # output of code contains.
+    # typeface for code, which on a screen is the reader's own, with the Greek letters in the output
+    # of code.
     ("Source Sans", "source-sans-3", "latin", 400),
     ("Source Sans", "source-sans-3", "latin", 600),
     ("Source Code Pro", "source-code-pro", "latin", 400),
@@ -34,9 +34,9 @@ FACES = (
     ("Source Code Pro Greek", "source-code-pro", "greek", 400),
 )
 LONG = 14  # lines of code that need not stay on one page
-# What only a screen can do, or what stands in the way on paper: links to a place beside themselves,
-# the code that draws figures, controls, the list of links on the front page, and what a check says
-# of a blank.
+# Interactive elements, and others that are out of place on paper: links to themselves, the code
+# that draws figures, controls, the list of links on the front page, and the reply of a check to an
+# empty answer.
 ONLY_ON_SCREEN = (
     "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
     ".whole-book, .output:has([data-outcome='not attempted'])"
@@ -49,7 +49,7 @@ NOTE = (
     "stills, and the code that draws the figures is left out. "
     "The web pages and the notebooks have both."
 )
-SMALLEST = 0.6  # of the size of the text; what is still too wide then stops the printing
+SMALLEST = 0.6  # of the size of the text; an element that is still too wide stops the printing
 
 # Shrink elements that are wider than their column, and return those that are still too wide. A page
 # is as wide as the document in a window of the same width, so both have the same layout.
@@ -88,14 +88,12 @@ PAPER = {"prefer_css_page_size": True, "print_background": True, "outline": True
 
 
 def place(page, fragment=""):
-    """The name of a place in the one document, which no two pages share."""
+    """Return the ID of a place in the combined document, which no two pages share."""
     return f"{page.replace('/', '-')}--{fragment}" if fragment else page.replace("/", "-")
 
 
 def target(page, address):
-    """Where a link on ``page`` leads in the document; ``None`` if
-    it leads to no page of the book.
-    """
+    """Return where a link on ``page`` leads in the document, or ``None`` if it leaves the book."""
     path, fragment = urldefrag(address)
     if not path:
         return place(page, fragment)
@@ -105,7 +103,7 @@ def target(page, address):
 
 
 def move_answers(text):
-    """Put the replies to the questions of a page, which a fold would hide, at its end."""
+    """Move the replies to the questions of a page, which a fold would hide, to its end."""
     folds = text.select("details.replies")
     if not folds:
         return
@@ -124,7 +122,7 @@ def move_answers(text):
 
 
 def as_picture(formula):
-    """A PDF has no MathML: screen readers get the formula in words."""
+    """Replace MathML, which a PDF lacks, by a description in words for screen readers."""
     formula["role"], formula["aria-label"] = (
         "img",
         tagged.FORMULA + spoken(formula.select_one("math")),
@@ -135,9 +133,7 @@ def as_picture(formula):
 
 
 def as_drawn(state):
-    """What a figure that stands still shows in numbers, in TeX; empty where it
-    shows none that one would read off.
-    """
+    """Return the TeX of the numbers that a still figure shows, or nothing if there are none."""
 
     def degrees(angle):
         return rf"{round(math.degrees(angle), 1) + 0:g}^\circ"
@@ -170,18 +166,18 @@ def as_drawn(state):
 
 
 def tell_numbers(text):
-    """Say below each figure that moves on a screen what its still shows."""
+    """Write the numbers that the still of each moving figure shows below it."""
     for figure in text.select("figure[data-figure]"):
         if tex := as_drawn(json.loads(figure.get("data-state", "{}"))):
             words = (
                 f'<p class="as-drawn">As drawn: <span class="math">{to_html(tex, False)}</span></p>'
             )
-            # Inside it, a PDF would draw the brackets.
+            # Inside the drawing, a PDF would draw the brackets.
             figure.insert_after(BeautifulSoup(words, "html.parser"))
 
 
 def article(site, page, set_formula=as_picture):
-    """The text of a page, ready to stand in one document with the others."""
+    """Return the text of a page, ready to be combined with the others in one document."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
     text = soup.select_one("article")
     for still in text.select("noscript"):
@@ -198,7 +194,7 @@ def article(site, page, set_formula=as_picture):
     for comment in text.find_all(string=lambda string: isinstance(string, Comment)):
         comment.extract()
     for paragraph in text.find_all("p"):
-        # A sentence that continues below, and a remark in italics directly under a heading.
+        # Remove a sentence that continues below, and a remark in italics directly under a heading.
         words, before = paragraph.get_text().strip(), paragraph.find_previous_sibling()
         remark = paragraph.em and paragraph.em.get_text() == words
         if words.endswith((":", ",")) or (remark and before and before.name in ("h1", "h2", "h3")):
@@ -211,20 +207,20 @@ def article(site, page, set_formula=as_picture):
             # With this role it would not be a link in a PDF.
             del element["role"]
         if element.name == "figure":
-            # A PDF would read out only that name.
+            # With this attribute, a PDF would read out only that name.
             element.attrs.pop("aria-labelledby", None)
         if element.get("id"):
             element["id"] = place(page, element["id"])
         for name, value in list(element.attrs.items()):
             if name == "href" and not re.match(r"\w+:", value):
-                if (found := target(page, value)) is None:
+                if (destination := target(page, value)) is None:
                     # This download is not part of the PDF.
                     element.unwrap()
                 else:
-                    element["href"] = f"#{found}"
+                    element["href"] = f"#{destination}"
             elif name in NAMES_OF_OTHERS:
                 names = value if isinstance(value, list) else value.split()
-                element[name] = " ".join(place(page, one) for one in names)
+                element[name] = " ".join(place(page, name_on_page) for name_on_page in names)
             elif isinstance(value, str) and "url(#" in value:
                 element[name] = value.replace("url(#", f"url(#{place(page)}--")
     text["id"] = place(page)
@@ -232,7 +228,7 @@ def article(site, page, set_formula=as_picture):
 
 
 def share_styles(articles):
-    """Keep one of each style sheet that figures bring with them."""
+    """Keep one copy of each style sheet that figures contain."""
     seen = set()
     for text in articles:
         for style in text.find_all("style"):
@@ -243,7 +239,7 @@ def share_styles(articles):
 
 
 def lower_headings(text):
-    """One level down: above the chapters stand the parts."""
+    """Lower the headings by one level, because the parts are above the chapters."""
     for level in (5, 4, 3, 2, 1):
         for heading in text.find_all(f"h{level}"):
             heading.name = f"h{level + 1}"
@@ -254,7 +250,7 @@ def heading(element):
 
 
 def contents_list(chapters):
-    """The list of contents, with room for the page numbers."""
+    """Return the table of contents, with space for the page numbers."""
 
     def line(kind, where, title):
         return (
@@ -276,7 +272,7 @@ def contents_list(chapters):
 
 
 def running_heads(chapters):
-    """A named page for each chapter, with its title above."""
+    """Return a named page style for each chapter, with its title in the header."""
     rules = []
     for _, page, text in chapters:
         title = heading(text.h2).replace("\\", "\\\\").replace('"', '\\"')
@@ -296,7 +292,7 @@ def faces():
 
 
 def title_page(front, title):
-    """The title page, from the beginning of the front page; what remains is a preface."""
+    """Return the title page from the beginning of the front page; the rest remains as a preface."""
     figure = front.select_one("figure.orientation-figure:not(.moving)").extract()
     words = front.section.find_all("p", recursive=False)
     question, beginning = words[0].extract(), words[1].extract()
@@ -313,7 +309,7 @@ def title_page(front, title):
 
 
 def document(site, title):
-    """The book as one HTML document."""
+    """Return the book as one HTML document."""
     front = article(site, "index")
     chapters = [
         (caption if first else None, page, article(site, page))
@@ -349,7 +345,7 @@ def document(site, title):
 
 
 def page_numbers(printed):
-    """The page on which each named place of a PDF stands, counted from 1."""
+    """Return the page number of each named place of a PDF, counted from 1."""
     with pikepdf.open(io.BytesIO(printed)) as pdf:
         pages = {page.objgen: number for number, page in enumerate(pdf.pages, start=1)}
         return {
@@ -358,35 +354,33 @@ def page_numbers(printed):
 
 
 def in_order(bookmarks):
-    """All bookmarks, each before those under it."""
+    """Iterate over all bookmarks, each before those under it."""
     for bookmark in bookmarks:
         yield bookmark
         yield from in_order(bookmark.children)
 
 
 def describe(pdf, title, author):
-    """Say in the file itself what it is, for programs that keep books, and
-    that it is made for screen readers.
-    """
+    """Write the metadata of the file, for library programs, and mark it as accessible."""
     which = edition()
-    with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
-        said["dc:title"] = title
-        said["dc:creator"] = [author]
-        said["dc:language"] = {"en"}
-        said["dc:rights"] = LICENCES_SAID
-        said["dc:description"] = which.words
+    with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as metadata:
+        metadata["dc:title"] = title
+        metadata["dc:creator"] = [author]
+        metadata["dc:language"] = {"en"}
+        metadata["dc:rights"] = LICENCES_SAID
+        metadata["dc:description"] = which.words
         if which.date:
-            said["dc:date"] = [which.date]
+            metadata["dc:date"] = [which.date]
         if which.doi:
-            said["dc:identifier"] = f"https://doi.org/{which.doi}"
-        said["xmp:CreateDate"] = said["xmp:ModifyDate"] = (
+            metadata["dc:identifier"] = f"https://doi.org/{which.doi}"
+        metadata["xmp:CreateDate"] = metadata["xmp:ModifyDate"] = (
             f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
         )
-        said["pdfuaid:part"] = "1"
+        metadata["pdfuaid:part"] = "1"
 
 
 def finish(printed, headings, title, author):
-    """Say what the PDF is, and leave nothing in it of the hour and the machine that made it."""
+    """Write the metadata of the PDF, without the time and the machine on which it was made."""
     date = moment_of_sources().strftime("D:%Y%m%d%H%M%SZ")
     file = io.BytesIO()
     with pikepdf.open(io.BytesIO(printed)) as pdf:
@@ -416,15 +410,15 @@ def finish(printed, headings, title, author):
 
 
 def print_document(browser, file, numbers):
-    """Print the document ``file``, its list of contents filled in with page ``numbers`` if there
-    are any; return the PDF and the headings, which become its bookmarks.
+    """Print the document ``file`` with the page ``numbers``, if any, in its table of contents.
 
-    The document is opened anew for each print: of one that it has printed before,
-    Chromium breaks some pages elsewhere.
+    Returns the PDF and the headings, which become its bookmarks. The document is opened anew for
+    each print, because Chromium breaks some pages elsewhere when it prints a document a second
+    time.
     """
     page = browser.new_page(viewport={"width": WIDTH, "height": 900})
     page.emulate_media(media="print", color_scheme="light")
-    # A slow machine needs this long.
+    # A slow machine needs longer than the default timeout.
     page.goto(file.resolve().as_uri(), timeout=0)
     page.evaluate("document.fonts.ready.then(() => true)")
     if faults := page.evaluate(FIT, SMALLEST):
@@ -438,7 +432,7 @@ def print_document(browser, file, numbers):
 
 
 def make(site, file, title, author):
-    """The PDF of the built book in ``site``, printed from the document ``file``."""
+    """Return the PDF of the built book in ``site``, printed from the document ``file``."""
     file.parent.mkdir(exist_ok=True)
     file.write_text(document(site, title), "utf8")
     # The table of contents needs the page numbers, so print, read them, and print again until they
@@ -447,8 +441,8 @@ def make(site, file, title, author):
         numbers = None
         for _ in range(4):
             printed, headings = print_document(browser, file, numbers)
-            found = page_numbers(printed)
-            if found == numbers:
+            current = page_numbers(printed)
+            if current == numbers:
                 return finish(printed, headings, title, author)
-            numbers = found
+            numbers = current
     raise RuntimeError("adding the page numbers to the list of contents moved the pages")

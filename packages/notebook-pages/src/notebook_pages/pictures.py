@@ -1,8 +1,7 @@
-"""The picture that stands for a page where it is passed on: its first figure,
-on white, as a PNG of 1200 by 630.
+"""The preview picture of a page when it is shared: its first figure on white, a PNG of 1200 by 630.
 
-Whoever shows a link fetches the picture by its whole address: pages
-name it only where the book has one.
+Sites that show a link fetch the picture by its full address, so pages name it only if the book has
+one.
 """
 
 import html
@@ -14,7 +13,7 @@ from types import SimpleNamespace
 from .paths import REGISTERED, fingerprint, named
 
 FOLDER = "pictures"
-#: The style sheet of the book's figures, and its colours on a light page by their names.
+# The style sheet of the book's figures, and its colours on a light page by their names.
 FIGURES = (
     named(REGISTERED["style"])
     if "style" in REGISTERED
@@ -33,22 +32,21 @@ SHEET = "#ffffff"
 
 
 def mixed(colour, per_cent):
-    """So many per cent of ``colour`` on white."""
+    """Mix ``per_cent`` of ``colour`` with white."""
     parts = [int(colour[k : k + 2], 16) for k in (1, 3, 5)]
     return "#" + "".join(f"{round(255 + (part - 255) * per_cent / 100):02x}" for part in parts)
 
 
 def plain_colours(text):
-    """``text`` with the colours of the light page where it names them, and
-    none of those where it defines them.
-    """
+    """Return ``text`` with light-page colours in place of their names and definitions."""
     text = re.sub(r"--[\w-]+:[^;]*;", "", text)
     return re.sub(r"var\(--([\w-]+)[^)]*\)", lambda name: FIGURES.LIGHT.get(name[1], SHEET), text)
 
 
 def plain_style():
-    """The style sheet of the figures without variables and mixtures, which
-    programs that draw SVG do not know.
+    """Return the style sheet of the figures without variables and mixed colours.
+
+    Programs that draw SVG do not know these.
     """
     rules = []
     for selector, rule in re.findall(
@@ -68,30 +66,28 @@ def plain_style():
 
 
 def first_figure(body):
-    """The first figure of a page: its SVG, the shape of its sheet, and what it
-    says to those who do not see it.
-    """
-    found = FIGURE.search(body or "")
-    if not found:
+    """Return the first figure of a page: its SVG, the shape of its sheet, and its description."""
+    match = FIGURE.search(body or "")
+    if not match:
         return None
     # Outlines that several figures of a page share may be stored outside the figure.
     shared = "".join(
         re.search(rf'<path [^>]*id="{name}"[^>]*>', body)[0]
-        for name in dict.fromkeys(re.findall(r'<use [^>]*href="#([^"]+)"', found[0]))
-        if f'id="{name}"' not in found[0]
+        for name in dict.fromkeys(re.findall(r'<use [^>]*href="#([^"]+)"', match[0]))
+        if f'id="{name}"' not in match[0]
     )
-    figure = found[0].replace(">", f"><defs>{shared}</defs>", 1)
-    # Where much of the sheet is empty.
-    inner = re.search(r'^<svg [^>]*data-box="([^"]*)"', found[0])
+    figure = match[0].replace(">", f"><defs>{shared}</defs>", 1)
+    # Use the inner box where much of the sheet is empty.
+    inner = re.search(r'^<svg [^>]*data-box="([^"]*)"', match[0])
     return (
         figure,
-        [float(number) for number in (inner or found)[1].split()],
-        html.unescape(found[2]),
+        [float(number) for number in (inner or match)[1].split()],
+        html.unescape(match[2]),
     )
 
 
 def drawn(figure, box):
-    """The PNG of a figure, as large as it fits."""
+    """Return the PNG of a figure, as large as it fits."""
     import resvg_py
 
     left, top, width, height = box
@@ -116,7 +112,7 @@ def drawn(figure, box):
 
 
 def write_picture(app, pagename, templatename, context, doctree):
-    """Draw the page's picture, and tell its template where it is and what it shows."""
+    """Draw the page's picture, and give its address and description to the page's template."""
     address, figure = app.config.html_baseurl, first_figure(context.get("body"))
     if not address or doctree is None or figure is None:
         return

@@ -1,16 +1,14 @@
-"""``python -m notebook_pages.pins``: renew every exact version that the
-set-up installs, all of them or none.
+"""``python -m notebook_pages.pins``: renew every pinned version that the set-up installs, or none.
 
 - ``constraints.txt``: the newest versions that pyproject.toml allows and that come as wheels, for
   every Python that the book supports and for every system, found by uv;
 - the wheels for browsers, ``live/wheels.txt`` and ``lite/wheels.txt``: the same versions, with
   their hashes;
 - ``package.json`` and ``package-lock.json``: the newest of each major version, found by npm. The
-  lock names no
-  addresses, so that it serves whoever has another registry.
+  lock file contains no addresses, so that it works with any registry.
 
-A new major version in ``package.json``, or a package that a wheel for browsers newly needs, is a
-decision: the first is made by hand there, the second is told here.
+Two things need a decision: a new major version in ``package.json``, which is made by hand there,
+and a package that a wheel for browsers newly needs, which is reported here.
 """
 
 import json
@@ -30,19 +28,19 @@ from .paths import REPOSITORY, WEBSITE
 from .set_up import IN_BROWSERS, LOCK, PACKAGE, WHEELS, npm
 
 CONSTRAINTS = REPOSITORY / "constraints.txt"
-#: npm packages that are not updated, with the reasons.
+# npm packages that are not updated, with the reasons.
 HELD = {"codemirror": "later numbers hold an older editor, published by mistake"}
-#: Front ends, which wheels for browsers require and do not get, since JupyterLite has its own.
+# Front ends, which wheels for browsers require and do not get, since JupyterLite has its own.
 NOT_IN_BROWSERS = {"jupyterlab-widgets", "widgetsnbextension"}
 
 
 def comments(text):
-    """The lines of comment that a list of pins begins with."""
+    """Return the comment lines at the beginning of a list of pins."""
     return [line for line in text.splitlines() if line.startswith("#")]
 
 
 def pins(text, python=None):
-    """The versions in a list of pins, by name: on this Python, or on another such as ``"3.15"``."""
+    """Return the versions in a list of pins by name, for this Python or another (``"3.15"``)."""
     environment = {"python_version": python, "python_full_version": f"{python}.0"} if python else {}
     stated = (
         Requirement(line.partition(" --hash")[0])
@@ -50,14 +48,14 @@ def pins(text, python=None):
         if line.strip() and not line.startswith("#")
     )
     return {
-        canonicalize_name(one.name): str(one.specifier).removeprefix("==")
-        for one in stated
-        if one.marker is None or one.marker.evaluate(environment)
+        canonicalize_name(requirement.name): str(requirement.specifier).removeprefix("==")
+        for requirement in stated
+        if requirement.marker is None or requirement.marker.evaluate(environment)
     }
 
 
 def resolve(*arguments):
-    """List pip's reports on each package that it would install, without installing any."""
+    """Return pip's report on each package that it would install, without installing any."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder, "report.json")
         command = [
@@ -81,9 +79,7 @@ def resolve(*arguments):
 
 
 def asked_for():
-    """What the projects of this repository ask for, each with all
-    its extras, but for one another.
-    """
+    """Return the requirements of this repository's projects, with extras; none on each other."""
     folders = [*(project.folder for project in PROJECTS), WEBSITE.parents[1]]
     stated = [
         tomllib.loads(Path(REPOSITORY, folder, "pyproject.toml").read_text("utf8"))["project"]
@@ -91,46 +87,48 @@ def asked_for():
     ]
     ours = {project["name"] for project in stated}
     every = [
-        one
+        requirement
         for project in stated
         for group in (project["dependencies"], *project.get("optional-dependencies", {}).values())
-        for one in group
+        for requirement in group
     ]
-    return [one for one in dict.fromkeys(every) if Requirement(one).name not in ours]
+    return [
+        requirement
+        for requirement in dict.fromkeys(every)
+        if Requirement(requirement).name not in ours
+    ]
 
 
 def constraints():
-    """The new text of ``constraints.txt``."""
+    """Return the new text of ``constraints.txt``."""
     oldest = PROJECTS[-1].about["requires-python"].removeprefix(">=")
     quiet = ("--quiet", "--no-header", "--no-annotate", "--only-binary=:all:")
     command = [sys.executable, "-m", "uv", "pip", "compile", "--universal", *quiet]
-    found = subprocess.run(
+    resolved = subprocess.run(
         [*command, "--python-version", oldest, "-"],
         check=True,
         input="\n".join(asked_for()),
         stdout=subprocess.PIPE,
         text=True,
     ).stdout
-    return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), found])
+    return "\n".join([*comments(CONSTRAINTS.read_text("utf8")), resolved])
 
 
 def wheels(old, versions):
-    """The new text of a list of wheels for browsers, whose old text is
-    ``old``, and what pip reports of each.
-    """
-    wanted = [
+    """Return the new text of a list of wheels for browsers, from ``old``, and pip's reports."""
+    requirements = [
         f"{name}=={versions[name]}" if name in versions else f"{name}>={version}"
         for name, version in pins(old).items()
     ]
     with tempfile.TemporaryDirectory() as folder:
         reports = resolve(
-            "--no-deps", *IN_BROWSERS, "--ignore-requires-python", "--target", folder, *wanted
+            "--no-deps", *IN_BROWSERS, "--ignore-requires-python", "--target", folder, *requirements
         )
-    found = {canonicalize_name(one["metadata"]["name"]): one for one in reports}
+    by_name = {canonicalize_name(report["metadata"]["name"]): report for report in reports}
     lines = comments(old)
     for name in pins(old):
-        digest = found[name]["download_info"]["archive_info"]["hashes"]["sha256"]
-        lines.append(f"{name}=={found[name]['metadata']['version']} --hash=sha256:{digest}")
+        digest = by_name[name]["download_info"]["archive_info"]["hashes"]["sha256"]
+        lines.append(f"{name}=={by_name[name]['metadata']['version']} --hash=sha256:{digest}")
     return "\n".join(lines) + "\n", reports
 
 
@@ -142,33 +140,35 @@ def missing(reports):
         "sys_platform": "emscripten",
         "platform_system": "Emscripten",
     }
-    there = {canonicalize_name(one["metadata"]["name"]) for one in reports} | NOT_IN_BROWSERS
-    for one in reports:
-        for requirement in map(Requirement, one["metadata"].get("requires_dist", ())):
+    there = {canonicalize_name(report["metadata"]["name"]) for report in reports} | NOT_IN_BROWSERS
+    for report in reports:
+        for requirement in map(Requirement, report["metadata"].get("requires_dist", ())):
             needed = requirement.marker is None or requirement.marker.evaluate(
                 browser | {"extra": ""}
             )
             if needed and canonicalize_name(requirement.name) not in there:
                 yield (
-                    f"{one['metadata']['name']} {one['metadata']['version']} needs "
+                    f"{report['metadata']['name']} {report['metadata']['version']} needs "
                     f"{requirement.name}"
                 )
 
 
 def scripts():
-    """The new texts of ``package.json`` and ``package-lock.json``."""
-    wanted = json.loads(PACKAGE.read_text("utf8"))
+    """Return the new texts of ``package.json`` and ``package-lock.json``."""
+    package = json.loads(PACKAGE.read_text("utf8"))
     for group in ("dependencies", "devDependencies"):
-        for name, version in wanted[group].items():
+        for name, version in package[group].items():
             if name not in HELD:
-                found = json.loads(
+                newest = json.loads(
                     npm(
                         "view", f"{name}@^{version}", "version", "--json", stdout=subprocess.PIPE
                     ).stdout
                 )
-                wanted[group][name] = max([found] if isinstance(found, str) else found, key=Version)
+                package[group][name] = max(
+                    [newest] if isinstance(newest, str) else newest, key=Version
+                )
     with tempfile.TemporaryDirectory() as folder:
-        text = json.dumps(wanted, indent=2, ensure_ascii=False) + "\n"
+        text = json.dumps(package, indent=2, ensure_ascii=False) + "\n"
         Path(folder, PACKAGE.name).write_text(text, "utf8")
         npm(
             "install",
@@ -186,8 +186,8 @@ def scripts():
 def main():
     new, reports = {CONSTRAINTS: constraints()}, []
     for path in WHEELS:
-        new[path], found = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
-        reports += found
+        new[path], reports_of_list = wheels(path.read_text("utf8"), pins(new[CONSTRAINTS]))
+        reports += reports_of_list
     new[PACKAGE], new[LOCK] = scripts()
     if untold := list(missing(reports)):
         sys.exit(

@@ -1,10 +1,9 @@
-"""Previews: what a link to an equation, a figure, a term or a source leads to, for
-``static/previews.js`` to show.
+"""Previews of the targets of links (equations, figures, terms, sources) for ``static/previews.js``.
 
-What stands on the same page is shown from there. For each page that others link to in this way the
-build writes one script with those places of it, which is fetched when the first of them is asked
-for; a script, because a page opened from a disk may fetch nothing else. Pages themselves grow by
-nothing.
+A target on the same page is shown from there. For each page that others link to in this way, the
+build writes one script with those targets, which is fetched when the first of them is requested. It
+is a script because a page opened from a disk may fetch nothing else. The pages themselves do not
+grow.
 """
 
 import json
@@ -23,7 +22,7 @@ OUTLINES = re.compile(r'href="#(o\d+)"')
 
 
 def element_at(text, name):
-    """The element whose id is ``name``, with all that stands in it; None if there is none."""
+    """Return the element with the ID ``name`` and all that it contains, or None."""
     begin = re.search(rf'<(\w+)\b[^>]*?\sid="{re.escape(name)}"[^>]*>', text)
     if not begin:
         return None
@@ -36,7 +35,7 @@ def element_at(text, name):
 
 
 def plain(shown):
-    """The HTML without links and names."""
+    """Return the HTML without links and IDs."""
     shown = re.sub(
         r'<a class="headerlink".*?</a>|<span class="label">.*?</span>(?=\s*<p)',
         "",
@@ -46,17 +45,19 @@ def plain(shown):
     return re.sub(r'</?a\b[^>]*>|\sid="[^"]*"', "", shown)
 
 
-def figure(page, found):
-    """A figure for other pages: its drawing, with the style and the outlines of letters that its
-    own page has, and its caption."""
-    drawing = re.search(r"<svg\b.*?</svg>", found, re.DOTALL)
-    caption = re.search(r"<figcaption>.*</figcaption>", found, re.DOTALL)
+def figure(page, outline):
+    """Return a figure for other pages: its caption, and its drawing with its style and outlines.
+
+    In its own page, the drawing shares the style and the outlines of letters with others.
+    """
+    drawing = re.search(r"<svg\b.*?</svg>", outline, re.DOTALL)
+    caption = re.search(r"<figcaption>.*</figcaption>", outline, re.DOTALL)
     style = re.search(r"<style>\.orientation-figure.*?</style>", page, re.DOTALL)
     if not (drawing and caption and style):
         return None
     names = dict.fromkeys(OUTLINES.findall(drawing[0]))
     paths = "".join(
-        found[0] for name in names if (found := re.search(rf'<path id="{name}"[^>]*/>', page))
+        outline[0] for name in names if (outline := re.search(rf'<path id="{name}"[^>]*/>', page))
     )
     outlines = (
         f'<svg width="0" height="0" style="position:absolute"><defs>{paths}</defs></svg>'
@@ -70,8 +71,9 @@ def figure(page, found):
 
 
 def preview(page, name):
-    """The HTML of the place ``name`` of a page, without links and names of its own;
-    None if it is none of the kinds.
+    """Return the HTML of the place ``name`` of a page, without its links and IDs.
+
+    Returns None if it is none of the kinds that have previews.
     """
     if name.startswith("term-"):
         begin = page.find(f'<dt id="{name}"')
@@ -92,18 +94,18 @@ def write(site):
         path.relative_to(site).with_suffix("").as_posix(): path.read_text("utf8")
         for path in pages_of(site)
     }
-    wanted = defaultdict(set)
+    linked = defaultdict(set)
     for page, text in texts.items():
         for path, name in LINK.findall(text):
-            wanted[posixpath.normpath(posixpath.join(posixpath.dirname(page), path))].add(name)
+            linked[posixpath.normpath(posixpath.join(posixpath.dirname(page), path))].add(name)
     folder = site / FOLDER
     folder.mkdir(parents=True, exist_ok=True)
     for outdated in folder.iterdir():
         outdated.unlink()
-    for page in sorted(wanted.keys() & texts.keys()):
-        found = {name: preview(texts[page], name) for name in sorted(wanted[page])}
-        if found := {name: shown for name, shown in found.items() if shown}:
-            data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+    for page in sorted(linked.keys() & texts.keys()):
+        shown_by_name = {name: preview(texts[page], name) for name in sorted(linked[page])}
+        if shown_by_name := {name: shown for name, shown in shown_by_name.items() if shown}:
+            data = json.dumps(shown_by_name, ensure_ascii=False, separators=(",", ":"))
             text = f"(self.previews ??= {{}})[{json.dumps(page)}]={data};"
             (folder / f"{page.replace('/', '-')}.js").write_text(text, "utf8")
 

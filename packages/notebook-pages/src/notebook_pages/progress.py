@@ -1,8 +1,7 @@
-"""The page *My progress*: what there is to do in each chapter,
-filled in by the reader's own browser.
+"""The page *My progress*: the tasks of each chapter, filled in by the reader's own browser.
 
-The build counts; `progress.js` keeps what the reader does, and `my-progress.js` shows it. Without a
-script the page still says what there is to read, to predict, to answer and to solve.
+The build counts the tasks. `progress.js` stores what the reader has done, and `my-progress.js`
+shows it. Without a script, the page still lists what to read, predict, answer and solve.
 """
 
 import re
@@ -40,7 +39,7 @@ class ProgressDirective(SphinxDirective):
 
 
 def questions_in(notebook):
-    """The names of the questions that the notebook at this path hands to the checker."""
+    """Return the names of the questions that the notebook at this path passes to the checker."""
     if not notebook.is_file():
         return []
     cells = nbformat.read(notebook, as_version=4).cells
@@ -50,12 +49,12 @@ def questions_in(notebook):
 
 
 def companion(page):
-    """The notebook of sealed questions that belongs to a chapter."""
+    """Return the notebook of sealed questions that belongs to a chapter."""
     return Path("exercises") / f"{Path(page).name}.ipynb"
 
 
 def count(app, doctree):
-    """Note what there is to do on a page: names by column, as `progress.js` keeps them."""
+    """Record the tasks of a page: names by column, as `progress.js` stores them."""
     page = app.env.docname
     whole = next(doctree.findall(nodes.section), [])
     sections = [section for section in whole if isinstance(section, nodes.section)]
@@ -75,7 +74,7 @@ def count(app, doctree):
 
 
 def chapters(env):
-    """The chapters of the book, which are the pages with a number, in the order of the contents."""
+    """Return the chapters of the book, which are the numbered pages, in the contents' order."""
     return [
         page for _, pages in parts() for page in pages if env.toc_secnumbers.get(page, {}).get("")
     ]
@@ -86,14 +85,14 @@ def visit_table(translator, node):
     here = translator.builder.current_docname
     rows = []
     for page in chapters(env):
-        found = dict(env.metadata[page]["to do"])
-        found["checked"] = found["checked"] + questions_in(companion(page))
+        tasks = dict(env.metadata[page]["to do"])
+        tasks["checked"] = tasks["checked"] + questions_in(companion(page))
         number = env.toc_secnumbers[page][""][0]
         address = translator.builder.get_relative_uri(here, page)
         cells = "".join(
             f'<td data-kind="{kind}" data-heading="{heading}" '
-            f'data-names="{escape(" ".join(found[kind]), quote=True)}">'
-            f"{len(found[kind]) or '–'}</td>"
+            f'data-names="{escape(" ".join(tasks[kind]), quote=True)}">'
+            f"{len(tasks[kind]) or '–'}</td>"
             for kind, heading in COLUMNS.items()
         )
         title = escape(env.titles[page].astext())
@@ -114,7 +113,7 @@ def visit_table(translator, node):
 
 
 def write_again(app, env):
-    """The table counts what stands on other pages: it is written at every build."""
+    """Write the page with the table at every build, because it counts tasks on other pages."""
     return [page for page, facts in env.metadata.items() if "shows progress" in facts]
 
 

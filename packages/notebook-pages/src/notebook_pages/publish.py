@@ -1,11 +1,9 @@
-"""What others read of the pages: search engines, those who pass a page on,
-programs, and readers with a correction.
+"""Metadata of the pages for search engines, for shared links, for programs, and for corrections.
 
-The title and the author stand in ``_config.yml``; so do, once the book has them, its address
-(``html.baseurl``) and its repository (``repository.url``, ``repository.branch``), for which
-BOOK_ADDRESS and BOOK_REPOSITORY stand in where a workflow publishes. The edition, its date and its
-DOI stand in ``CITATION.cff``, from which the directive ``cite-this-book`` writes how the book is
-cited.
+The title and the author are in ``_config.yml``. So are, once the book has them, its address
+(``html.baseurl``) and its repository (``repository.url``, ``repository.branch``), which
+BOOK_ADDRESS and BOOK_REPOSITORY replace in a workflow that publishes. The edition, its date and its
+DOI are in ``CITATION.cff``, from which the directive ``cite-this-book`` writes the citation.
 """
 
 import html
@@ -21,15 +19,15 @@ from .execution import STORED
 from .paths import LICENCES, LICENCES_SAID, edition
 from .take_away import notebook_address
 
-# In characters. No site shows a longer description.
+# In characters; no site shows a longer description.
 LONGEST = 200
 SHORTEST = 50
-#: Elements beside the text.
+# Elements beside the text.
 ASIDE = (nodes.Admonition, nodes.figure, nodes.list_item, nodes.table)
 
 
 def take_addresses(app, config):
-    """Let the environment name the place where the book is published."""
+    """Let the environment set the address at which the book is published."""
     if address := os.environ.get("BOOK_ADDRESS"):
         config.html_baseurl = address
     if config.html_baseurl and not config.html_baseurl.endswith("/"):
@@ -42,9 +40,7 @@ def take_addresses(app, config):
 
 
 def description(doctree):
-    """The first words of a page that stand as text: its first paragraph
-    without a set formula, cut to length.
-    """
+    """Return the first paragraph of a page without a displayed formula, cut to length."""
     for paragraph in doctree.findall(nodes.paragraph):
         inside = paragraph.parent
         while inside is not None and not isinstance(inside, ASIDE):
@@ -61,7 +57,7 @@ def description(doctree):
 
 
 def shortened(words):
-    """``words``, at most LONGEST characters of them: whole sentences, or else words."""
+    """Shorten ``words`` to at most LONGEST characters, at the end of a sentence or a word."""
     if len(words) <= LONGEST:
         return words
     sentences = words[: LONGEST + 1].rpartition(". ")[0]
@@ -80,7 +76,7 @@ def plain_title(context):
 
 
 def write_head(app, pagename, templatename, context, doctree):
-    """Give the page's template what it says of the page, and to whom readers write."""
+    """Give the page's template its description, and the addresses for corrections."""
     book = app.config.html_title
     # Both the theme and docutils add a tag for the size of the screen.
     context["metatags"] = re.sub(
@@ -113,22 +109,20 @@ def write_head(app, pagename, templatename, context, doctree):
 
 
 def described(app, page):
-    """What a page says of itself, also one that this build has not written."""
+    """Return the description of a page, even if this build has not written it."""
     text = Path(app.outdir, f"{page}.html").read_text("utf8")
     return html.unescape(DESCRIPTION.search(text)[1])
 
 
 def outline(app):
-    """The pages as a list in Markdown, with what each is about: for programs
-    that read (https://llmstxt.org).
-    """
+    """Return the pages as a Markdown list with descriptions, for programs (https://llmstxt.org)."""
     env, root, address = app.env, app.config.root_doc, app.config.html_baseurl or ""
     lines = [f"# {app.config.html_title}", "", f"> {described(app, root)}", ""]
-    said = filter(
+    credits = filter(
         None,
         [f"By {app.config.author}.", LICENCES_SAID, "Notebooks hold the whole text in Markdown."],
     )
-    lines += [" ".join(said), "", "## Pages", ""]
+    lines += [" ".join(credits), "", "## Pages", ""]
     for page in in_order(env)[1:]:
         title = env.titles[page].astext()
         is_one = str(env.doc2path(page)).endswith(".ipynb")
@@ -138,18 +132,18 @@ def outline(app):
 
 
 def in_order(env):
-    """The pages in the order of the table of contents."""
-    found, waiting = [], [env.config.root_doc]
+    """Return the pages in the order of the table of contents."""
+    ordered, waiting = [], [env.config.root_doc]
     while waiting:
         page = waiting.pop(0)
-        if page not in found:
-            found.append(page)
+        if page not in ordered:
+            ordered.append(page)
             waiting = [*env.toctree_includes.get(page, []), *waiting]
-    return [*found, *sorted(env.found_docs - set(found))]
+    return [*ordered, *sorted(env.found_docs - set(ordered))]
 
 
-#: This page is shown at any address, so its links must not be relative. If no address is set, the
-#: script looks for the book.
+# This page is shown at any address, so its links must not be relative. If no address is set, the
+# script looks for the book.
 NOT_FOUND = """<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8" />
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -184,7 +178,7 @@ step from its <a href="{front}index.html">front page</a>, and can be
 
 
 def write_files(app, exception):
-    """What servers and machines look for beside the pages."""
+    """Write the files that servers and crawlers look for beside the pages."""
     if exception or app.builder.format != "html":
         return
     site, address = Path(app.outdir), app.config.html_baseurl or ""
@@ -215,7 +209,7 @@ def write_files(app, exception):
 
 
 class CiteThisBook(SphinxDirective):
-    """How the book is cited: in words, and as BibTeX takes it."""
+    """Write how to cite the book, in words and as BibTeX."""
 
     def run(self):
         config, which = self.config, edition(Path(self.env.srcdir))

@@ -1,10 +1,9 @@
-"""Questions that the reader answers on the page: predictions before a
-result, and the recap of a chapter.
+"""Questions that the reader answers on the page: predictions, and recaps of chapters.
 
-The directive `predict` is one question; `recap` holds several, each a `question`. The last thing in
-a question is a definition list: each term is a choice, its definition the reply to whoever chooses
-it. The page as built is complete without a script, the replies in a fold; `questions.js` lets the
-reader commit to a choice first.
+The directive `predict` is one question; `recap` contains several, each a `question`. A question
+ends with a definition list: each term is a choice, and its definition is the reply to readers who
+choose it. The page as built is complete without a script, with the replies in a fold;
+`questions.js` lets the reader commit to a choice first.
 """
 
 from docutils import nodes
@@ -25,14 +24,14 @@ class question(nodes.General, nodes.Element):
     """A question with its choices.
 
     Attributes: ``predicts``; ``place``, its number on the page; ``kind``, one of the options
-    ``answer`` (a letter), ``number`` and ``angle`` (in degrees); ``answer``, what is right;
-    ``tolerance``; ``covers``, how many of the blocks that follow are covered until the reader has
+    ``answer`` (a letter), ``number`` and ``angle`` (in degrees); ``answer``, the right answer;
+    ``tolerance``; ``covers``, how many of the following blocks are covered until the reader has
     answered.
     """
 
 
 class choice_list(nodes.General, nodes.Element):
-    """What there is to choose from; absent where the answer is a number."""
+    """The choices of a question; absent if the answer is a number."""
 
 
 class choice(nodes.General, nodes.Element):

@@ -1,6 +1,6 @@
 """Show the built book on a local address: ``python -m notebook_pages.serve [port]``.
 
-In the offline book: ``python serve.py [port]``. Needs nothing but Python's standard library.
+In the offline book: ``python serve.py [port]``. It needs only Python's standard library.
 """
 
 import sys
@@ -9,13 +9,13 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-# The offline book carries a copy of this file, with the pages beside it.
+# The offline book contains a copy of this file, with the pages beside it.
 BOOK = HERE if (HERE / "index.html").is_file() else Path("_build/html")
 
 
 class Handler(SimpleHTTPRequestHandler):
-    # Browsers run a module only if it is served as JavaScript, and the system's own table of
-    # types may not know .mjs or .wasm.
+    # Browsers run a module only if it is served as JavaScript, and the system's own table of types
+    # may not know .mjs or .wasm.
     extensions_map = SimpleHTTPRequestHandler.extensions_map | {
         ".js": "text/javascript",
         ".mjs": "text/javascript",
@@ -30,21 +30,20 @@ class Handler(SimpleHTTPRequestHandler):
     isolated = True
 
     def end_headers(self):
-        # JupyterLite's kernel hangs in an isolated page when a file is
-        # written, or an error is shown.
+        # JupyterLite's kernel hangs in an isolated page when it writes a file or shows an error.
         if self.isolated and not self.path.startswith("/lite/"):
             self.send_header("Cross-Origin-Opener-Policy", "same-origin")
             self.send_header("Cross-Origin-Embedder-Policy", "require-corp")
-            # For frames without an origin.
+            # Frames without an origin need this header.
             self.send_header("Cross-Origin-Resource-Policy", "cross-origin")
         super().end_headers()
 
     def log_message(self, *arguments):
-        """Say nothing about each request."""
+        """Log nothing."""
 
 
 def server(folder=BOOK, port=0, handler=Handler):
-    """A server of ``folder``; port 0 takes any that is free."""
+    """Return a server of ``folder``; port 0 selects any free port."""
     return ThreadingHTTPServer(("127.0.0.1", port), partial(handler, directory=folder))
 
 
@@ -53,7 +52,7 @@ def main():
     try:
         book = server(port=port)
     except OSError:
-        book = server()  # the port is taken
+        book = server()  # the port is in use
     print(f"The book is at http://127.0.0.1:{book.server_port}/ (stop with Ctrl+C)", flush=True)
     try:
         book.serve_forever()

@@ -1,9 +1,8 @@
-"""``python -m notebook_pages.set_up``: fetch what pages are made with and pip
-does not install, all from exact pins.
+"""``python -m notebook_pages.set_up``: fetch the pinned packages that pip does not install.
 
-Packages of npm (``package.json``) come into ``node_modules``, and Python packages for browsers
-(``live/wheels.txt`` and ``lite/wheels.txt``) into ``.venv/runtime``: in the folder of the book, or
-where ``NOTEBOOK_PAGES_FETCHED`` says.
+npm packages (``package.json``) go into ``node_modules``, and Python packages for browsers
+(``live/wheels.txt`` and ``lite/wheels.txt``) into ``.venv/runtime``, in the folder of the book or
+in ``NOTEBOOK_PAGES_FETCHED``.
 """
 
 import shutil
@@ -37,7 +36,7 @@ def npm(*arguments, **keywords):
 def fetch_packages():
     print(f"Setting up KaTeX, the typefaces and Python for browsers in {NODE_MODULES} ...")
     FETCHED.mkdir(parents=True, exist_ok=True)
-    # The folder may have a package.json of its own.
+    # Work in a new folder, because this one may have a package.json of its own.
     with tempfile.TemporaryDirectory(dir=FETCHED) as folder:
         for file in (PACKAGE, LOCK):
             shutil.copy(file, folder)

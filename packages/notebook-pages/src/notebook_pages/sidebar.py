@@ -1,5 +1,7 @@
-"""The contents at the side, in parts that open and close: the part of this page stands open, or
-else the first. At the other side those of the page, with the names of functions.
+"""The sidebars: the contents of the book in folding parts, and the contents of the page.
+
+The part of this page is open, or else the first. The contents of the page include names of
+functions.
 """
 
 from bs4 import BeautifulSoup
@@ -8,8 +10,7 @@ UNUSED = ("reference", "internal", "toctree-l1")
 
 
 def fold(soup):
-    """Make each caption and the list below it one fold; a title does
-    not repeat the caption of its part.
+    """Make each caption and its list one fold, and do not repeat the caption in the titles.
 
     Of *Exercises: Gimbal lock*, in the part *Exercises*, the sidebar shows *Gimbal lock*.
     """
@@ -38,7 +39,7 @@ def fold(soup):
 
 
 def divide_names(soup):
-    """Let a name that is too long for the line go on after one of its low lines."""
+    """Allow a line break after the underscores of a name that is too long for the line."""
     for name in soup.select("code .pre") if soup else ():
         name.replace_with(BeautifulSoup(str(name).replace("_", "_<wbr>"), "html.parser"))
     return soup
@@ -46,8 +47,8 @@ def divide_names(soup):
 
 def fold_contents(app, pagename, templatename, context, doctree):
     if generate := context.get("generate_toctree_html"):
-        context["generate_toctree_html"] = lambda *given, **named: fold(
-            BeautifulSoup(str(generate(*given, **named)), "html.parser")
+        context["generate_toctree_html"] = lambda *arguments, **named: fold(
+            BeautifulSoup(str(generate(*arguments, **named)), "html.parser")
         )
     if list_sections := context.get("generate_toc_html"):
         context["generate_toc_html"] = lambda: divide_names(list_sections())

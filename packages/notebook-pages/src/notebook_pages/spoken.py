@@ -1,9 +1,8 @@
-"""A formula in words, from its MathML: for a PDF, where it is a picture,
-and for programs that know no MathML.
+"""A formula in words, from its MathML, for the PDF and for programs without MathML.
 
-Said is what somebody would say who reads the formula to a colleague. Superscripts on both sides of
-a letter name frames and are no powers; a hat is said once, with its direction; a raised T after an
-expression is its transpose; a cross between two numbers is "times", or "by" where it tells a shape.
+The words are those of somebody who reads the formula to a colleague. Superscripts on both sides of
+a letter name frames and are no powers. A hat is spoken once, with its direction. A raised T after
+an expression is its transpose. A cross between two numbers is "times", or "by" in a shape.
 """
 
 import re
@@ -11,7 +10,7 @@ import unicodedata
 
 from bs4 import NavigableString
 
-#: Characters that are read out by another word than their Unicode name.
+# Characters that are read out by another word than their Unicode name.
 WORDS = {
     "=": "equals", "+": "plus", "−": "minus", "-": "minus", "±": "plus or minus",
     "∓": "minus or plus", "(": "open bracket", ")": "close bracket", "[": "open square bracket",
@@ -45,39 +44,40 @@ POWERS = {
     "∘": "degrees",
 }
 POWERS |= {"−1": "inverse", "′": "prime", "′′": "double prime", "⊤": "transpose"}
-#: Operators with limits, and the word before the limit if there is only one.
+# Operators with limits, and the word before the limit if there is only one.
 LIMITED = {"∑": "over", "∫": "over", "lim": "as", "min": "over", "max": "over"}
 BARS = "∣|∥‖"
 SCRIPTS = ("msup", "msub", "msubsup")
 
 
 def parts(node):
-    """The elements of ``node``; a row that only groups its elements is taken apart."""
-    found = []
+    """Return the elements of ``node``, with rows that only group their elements taken apart."""
+    elements = []
     for child in node.children:
         if isinstance(child, NavigableString):
             continue
         alone = (
             child.name in ("mstyle", "semantics") or child.name == "mrow" and len(parts(child)) == 1
         )
-        found += parts(child) if alone else [child]
-    return found
+        elements += parts(child) if alone else [child]
+    return elements
 
 
 def bare(node):
-    """The signs of ``node`` without blanks."""
-    # Characters that are invisible.
+    """Return the characters of ``node`` without spaces."""
+    # These characters are invisible.
     return re.sub("[\u2061-\u2064]", "", "".join(node.get_text().split()))
 
 
 def is_simple(node):
-    """Whether one hears where ``node`` ends: one letter or number, with its marks
-    or sign, or a few such in a row.
+    """Whether a listener can tell where ``node`` ends.
+
+    This is so for one letter or number, with its marks or sign, and for a few of them in a row.
     """
     if node.name in ("mrow", "mstyle", "math"):
         inside = parts(node)
         signed = len(inside) == 2 and bare(inside[0]) in ("−", "-", "+")
-        plain = all(one.name in ("mi", "mn") for one in inside)
+        plain = all(part.name in ("mi", "mn") for part in inside)
         return (
             signed
             and is_simple(inside[1])
@@ -92,7 +92,7 @@ def is_simple(node):
 
 
 def sign(node):
-    """A letter, a number, a name or an operator."""
+    """Return the words of a letter, a number, a name or an operator."""
     text = node.get_text().strip()
     if not text:
         return ""
@@ -108,7 +108,7 @@ def sign(node):
 
 
 def raised(power, after_frame):
-    """What a superscript says; ``after_frame``: of a letter that has one before it too."""
+    """Return the words of a superscript; ``after_frame``: of a letter with one before it, too."""
     text = bare(power)
     frame = re.fullmatch("[A-Z]", text) and (after_frame or text != "T")
     if not frame and text in POWERS:
@@ -119,7 +119,7 @@ def raised(power, after_frame):
 
 
 def lowered(base, index):
-    """What a subscript says: after a hat it is a direction, and nothing stands before it."""
+    """Return the words of a subscript; after a hat, it is a direction and is spoken alone."""
     if bare(index) in ("⊥", "∥"):
         return say(index)
     if bare(index) == "×":
@@ -129,7 +129,7 @@ def lowered(base, index):
 
 
 def is_before(node):
-    """Whether a script stands before its letter: what it is raised on is empty."""
+    """Whether a script is before its letter, which means that its base is empty."""
     return node.name in SCRIPTS and parts(node)[0].name == "mrow" and not bare(parts(node)[0])
 
 
@@ -138,9 +138,11 @@ def with_scripts(node, after_frame=False):
     if bare(base) in LIMITED and node.name != "msup":
         limits = [
             LIMITED[bare(base)] if len(scripts) == 1 else "from",
-            *(say(one) for one in scripts[:1]),
+            *(say(script) for script in scripts[:1]),
         ]
-        return " ".join([say(base), *limits, *(f"to {say(one)}" for one in scripts[1:]), "of"])
+        return " ".join(
+            [say(base), *limits, *(f"to {say(script)}" for script in scripts[1:]), "of"]
+        )
     words = [", end of magnitude," if bare(base) in BARS else say(base)]
     if node.name in ("msub", "msubsup"):
         words.append(lowered(base, scripts[0]))
@@ -164,7 +166,7 @@ def table(node):
 
 
 def product(text, before, after):
-    """What × and ⋅ say between their neighbours."""
+    """Return the words of × and ⋅ between their neighbours."""
     numbers = [node is not None and bare(node)[:1].isdecimal() for node in (before, after)]
     if text == "×" and all(numbers) and len(bare(before)) == len(bare(after)) == 1:
         return "by"  # the shape of a matrix
@@ -172,7 +174,7 @@ def product(text, before, after):
 
 
 def argument(node):
-    """What stands alone between brackets, as after the name of a function; otherwise ``None``."""
+    """Return the only element between brackets, as after the name of a function, or ``None``."""
     inside = parts(node) if node is not None and node.name == "mrow" else []
     is_one = (
         len(inside) == 3
@@ -184,7 +186,7 @@ def argument(node):
 
 
 def is_letter(node):
-    """Whether ``node`` is an upright letter, which words of several are made of."""
+    """Whether ``node`` is an upright letter, as in names of several letters."""
     upright = node is not None and node.name == "mi" and node.get("mathvariant") == "normal"
     return upright and re.fullmatch("[A-Za-z]", bare(node)) is not None
 
@@ -227,7 +229,7 @@ def row(nodes):
 
 
 def say(node):
-    """The words for ``node``, an element of MathML."""
+    """Return the words for ``node``, an element of MathML."""
     if node.name == "mfrac":
         over, under = parts(node)
         if is_simple(over) and is_simple(under):
@@ -259,7 +261,7 @@ def say(node):
 
 
 def spoken(math):
-    """The words for a formula, its ``math`` element, on one line."""
+    """Return the words for a formula, its ``math`` element, on one line."""
     words = re.sub(r"\s+", " ", say(math))
     words = re.sub(r"(?: ?[,;])*( ?;)", r";", words)
     words = re.sub(r"(?: ?,)+", ",", words)

@@ -1,8 +1,7 @@
-"""The directive ``subject-index``: where the book speaks of each term,
-and uses each symbol and function.
+"""The directive ``subject-index``: the pages about each term, symbol and function.
 
-Nothing is marked for it. Terms are those of the glossary, found where the text refers to them, or
-else where it says them; symbols are the rows of the notation page; functions are those of the
+Authors mark nothing for it. Terms are those of the glossary, found where the text refers to them or
+else where it mentions them. Symbols are the rows of the notation page. Functions are those of the
 reference, found where code or text names them.
 """
 
@@ -17,13 +16,13 @@ from .publish import in_order
 
 GLOSSARY, NOTATION = "appendix/glossary", "appendix/notation"
 REFERENCE = ("appendix/reference", "appendix/reference-going-further")
-#: Pages that mention everything.
+# Pages that mention everything.
 NOT_LISTED = (GLOSSARY, NOTATION, *REFERENCE, "index")
-MOST = 6  # pages of a term that is said and nowhere referred to
+MOST = 6  # pages of a term that is mentioned but nowhere referred to
 
 
 class subject_index(nodes.General, nodes.Element):
-    """Stands on its page until all pages are read."""
+    """A placeholder on its page until all pages have been read."""
 
 
 class SubjectIndex(SphinxDirective):
@@ -33,7 +32,7 @@ class SubjectIndex(SphinxDirective):
 
 
 def section_of(node):
-    """The name of the section in which ``node`` stands."""
+    """Return the name of the section that contains ``node``."""
     # The text of an exercise is a section whose name is removed later, so use the section around
     # it.
     unnamed = ([], ["exercise-content"], ["solution-content"])
@@ -43,7 +42,7 @@ def section_of(node):
 
 
 def note_uses(app, doctree):
-    """Keep, for a page, the first section that speaks of each term and names each function."""
+    """Record the first section of a page that refers to each term and that names each function."""
     terms, names, words = {}, {}, {}
     for reference in doctree.findall(addnodes.pending_xref):
         if reference.get("reftype") == "term":
@@ -59,15 +58,15 @@ def note_uses(app, doctree):
     app.env.subject_uses[app.env.docname] = (terms, names, words)
 
 
-def said(app, order, term):
-    """The pages of ``order`` that say ``term``, each with the first section that does."""
+def pages_mentioning(app, order, term):
+    """Return the pages of ``order`` that mention ``term``, each with the first such section."""
     stem = re.escape(term.casefold().removesuffix("s"))
     pattern = re.compile(rf"(?<!\w){stem}s?(?!\w)")
-    found = []
+    mentions = []
     for page in order:
         sections = app.env.subject_uses[page][2].items()
-        found += [(page, section) for section, words in sections if pattern.search(words)][:1]
-    return found[:MOST]
+        mentions += [(page, section) for section, words in sections if pattern.search(words)][:1]
+    return mentions[:MOST]
 
 
 def begin(app, env, docnames):
@@ -79,16 +78,16 @@ def forget(app, env, docname):
     env.subject_uses.pop(docname, None)
 
 
-def merge(app, env, docnames, other):
+def merge(app, env, docnames, other_env):
     env.subject_uses.update(
-        {name: other.subject_uses[name] for name in docnames if name in other.subject_uses}
+        {name: other_env.subject_uses[name] for name in docnames if name in other_env.subject_uses}
     )
-    if page := getattr(other, "subject_index_page", None):
+    if page := getattr(other_env, "subject_index_page", None):
         env.subject_index_page = page
 
 
 def write_anew(app, env):
-    """The page depends on all others."""
+    """Write the page again, because it depends on all others."""
     page = getattr(env, "subject_index_page", None)
     return [page] if page in env.found_docs else []
 
@@ -99,9 +98,7 @@ def link(app, page, target, anchor, words):
 
 
 def places(app, page, uses):
-    """The links to the places of ``uses``, a list of pages with
-    sections, in the order of the book.
-    """
+    """Return the links to the places of ``uses``, pages with sections, in the book's order."""
     made = []
     for target, section in uses:
         made += [
@@ -112,7 +109,7 @@ def places(app, page, uses):
 
 
 def entry(app, page, name, main, uses, formula=None):
-    """One line: what it is, leading to where it is explained, and where else it stands."""
+    """Return one line: a name that links to its explanation, and the other places that use it."""
     paragraph = nodes.paragraph(
         "", "", *([formula, nodes.Text(" ")] if formula else []), link(app, page, *main, name)
     )
@@ -122,7 +119,7 @@ def entry(app, page, name, main, uses, formula=None):
 
 
 def terms(app):
-    """The terms of the glossary: as they are written, with their anchors."""
+    """Return the terms of the glossary as they are written, with their anchors."""
     domain = app.env.domains["std"]
     return {
         written: anchor
@@ -132,9 +129,7 @@ def terms(app):
 
 
 def functions(app):
-    """What the reference explains: functions, classes and such, by their short
-    names, with their pages and anchors.
-    """
+    """Return the entries of the reference by their short names, with their pages and anchors."""
     return {
         name.rpartition(".")[2]: (entry.docname, entry.node_id)
         for name, entry in app.env.domains["py"].objects.items()
@@ -144,7 +139,7 @@ def functions(app):
 
 
 def symbols(app):
-    """The rows of the notation page that begin with a name and a formula: both, as nodes."""
+    """Return the rows of the notation page that begin with a name and a formula, both as nodes."""
     doctree = app.env.get_doctree(NOTATION)
     for row in doctree.findall(nodes.row):
         cells = list(row.findall(nodes.entry))
@@ -170,8 +165,8 @@ def fill(app, doctree, docname):
         for page in order:
             if page == docname:
                 continue
-            for kind, found in zip(("term", "name"), app.env.subject_uses[page]):
-                for name, section in found.items():
+            for kind, glossary in zip(("term", "name"), app.env.subject_uses[page]):
+                for name, section in glossary.items():
                     uses[kind, name].append((page, section))
         texts = [page for page in order if page.startswith("chapters/")]
         made = []
@@ -184,7 +179,7 @@ def fill(app, doctree, docname):
             ]
             made.append(section)
 
-        found = sorted(terms(app).items(), key=lambda item: item[0].casefold())
+        glossary = sorted(terms(app).items(), key=lambda item: item[0].casefold())
         part(
             "Terms",
             [
@@ -193,14 +188,14 @@ def fill(app, doctree, docname):
                     docname,
                     [nodes.Text(name)],
                     (GLOSSARY, anchor),
-                    uses["term", key] or said(app, texts, name),
+                    uses["term", key] or pages_mentioning(app, texts, name),
                 )
-                for name, anchor in found
+                for name, anchor in glossary
                 for key in [name.casefold()]
             ],
         )
         part("Symbols", [
-            # a link of words: those are heard
+            # Use a link of words, which screen readers read.
             entry(app, docname, name, (NOTATION, section), [], formula.deepcopy())
             for name, formula, section in symbols(app)
         ])  # fmt: skip

@@ -1,10 +1,9 @@
-"""The structure of a printed PDF, put in order: what a screen
-reader is told, by ISO 14289-1 (PDF/UA).
+"""Correct the structure of a printed PDF for screen readers, by ISO 14289-1 (PDF/UA).
 
-Chromium tags what it prints, nearly well. Here its tree of elements is read, mended and written
-anew: empty groups go, formulas become formulas, lists get their parts, links say where they lead,
-and whatever is on a page and in no element, such as page numbers, lines and shades, is marked as an
-artifact.
+Chromium tags what it prints, with some faults. This module reads its tree of elements, corrects it
+and writes it again: empty groups are removed, formulas become formulas, lists get their parts, and
+links get a description of their target. Whatever is on a page but in no element, such as page
+numbers, lines and shades, is marked as an artifact.
 """
 
 import re
@@ -17,15 +16,15 @@ import pypdfium2
 import pypdfium2.raw as pdfium
 from pikepdf import Array, Dictionary, Name, String
 
-#: Words before those of a formula, which distinguish it from a picture.
+# A prefix of the words of a formula, which distinguishes it from a picture.
 FORMULA = "\ue000"
-#: Types that PDF 1.7 lacks, and the types that replace them.
+# Types that PDF 1.7 lacks, and the types that replace them.
 ROLES = {"Strong": "Span", "Em": "Span"}
 GROUPS = ("Document", "Art", "Sect", "Div")
 INLINE = ("Span", "Strong", "Em", "Code", "Link", "Formula", "Lbl")
-#: Elements that contain only other elements.
+# Elements that contain only other elements.
 BARE = ("L", "Table", "TR")
-#: Elements that a screen reader reads by their description and not by their content.
+# Elements that a screen reader reads by their description and not by their content.
 WORDED = ("Figure", "Formula")
 PATH = {"m", "l", "c", "v", "y", "h", "re", "W", "W*"}
 PAINT = {"f", "F", "f*", "S", "s", "B", "B*", "b", "b*", "n"}
@@ -50,20 +49,22 @@ class Note(NamedTuple):
 @dataclass(eq=False)
 class Element:
     kind: str
-    said: str = ""
+    description: str = ""
     name: bytes = b""
     attributes: list = field(default_factory=list)
     inside: list = field(default_factory=list)
 
     def walk(self):
-        """The element and all below it, in the order of reading."""
+        """Iterate over the element and all below it, in reading order."""
         yield self
-        for one in self.inside:
-            if isinstance(one, Element):
-                yield from one.walk()
+        for child in self.inside:
+            if isinstance(child, Element):
+                yield from child.walk()
 
     def pieces(self):
-        return [one for element in self.walk() for one in element.inside if isinstance(one, Piece)]
+        return [
+            child for element in self.walk() for child in element.inside if isinstance(child, Piece)
+        ]
 
 
 def as_list(value):
@@ -74,45 +75,48 @@ def as_list(value):
 
 
 def read(pdf):
-    """The tree of elements of ``pdf``, as Chromium made it."""
+    """Return the tree of elements of ``pdf``, as Chromium made it."""
     numbers = {page.objgen: number for number, page in enumerate(pdf.pages)}
 
     def element(node, page):
         page = numbers[node.Pg.objgen] if "/Pg" in node else page
-        found = Element(str(node.S)[1:], str(node.get("/Alt", "")), bytes(node.get("/ID", b"")))
-        found.attributes = as_list(node.A) if "/A" in node else []
-        for one in as_list(node.K) if "/K" in node else []:
-            if isinstance(one, int):
-                found.inside.append(Piece(page, (), one))
+        tagged = Element(str(node.S)[1:], str(node.get("/Alt", "")), bytes(node.get("/ID", b"")))
+        tagged.attributes = as_list(node.A) if "/A" in node else []
+        for child in as_list(node.K) if "/K" in node else []:
+            if isinstance(child, int):
+                tagged.inside.append(Piece(page, (), child))
                 continue
-            here = numbers[one.Pg.objgen] if "/Pg" in one else page
-            if "/S" in one:
-                found.inside.append(element(one, here))
-            elif one.Type == Name.OBJR:
-                found.inside.append(Note(here, one.Obj))
+            here = numbers[child.Pg.objgen] if "/Pg" in child else page
+            if "/S" in child:
+                tagged.inside.append(element(child, here))
+            elif child.Type == Name.OBJR:
+                tagged.inside.append(Note(here, child.Obj))
             else:
-                found.inside.append(Piece(here, one.Stm.objgen if "/Stm" in one else (), one.MCID))
-        return found
+                tagged.inside.append(
+                    Piece(here, child.Stm.objgen if "/Stm" in child else (), child.MCID)
+                )
+        return tagged
 
     return element(pdf.Root.StructTreeRoot.K, None)
 
 
 def letters(font):
-    """What each code of a font stands for."""
-    table, found = font.ToUnicode.read_bytes().decode("ascii"), {}
+    """Return the characters that each code of a font represents."""
+    table, signs = font.ToUnicode.read_bytes().decode("ascii"), {}
     for block in re.findall(r"beginbfchar(.*?)endbfchar", table, re.DOTALL):
         for code, sign in re.findall(r"<(\w+)>\s*<(\w+)>", block):
-            found[int(code, 16)] = bytes.fromhex(sign).decode("utf-16-be")
+            signs[int(code, 16)] = bytes.fromhex(sign).decode("utf-16-be")
     for block in re.findall(r"beginbfrange(.*?)endbfrange", table, re.DOTALL):
         for first, last, sign in re.findall(r"<(\w+)>\s*<(\w+)>\s*<(\w+)>", block):
             for code in range(int(first, 16), int(last, 16) + 1):
-                found[code] = chr(int(sign, 16) + code - int(first, 16))
-    return found
+                signs[code] = chr(int(sign, 16) + code - int(first, 16))
+    return signs
 
 
 class Stream:
-    """What a page, or a form on it, draws: lines with an operator at the end
-    of each, as Chromium writes them.
+    """The drawing operations of a page or of a form on it.
+
+    Chromium writes them as lines with an operator at the end of each.
     """
 
     def __init__(self, page, key, content, resources, known_letters):
@@ -130,18 +134,18 @@ class Stream:
             self.fonts[name[1:]] = known_letters[font.objgen]
 
     def texts(self):
-        """The words of each marked sequence, by its number."""
-        # The stack: the number of each open sequence, or what it says it stands for.
-        found, stack, font = ({}, [], {})
+        """Return the words of each marked sequence, by its number."""
+        # The stack contains the number of each open sequence, or its replacement text.
+        texts, stack, font = ({}, [], {})
         for line in self.lines:
             operator = line.rsplit(" ", 1)[-1]
-            number = next((one for one in reversed(stack) if isinstance(one, int)), None)
+            number = next((entry for entry in reversed(stack) if isinstance(entry, int)), None)
             if operator.endswith(("BDC", "BMC")):
                 mark = re.search(r"/MCID (\d+)", line)
                 stands_for = re.search(r"/ActualText (?:<FEFF(\w*)>|\((\w*)\))", line)
                 if mark:
                     stack.append(int(mark[1]))
-                    found.setdefault(stack[-1], "")
+                    texts.setdefault(stack[-1], "")
                 else:
                     stack.append(None)
                     if stands_for:
@@ -149,24 +153,22 @@ class Stream:
                             "utf-16-be"
                         )
                     if stands_for and number is not None:
-                        found[number] += stack[-1]
+                        texts[number] += stack[-1]
             elif operator == "EMC":
                 stack.pop()
             elif operator == "Tf":
                 font = self.fonts[line.split()[0][1:]]
             elif operator in SHOW and number is not None and not isinstance(stack[-1], str):
                 for code in re.findall(r"<([0-9A-Fa-f]+)>", line):
-                    found[number] += "".join(
+                    texts[number] += "".join(
                         font.get(int(code[k : k + 4], 16), "") for k in range(0, len(code), 4)
                     )
             elif operator == "ET" and number is not None:
-                found[number] += " "
-        return {number: said.replace("\u200b", "") for number, said in found.items()}
+                texts[number] += " "
+        return {number: text.replace("\u200b", "") for number, text in texts.items()}
 
-    def marked(self, kept, forms_with_marks):
-        """The stream with every sequence that is not ``kept``, and all that
-        stands outside of any, as artifacts.
-        """
+    def marked(self, numbers_kept, forms_with_marks):
+        """Return the stream with all content outside of ``numbers_kept`` marked as artifacts."""
         out, open_sequences, open_artifact, path = [], [], False, None
 
         def close():
@@ -185,7 +187,7 @@ class Stream:
                         f"page {self.page + 1} of the PDF has a marked sequence within another"
                     )
                 # Leave the replacement text of a sequence alone if it is inside another sequence.
-                is_kept = int(number[1]) in kept if number else bool(open_sequences)
+                is_kept = int(number[1]) in numbers_kept if number else bool(open_sequences)
                 open_sequences.append(bool(number))
                 out.append(line if is_kept else "/Artifact BMC")
                 continue
@@ -218,28 +220,28 @@ class Stream:
 
 
 def streams(pdf):
-    """The streams of all pages and of the forms on them, by page and object."""
-    found, known_letters = {}, {}
+    """Return the streams of all pages and of the forms on them, by page and object."""
+    by_page, known_letters = {}, {}
     for number, page in enumerate(pdf.pages):
         page.contents_coalesce()
         waiting = [((), page.Contents, page.get("/Resources", Dictionary()))]
         while waiting:
             key, content, resources = waiting.pop()
-            if (number, key) in found:
+            if (number, key) in by_page:
                 continue
-            stream = found[number, key] = Stream(number, key, content, resources, known_letters)
+            stream = by_page[number, key] = Stream(number, key, content, resources, known_letters)
             for form in stream.forms.values():
                 waiting.append((form.objgen, form, form.get("/Resources", Dictionary())))
-    return found
+    return by_page
 
 
 def boxes(printed, pages):
-    """Where the marked sequences of some ``pages`` of a PDF draw: left, bottom, right and top, by
-    :class:`Piece`.
+    """Return where the marked sequences of some ``pages`` of a PDF draw, by :class:`Piece`.
 
-    What is drawn by a form on the page is left out: its numbers are its own.
+    The order is left, bottom, right, top. Forms are left out, because they have numbers of their
+    own.
     """
-    found, sides = {}, [c_float() for _ in range(4)]
+    by_piece, sides = {}, [c_float() for _ in range(4)]
     with pypdfium2.PdfDocument(printed) as document:
         for number in sorted(pages):
             page = document[number]
@@ -250,65 +252,65 @@ def boxes(printed, pages):
                 if mark < 0 or not pdfium.FPDFPageObj_GetBounds(drawn, *map(byref, sides)):
                     continue
                 left, bottom, right, top = (side.value for side in sides)
-                least = found.setdefault(Piece(number, (), mark), [width, height, 0, 0])
-                # Nobody sees what the edge of the page cuts off.
+                least = by_piece.setdefault(Piece(number, (), mark), [width, height, 0, 0])
+                # Cut the box at the edges of the page, because nothing beyond them is visible.
                 least[:2] = max(0, min(least[0], left)), max(0, min(least[1], bottom))
                 least[2:] = min(width, max(least[2], right)), min(height, max(least[3], top))
             page.close()
-    return found
+    return by_piece
 
 
 # ---- mending ------------------------------------------------------------------------
 
 
 def without_groups(element):
-    """Take out elements that only group others and say nothing of them."""
+    """Replace elements that only group others by their content."""
     inside = []
-    for one in element.inside:
-        if isinstance(one, Element):
-            without_groups(one)
-            if one.kind == "NonStruct":
-                inside += one.inside
+    for child in element.inside:
+        if isinstance(child, Element):
+            without_groups(child)
+            if child.kind == "NonStruct":
+                inside += child.inside
                 continue
-        inside.append(one)
+        inside.append(child)
     element.inside = inside
 
 
 def name_figures(element):
-    """Tell formulas from pictures; what holds a picture and its caption is no picture itself."""
-    for one in element.walk():
-        if one.kind == "Figure" and one.said.startswith(FORMULA):
-            one.kind, one.said = "Formula", one.said.removeprefix(FORMULA)
-        elif one.kind == "Figure" and not one.said:
-            one.kind = "Div"
-        if one.kind in WORDED:
-            one.inside = one.pieces()
+    """Distinguish formulas from pictures; a group of a picture and its caption is not a picture."""
+    for part in element.walk():
+        if part.kind == "Figure" and part.description.startswith(FORMULA):
+            part.kind, part.description = "Formula", part.description.removeprefix(FORMULA)
+        elif part.kind == "Figure" and not part.description:
+            part.kind = "Div"
+        if part.kind in WORDED:
+            part.inside = part.pieces()
 
 
 def drop_blank(element, texts):
-    """Leave out what shows nothing to read: lines and shades. A
-    picture keeps all that it is drawn of.
-    """
+    """Remove parts without text, such as lines and shades, but keep all parts of a picture."""
     if element.kind in WORDED:
         return
     inside = []
-    for one in element.inside:
-        if isinstance(one, Element):
-            drop_blank(one, texts)
-            if not one.inside and one.kind not in ("TD", "TH"):
+    for child in element.inside:
+        if isinstance(child, Element):
+            drop_blank(child, texts)
+            if not child.inside and child.kind not in ("TD", "TH"):
                 continue
-        elif isinstance(one, Piece) and (element.kind in BARE or not texts.get(one, "").strip()):
+        elif isinstance(child, Piece) and (
+            element.kind in BARE or not texts.get(child, "").strip()
+        ):
             continue
-        inside.append(one)
+        inside.append(child)
     element.inside = inside
 
 
 def once(element):
-    """The head of a table that goes on is printed again on the next page: it is read once."""
-    for one in element.walk():
-        if one.kind == "TH" and (pieces := one.pieces()):
+    """Keep only the first head of a table that goes on on another page, so that it is read once."""
+    for head in element.walk():
+        if head.kind == "TH" and (pieces := head.pieces()):
             first = min(piece.page for piece in pieces)
-            for cell in one.walk():
+            for cell in head.walk():
                 cell.inside = [
                     part
                     for part in cell.inside
@@ -317,84 +319,84 @@ def once(element):
 
 
 def in_paragraphs(element):
-    """Text that stands in a group among blocks is a paragraph; what follows
-    the sign of an item is its body.
-    """
-    for one in element.inside:
-        if isinstance(one, Element):
-            in_paragraphs(one)
+    """Make text among blocks a paragraph, and what follows the label of an item its body."""
+    for child in element.inside:
+        if isinstance(child, Element):
+            in_paragraphs(child)
     if element.kind == "LI":
-        labels = [one for one in element.inside if isinstance(one, Element) and one.kind == "Lbl"]
-        body = [one for one in element.inside if one not in labels]
+        labels = [
+            child for child in element.inside if isinstance(child, Element) and child.kind == "Lbl"
+        ]
+        body = [child for child in element.inside if child not in labels]
         element.inside = [*labels, Element("LBody", inside=body)]
     elif element.kind in GROUPS:
         inside, run = [], []
-        for one in [*element.inside, None]:
-            if one is not None and (
-                not isinstance(one, Element) or one.kind in INLINE and one.kind != "Formula"
+        for child in [*element.inside, None]:
+            if child is not None and (
+                not isinstance(child, Element) or child.kind in INLINE and child.kind != "Formula"
             ):
-                run.append(one)
+                run.append(child)
                 continue
             if run:
                 inside.append(Element("P", inside=run))
                 run = []
-            if one is not None:
-                inside.append(one)
+            if child is not None:
+                inside.append(child)
         element.inside = inside
 
 
 def place_pictures(root, printed):
-    """Say of each picture and formula where on its page it stands, if it stands on one page."""
-    worded = [one for one in root.walk() if one.kind in WORDED]
-    pieces = {one: one.pieces() for one in worded}
-    whole = [one for one in worded if len({piece.page for piece in pieces[one]}) == 1]
-    drawn = boxes(printed, {pieces[one][0].page for one in whole})
-    for one in whole:
-        sides = [drawn[piece] for piece in pieces[one] if piece in drawn]
+    """Record the position of each picture and formula that is on a single page."""
+    worded = [part for part in root.walk() if part.kind in WORDED]
+    pieces = {part: part.pieces() for part in worded}
+    whole = [part for part in worded if len({piece.page for piece in pieces[part]}) == 1]
+    drawn = boxes(printed, {pieces[part][0].page for part in whole})
+    for part in whole:
+        sides = [drawn[piece] for piece in pieces[part] if piece in drawn]
         if sides:
             left, bottom, right, top = zip(*sides)
             box = [round(side, 2) for side in (min(left), min(bottom), max(right), max(top))]
-            one.attributes.append(Dictionary(O=Name.Layout, BBox=Array(box)))
+            part.attributes.append(Dictionary(O=Name.Layout, BBox=Array(box)))
 
 
 def words(element, texts):
-    """What is read of an element."""
+    """Return the text that a screen reader reads for an element."""
     if element.kind in WORDED:
-        return element.said
-    said = (
-        words(one, texts)
-        if isinstance(one, Element)
-        else texts.get(one, "")
-        if isinstance(one, Piece)
+        return element.description
+    contents = (
+        words(child, texts)
+        if isinstance(child, Element)
+        else texts.get(child, "")
+        if isinstance(child, Piece)
         else ""
-        for one in element.inside
+        for child in element.inside
     )
-    return re.sub(r"\s+", " ", "".join(said)).strip()
+    return re.sub(r"\s+", " ", "".join(contents)).strip()
 
 
 def describe_links(element, texts, places):
-    """Say of each link what it is and where it leads."""
-    for one in element.walk():
-        notes = [part for part in one.inside if isinstance(part, Note)]
+    """Describe each link and its target."""
+    for link in element.walk():
+        notes = [part for part in link.inside if isinstance(part, Note)]
         for note in notes:
-            annotation, said = note.annotation, words(one, texts)
+            annotation, label = note.annotation, words(link, texts)
             if "/A" in annotation and "/URI" in annotation.A:
                 address = str(annotation.A.URI)
-                said = said if address in said else f"{said} ({address})"
+                label = label if address in label else f"{label} ({address})"
             elif "/Dest" in annotation:
-                said = f"{said}, page {places[str(annotation.Dest)] + 1}"
-            annotation.Contents = String(said)
+                label = f"{label}, page {places[str(annotation.Dest)] + 1}"
+            annotation.Contents = String(label)
 
 
 # ---- writing ------------------------------------------------------------------------
 
 
-def write(pdf, root, found):
-    """Put the tree ``root`` into ``pdf``, in the place of the one that it has."""
+def write(pdf, root, streams_by_page):
+    """Replace the tree of ``pdf`` by the tree ``root``."""
     pages = [page.obj for page in pdf.pages]
     parents, names = {}, []
     keys = {}
-    for (number, key), stream in found.items():
+    for (number, key), stream in streams_by_page.items():
         holder = stream.content if key else pages[number]
         if "/StructParents" in holder:
             keys[number, key] = int(holder.StructParents)
@@ -406,8 +408,8 @@ def write(pdf, root, found):
         here = pdf.make_indirect(
             Dictionary(Type=Name.StructElem, S=Name(f"/{element.kind}"), P=above)
         )
-        if element.said:
-            here.Alt = String(element.said)
+        if element.description:
+            here.Alt = String(element.description)
         if element.name:
             here.ID = String(element.name)
             names.append((element.name, here))
@@ -416,25 +418,25 @@ def write(pdf, root, found):
                 Array(element.attributes) if len(element.attributes) > 1 else element.attributes[0]
             )
         inside, page = [], None
-        for one in element.inside:
-            if isinstance(one, Element):
-                inside.append(put(one, here))
-            elif isinstance(one, Note):
-                reference = Dictionary(Type=Name.OBJR, Obj=one.annotation, Pg=pages[one.page])
+        for child in element.inside:
+            if isinstance(child, Element):
+                inside.append(put(child, here))
+            elif isinstance(child, Note):
+                reference = Dictionary(Type=Name.OBJR, Obj=child.annotation, Pg=pages[child.page])
                 inside.append(reference)
-                parents[int(one.annotation.StructParent)] = here
+                parents[int(child.annotation.StructParent)] = here
             else:
-                if page is None and not one.stream:
-                    page, here.Pg = one.page, pages[one.page]
-                if one.page == page and not one.stream:
-                    inside.append(one.number)
+                if page is None and not child.stream:
+                    page, here.Pg = child.page, pages[child.page]
+                if child.page == page and not child.stream:
+                    inside.append(child.number)
                 else:
-                    piece = Dictionary(Type=Name.MCR, Pg=pages[one.page], MCID=one.number)
-                    if one.stream:
-                        piece.Stm = pdf.get_object(one.stream)
+                    piece = Dictionary(Type=Name.MCR, Pg=pages[child.page], MCID=child.number)
+                    if child.stream:
+                        piece.Stm = pdf.get_object(child.stream)
                     inside.append(piece)
-                table = parents.setdefault(keys[one.page, one.stream], {})
-                table[one.number] = here
+                table = parents.setdefault(keys[child.page, child.stream], {})
+                table[child.number] = here
         here.K = Array(inside)
         return here
 
@@ -456,14 +458,12 @@ def write(pdf, root, found):
 
 
 def mend(pdf, printed):
-    """Put the structure of ``pdf``, opened from the bytes ``printed``, in
-    order; return the words that are read.
-    """
-    found = streams(pdf)
+    """Correct the structure of ``pdf``, opened from the bytes ``printed``; return its words."""
+    streams_by_page = streams(pdf)
     texts = {
-        Piece(number, key, mark): said
-        for (number, key), stream in found.items()
-        for mark, said in stream.texts().items()
+        Piece(number, key, mark): text
+        for (number, key), stream in streams_by_page.items()
+        for mark, text in stream.texts().items()
     }
     places = {page.objgen: number for number, page in enumerate(pdf.pages)}
     places = {
@@ -478,14 +478,16 @@ def mend(pdf, printed):
     drop_blank(root, texts)
     in_paragraphs(root)
     describe_links(root, texts, places)
-    kept = {}
+    numbers_kept = {}
     for piece in root.pieces():
-        kept.setdefault((piece.page, piece.stream), set()).add(piece.number)
-    forms_with_marks = {key for (_, key) in kept if key}
-    for (number, key), stream in found.items():
+        numbers_kept.setdefault((piece.page, piece.stream), set()).add(piece.number)
+    forms_with_marks = {key for (_, key) in numbers_kept if key}
+    for (number, key), stream in streams_by_page.items():
         if not key or key in forms_with_marks:
-            stream.content.write(stream.marked(kept.get((number, key), ()), forms_with_marks))
-    write(pdf, root, found)
+            stream.content.write(
+                stream.marked(numbers_kept.get((number, key), ()), forms_with_marks)
+            )
+    write(pdf, root, streams_by_page)
     for page in pdf.pages:
         page.Tabs = Name.S
     return words(root, texts)

@@ -1,8 +1,8 @@
-"""What of our packages a notebook uses: the files whose change may change what its cells give.
+"""The files of our packages that a notebook uses, whose changes may change its results.
 
-A notebook is followed from what its cells import through every import in those modules, also those
-inside functions, to the files that lie beside them (scripts, style sheets), and to the sealed
-questions that it asks. What is not reached, such as the grader, does not make a chapter run again.
+Starting from the imports of its cells, this follows every import in those modules, also inside
+functions, to the files beside them (scripts, style sheets) and to the sealed questions that the
+notebook asks. Files that it does not reach, such as the grader, do not make a chapter run again.
 """
 
 import ast
@@ -19,25 +19,27 @@ from .paths import PACKAGES, REGISTERED, REPOSITORY
 if TYPE_CHECKING:
     from nbformat import NotebookNode
 
-#: The package that ``coursework`` finds through its entry point, which no import shows.
+# The package that ``coursework`` finds through its entry point, which no import shows.
 PLUGIN = REGISTERED.get("plugin", "")
 SEALED = PACKAGES.get(PLUGIN, REPOSITORY) / "sealed"
-#: The versions of everything else that is imported.
+# The versions of everything else that is imported.
 PINS = REPOSITORY / "constraints.txt"
 _PARSING = threading.Lock()
 
 
 def parse(code: str) -> ast.Module:
-    """The syntax tree of some code, from any thread: Python 3.11 fails
-    when two threads make trees at once.
+    """Return the syntax tree of some code, one thread at a time.
+
+    Python 3.11 fails when two threads make trees at once.
     """
     with _PARSING:
         return ast.parse(code)
 
 
 def statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """The statements of a tree, and those within them: an expression,
-    which most of a tree is, holds none.
+    """Iterate over the statements of a tree and those within them.
+
+    Expressions, which are most of a tree, contain none.
     """
     for inner in ast.iter_child_nodes(tree):
         if isinstance(inner, (ast.stmt, ast.excepthandler, ast.match_case)):
@@ -46,7 +48,7 @@ def statements(tree: ast.AST) -> Iterator[ast.AST]:
 
 
 def file_of(module: str) -> Path | None:
-    """The file of one of our modules, or ``None`` if there is none of this name."""
+    """Return the file of one of our modules, or ``None`` if there is none of this name."""
     package, *inner = module.split(".")
     if package not in PACKAGES:
         return None
@@ -57,14 +59,15 @@ def file_of(module: str) -> Path | None:
 
 
 def names_imported(code: str, module: str = "") -> set[str]:
-    """All that ``code`` may import, by full names; ``module`` is where
-    it stands, for relative imports.
+    """Return all that ``code`` may import, by full names.
+
+    ``module`` is the module of the code, for relative imports.
     """
-    found: set[str] = set()
+    names: set[str] = set()
     file = file_of(module)
     for node in statements(parse(code)):
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = node.module or ""
             if node.level:
@@ -72,14 +75,14 @@ def names_imported(code: str, module: str = "") -> set[str]:
                 above = module.split(".")
                 above = above[: len(above) - node.level + is_package]
                 base = ".".join([*above, *filter(None, [node.module])])
-            found |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
-    return found
+            names |= {base, *(f"{base}.{alias.name}" for alias in node.names)}
+    return names
 
 
 def modules_imported(code: str, module: str = "") -> set[str]:
-    """The names of our modules that ``code`` imports; ``module`` as in :func:`names_imported`."""
-    found = names_imported(code, module)
-    ours = {name for name in found if file_of(name)}
+    """Return the names of our modules that ``code`` imports, as :func:`names_imported` does."""
+    names = names_imported(code, module)
+    ours = {name for name in names if file_of(name)}
     # Importing a.b imports a first.
     return ours | {
         name.rsplit(".", depth)[0] for name in ours for depth in range(1, name.count(".") + 1)
@@ -93,21 +96,21 @@ def _imported_by(module: str) -> frozenset[str]:
 
 
 def modules_used(code: str) -> set[str]:
-    """The names of all our modules that running ``code`` may lead to."""
-    found: set[str] = set()
+    """Return the names of all our modules that running ``code`` may import."""
+    modules: set[str] = set()
     waiting = list(modules_imported(code))
     while waiting:
         module = waiting.pop()
-        if module not in found:
-            found.add(module)
+        if module not in modules:
+            modules.add(module)
             waiting += _imported_by(module)
             if module == "coursework":
                 waiting.append(PLUGIN)
-    return found
+    return modules
 
 
 def files_used(code: str) -> list[Path]:
-    """The files of this repository that running ``code`` may read, in their order."""
+    """Return the files of this repository that running ``code`` may read, in order."""
     modules = modules_used(code)
     files = {file for module in modules if (file := file_of(module))} | (
         {PINS} if PINS.is_file() else set()
@@ -124,7 +127,7 @@ def files_used(code: str) -> list[Path]:
 
 @cache
 def beside(folder: Path) -> frozenset[Path]:
-    """The files of a package that are no modules, those in its folders among them."""
+    """Return the files of a package that are not modules, including those in its folders."""
     return frozenset(
         path
         for path in folder.rglob("*")
@@ -133,11 +136,11 @@ def beside(folder: Path) -> frozenset[Path]:
 
 
 def package_of(path: Path) -> Path:
-    """The folder of the package that a file belongs to."""
+    """Return the folder of the package that a file belongs to."""
     return next(folder for folder in path.parents if (folder / "__init__.py").is_file())
 
 
-#: A new version alone does not change the result of a cell.
+# A new version alone does not change the result of a cell.
 VERSION = re.compile(rb"^__version__ = .*$", re.MULTILINE)
 
 
@@ -147,8 +150,9 @@ def _digest(path: Path) -> bytes:
 
 
 def fingerprint_of_used(notebook: "NotebookNode") -> str:
-    """A text that changes when anything changes that the cells of
-    ``notebook`` use, themselves not among it.
+    """Return a text that changes when anything that the cells of ``notebook`` use changes.
+
+    The cells themselves are not included.
     """
     code = "\n".join(code_of(notebook))
     parts = [f"{path.relative_to(REPOSITORY)} {_digest(path).hex()}" for path in files_used(code)]
@@ -156,7 +160,7 @@ def fingerprint_of_used(notebook: "NotebookNode") -> str:
 
 
 def notebook_of(path: str | Path) -> "NotebookNode":
-    """A notebook of the book as it stands in its file: whoever shows it looks whether it is one."""
+    """Return a notebook of the book as stored; callers must check that the file is one."""
     from nbformat import v4
 
     notebook: NotebookNode = v4.reads(Path(path).read_text("utf8"))
@@ -164,8 +168,9 @@ def notebook_of(path: str | Path) -> "NotebookNode":
 
 
 def code_of(notebook: "NotebookNode") -> list[str]:
-    """The code of each cell that is Python; what cannot be read as Python is
-    left for the run to complain of.
+    """Return the code of each cell that is Python.
+
+    Code that does not parse is left for the run to report.
     """
     codes = []
     for cell in notebook.cells:

@@ -1,10 +1,10 @@
 """Kernels that are forked from a process which has loaded what nearly every notebook imports.
 
-The build and nbval take theirs from here. Each kernel is as fresh as one that was started by
-itself, has its own process and its own names, and is there at once. Loaded beforehand is only what
-others wrote: a notebook's imports of our own packages are its own. That a notebook imports all that
-it uses is seen where it is stored, by ``python -m notebook_pages.notebooks``, in a kernel that was
-started.
+The build and nbval take their kernels from here. Each kernel is as clean as one that was started
+separately, has its own process and its own names, and starts at once. Only third-party packages are
+loaded beforehand; a notebook imports our own packages itself. ``python -m
+notebook_pages.notebooks``, which starts kernels the usual way, shows that a notebook imports
+everything that it uses.
 """
 
 import contextlib
@@ -29,7 +29,7 @@ LOADED = (
     "matplotlib.pyplot",
     "anywidget",
 )
-# Every kernel does this.
+# Every kernel has these settings.
 SETTINGS = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
 
 
@@ -37,7 +37,7 @@ SETTINGS = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
 
 
 def main():
-    """Fork a kernel for each line of the standard input, and answer with its process."""
+    """Fork a kernel for each line of the standard input, and answer with its process ID."""
     for name in LOADED:
         importlib.import_module(name)
     assert threading.active_count() == 1, "a process with threads must not fork"
@@ -78,11 +78,11 @@ def become_kernel(command, folder, environment):
 
 
 class WarmProcess:
-    """The process that forks; started when the first notebook wants a kernel."""
+    """The process that forks, started when the first notebook requests a kernel."""
 
     process = None
 
-    def fork(self, **what):
+    def fork(self, **request):
         if self.process is None:
             self.process = subprocess.Popen(
                 [sys.executable, __file__],
@@ -91,7 +91,7 @@ class WarmProcess:
                 text=True,
                 env=os.environ | SETTINGS,
             )
-        print(json.dumps(what), file=self.process.stdin, flush=True)
+        print(json.dumps(request), file=self.process.stdin, flush=True)
         return int(self.process.stdout.readline())
 
     def end(self):
@@ -101,7 +101,7 @@ class WarmProcess:
 
 
 class Forked(psutil.Process):
-    """A kernel, with what Jupyter asks of the processes that it starts itself."""
+    """A kernel, with the interface that Jupyter expects of the processes that it starts itself."""
 
     stdin = stdout = stderr = None
 
@@ -133,11 +133,11 @@ class FromWarmProcess:
 
 
 class WarmKernelManager(FromWarmProcess, KernelManager):
-    """A manager as nbval uses it."""
+    """A manager for nbval."""
 
 
 class WarmAsyncKernelManager(FromWarmProcess, AsyncKernelManager):
-    """A manager as nbclient uses it."""
+    """A manager for nbclient."""
 
 
 warm = WarmProcess()

@@ -1,8 +1,7 @@
-"""``python -m notebook_pages.whole_book``: the whole book to take away,
-as a PDF, as an EPUB and as a zip.
+"""``python -m notebook_pages.whole_book``: the whole book as a PDF, as an EPUB and as a zip.
 
-All are made from the built site and put into it, and the front page offers them. Each is made again
-only when something that goes into it has changed; `make book` withdraws what has become old.
+All are made from the built site and put into it, and the front page links to them. Each is made
+again only when its sources have changed; `make book` removes those that are outdated.
 """
 
 import json
@@ -39,7 +38,7 @@ LINK = '<a href="take-away/{name}">{title}<small>{note}, {size:.1f} MB</small></
 
 
 def with_offer(front, links):
-    """The front page ``front`` with ``links`` in their place; with none, as the build wrote it."""
+    """Return ``front`` with ``links`` in their place or, without links, as the build wrote it."""
     words = (
         '<p class="whole-book"><span>The whole book, to take with you:</span>{}</p><!-- '
         "/whole-book -->"
@@ -56,8 +55,9 @@ def with_offer(front, links):
 
 
 def site_files():
-    """What is in the site, contents by path, without the PDF, the
-    EPUB, the zip and the offer of them.
+    """Return the files of the site, contents by path.
+
+    The PDF, the EPUB, the zip and the links to them are left out.
     """
     files = {
         str(path.relative_to(HTML)): path.read_bytes()
@@ -69,9 +69,7 @@ def site_files():
 
 
 def digest(files, *programs):
-    """A fingerprint of ``files``, contents by path, and of the
-    programs that make something of them.
-    """
+    """Return a hash of ``files``, contents by path, and of the programs that process them."""
     contents = [f"{path} {sha256(content).hexdigest()}" for path, content in sorted(files.items())]
     return sha256("\n".join([*contents, fingerprint(*programs)]).encode()).hexdigest()
 
@@ -86,15 +84,15 @@ def stamps():
         if path in kinds or path.endswith((".css", ".woff2"))
     }
     programs = ("pdf.py", "tagged.py", "spoken.py", "print.css", "browser.py")
-    found = {PDF.name: digest(printed, *(WEBSITE / name for name in programs))}
+    digests = {PDF.name: digest(printed, *(WEBSITE / name for name in programs))}
     texts = {path: text for path, text in files.items() if path in kinds}
-    found[EPUB.name] = digest(
+    digests[EPUB.name] = digest(
         texts, *(WEBSITE / name for name in ("epub.py", "epub.css", "pdf.py", "spoken.py"))
     )
     for path in (PDF, EPUB):
         if path.exists():
             files[path.name] = path.read_bytes()
-    return found | {ZIP.name: digest(files, WEBSITE / "offline.py", offline.SERVER)}
+    return digests | {ZIP.name: digest(files, WEBSITE / "offline.py", offline.SERVER)}
 
 
 def link_to_pdf():
@@ -118,7 +116,7 @@ def link_to_zip():
 
 
 def write_front_page():
-    """Offer on the front page what is there."""
+    """Link to the existing downloads on the front page."""
     links = [
         link()
         for path, link in ((PDF, link_to_pdf), (EPUB, link_to_epub), (ZIP, link_to_zip))
@@ -134,7 +132,7 @@ def write_front_page():
 
 
 def withdraw_outdated():
-    """Take from the site what was made of something else, and the offer of it."""
+    """Remove outdated downloads from the site, and the links to them."""
     made_from = json.loads(STAMPS.read_text("utf8")) if STAMPS.exists() else {}
     for path in (PDF, EPUB, ZIP):
         if path.exists() and made_from.get(path.name) != stamps()[path.name]:
@@ -143,9 +141,9 @@ def withdraw_outdated():
 
 
 def note_stamps():
-    found = stamps()
+    current = stamps()
     STAMPS.write_text(
-        json.dumps({path.name: found[path.name] for path in (PDF, EPUB, ZIP) if path.exists()}),
+        json.dumps({path.name: current[path.name] for path in (PDF, EPUB, ZIP) if path.exists()}),
         "utf8",
     )
 

@@ -1,8 +1,8 @@
 """JupyterLite: the notebooks of the book in the reader's browser, in the site's folder ``lite``.
 
 It shares the interpreter and the wheels of the folder ``runtime`` (see :mod:`notebook_pages.live`),
-and adds to them what a notebook's kernel needs. A lock file of its own lists them all, so that a
-plain ``import`` works.
+and adds the packages that a notebook's kernel needs. A lock file of its own lists them all, so that
+a plain ``import`` works.
 """
 
 import json
@@ -33,8 +33,8 @@ LOCK = "lite-lock.json"
 FETCHED = runtime.FETCHED_FOR_NOTEBOOKS
 WORKSHOP = BUILD / FOLDER
 APPS = ("notebooks", "tree", "edit")  # one notebook, the list of all of them, a text file
-# The parts of the interface that are not JupyterLite's own: the
-# kernel, sliders, and the moving figures.
+# The parts of the interface that are not JupyterLite's own: the kernel, sliders, and the moving
+# figures.
 EXTENSIONS = (
     "@jupyterlite/pyodide-kernel-extension",
     "@jupyter-widgets/jupyterlab-manager",
@@ -67,23 +67,23 @@ def wheels_of_kernel():
 
 
 def wheels_fetched():
-    """What was fetched for browsers, the dearest part first."""
+    """Return the fetched wheels for browsers, those that take longest to compile first."""
     return sorted(runtime.FETCHED.glob("*.whl")), wheels_of_kernel()
 
 
 def is_compiled():
-    """Whether all that was fetched has been byte-compiled before."""
+    """Whether all fetched wheels have been byte-compiled before."""
     return all(runtime.compiled_form(wheel).exists() for part in wheels_fetched() for wheel in part)
 
 
 def compile_ahead():
-    """Byte-compile what was fetched for browsers; whoever needs it then finds it."""
+    """Byte-compile the wheels for browsers ahead of time."""
     for wheels in wheels_fetched():
         runtime.compile_wheels(wheels)
 
 
 def wheel_of_stand_in():
-    """What stands in for NumPy on the page, for notebooks, with the line that puts it in place."""
+    """Return a wheel of NumPy's stand-in for notebooks, and of the line that installs it."""
     path, about = BUILD / "plain_numpy-1-py3-none-any.whl", "plain_numpy-1.dist-info"
     with zipfile.ZipFile(path, "w") as wheel:
         for name, text in (
@@ -98,9 +98,7 @@ def wheel_of_stand_in():
 
 
 def write_lock(site):
-    """Put the wheels of the kernel beside the others, and list all of them;
-    return the names of what to load.
-    """
+    """Put the wheels of the kernel beside the others and list all; return the names to load."""
     target = site / runtime.FOLDER
     lock = json.loads((target / runtime.LOCK).read_text("utf8"))
     wheels = [*wheels_of_kernel(), wheel_of_stand_in()]
@@ -113,8 +111,9 @@ def write_lock(site):
 
 
 def fingerprint_of_code(text):
-    """The short hash that the scripts of the page make of a cell's code
-    (``fingerprint`` in live/js/store.js).
+    """Return the short hash of a cell's code that the scripts of the page compute too.
+
+    Its counterpart is ``fingerprint`` in live/js/store.js.
     """
     a, b, word = 0xDEADBEEF, 0x41C6CE57, 0xFFFFFFFF
     for unit in array("H", text.encode("utf-16-le")):
@@ -130,11 +129,10 @@ def fingerprint_of_code(text):
 
 
 def stamp(notebook):
-    """Say in the notebook what the book had in each of its code cells, by
-    the names that the page gives them.
+    """Store in the notebook a hash of each code cell, by the name that the page gives the cell.
 
-    A copy that a reader keeps can then be told from a newer edition, and
-    its answers from the book's code.
+    A copy that a reader keeps can then be distinguished from a newer edition, and its answers from
+    the book's code.
     """
     seen, cells = Counter(), {}
     for cell in notebook.cells:
@@ -148,11 +146,10 @@ def stamp(notebook):
 
 
 def announce_numpy(notebook, kinds, place):
-    """Fetch NumPy in a cell of its own, which says so, above the first
-    cell that computes or draws with it.
+    """Fetch NumPy in a cell of its own, which says so, above the first cell that uses it.
 
-    The kernel fetches what a cell imports; some cells here use NumPy through our own package only,
-    and plain Python cannot stand in for it in all of them.
+    The kernel fetches the packages that a cell imports. Some cells use NumPy only through our own
+    package, and plain Python cannot replace it in all of them.
     """
     codes = [position for position, cell in enumerate(notebook.cells) if cell.cell_type == "code"]
     for position, kind in zip(codes, kinds, strict=True):
@@ -166,7 +163,7 @@ def announce_numpy(notebook, kinds, place):
 
 
 def notebook_for(site, page, settings):
-    """The notebook of a page: exercises as they were released, others as they are taken away."""
+    """Return the notebook of a page: exercises as released, other pages as they are downloaded."""
     notebook = stamp(notebook_of(site / notebook_address(page)))
     if page.startswith("exercises/"):
         return written(notebook)
@@ -188,14 +185,16 @@ def notebook_for(site, page, settings):
 
 
 def written(notebook):
-    """The notebook as JSON. Each text is one string: the interface joins the lines of cells, but
-    not those of outputs, and its table of contents fails on lists.
+    """Return the notebook as JSON, with each text as one string.
+
+    The interface joins the lines of cells but not those of outputs, and its table of contents fails
+    on lists.
     """
     return nbformat.v4.writes(notebook, split_lines=False)
 
 
 def write_workshop(site, settings, names):
-    """Write what the interface is made from: the notebooks, and the settings."""
+    """Write the sources of the interface: the notebooks, and the settings."""
     shutil.rmtree(WORKSHOP, ignore_errors=True)
     for page in notebook_pages():
         path = WORKSHOP / "files" / f"{page}.ipynb"
@@ -239,16 +238,14 @@ def write_workshop(site, settings, names):
 
 
 def bring_answers_first(target):
-    """Have the interface wait, before it opens a notebook, for what
-    brings the page's answers into it.
-    """
+    """Have the interface fetch the page's answers before it opens a notebook."""
     page = target / APPS[0] / "index.html"
     before = page.read_text("utf8")
     start = re.compile(r"await import\(\s*'\.\./config-utils\.js")
     script = f"../../{scripts.folder_name()}/notebook.js"
     # If a script did not arrive, fetch it once more under another name. Without it the notebook
-    # opens as it is stored here, and receives the page's answers another time. A question to the
-    # reader may stay open for any time.
+    # opens as it is stored here, and receives the page's answers another time. The wait has no
+    # limit, because the script may ask the reader a question.
     wait = (
         f"await Promise.race([import('{script}').catch(() => import('{script}?again')), "
         "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('it does not come')))])"
@@ -257,7 +254,7 @@ def bring_answers_first(target):
         "${error.message}`));\n"
         "        "
     )
-    after, count = start.subn(lambda found: wait + found[0], before)
+    after, count = start.subn(lambda match: wait + match[0], before)
     if count != 1:
         raise RuntimeError(
             f"{page} starts differently now, so answers from the pages would not reach it"
@@ -266,8 +263,9 @@ def bring_answers_first(target):
 
 
 def bring_notebooks(target):
-    """Put the notebooks into the interface, and write what its lists say of each: a touched chapter
-    is in it without all being built again.
+    """Put the notebooks into the interface, and update its lists.
+
+    This adds a changed chapter without building the interface again.
     """
     moment = f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
     for source in (WORKSHOP / "files").rglob("*.ipynb"):
@@ -275,13 +273,13 @@ def bring_notebooks(target):
         if place.read_bytes() != (content := source.read_bytes()):
             place.write_bytes(content)
     for listing in (target / "api" / "contents").rglob("all.json"):
-        told = json.loads(listing.read_text("utf8"))
-        told["content"].sort(key=itemgetter("path"))
-        for one in (told, *told["content"]):
-            one["created"] = one["last_modified"] = moment
-            if one["type"] != "directory":
-                one["size"] = (target / "files" / one["path"]).stat().st_size
-        listing.write_text(json.dumps(told, indent=2, sort_keys=True), "utf8")
+        folder = json.loads(listing.read_text("utf8"))
+        folder["content"].sort(key=itemgetter("path"))
+        for entry in (folder, *folder["content"]):
+            entry["created"] = entry["last_modified"] = moment
+            if entry["type"] != "directory":
+                entry["size"] = (target / "files" / entry["path"]).stat().st_size
+        listing.write_text(json.dumps(folder, indent=2, sort_keys=True), "utf8")
 
 
 def write(site):
@@ -305,10 +303,10 @@ def write(site):
 
 
 def build_interface(target):
-    """Build the interface with all that lies in the workshop, and put it in its place."""
-    # It silently drops local settings if it finds the notes of an older run, so make a new workshop
-    # each time. It also dates everything beside its own folder. If that were all pages of the site,
-    # the next build would take them for older than their sources.
+    """Build the interface from the workshop, and move it into the site."""
+    # The build silently drops local settings if it finds the notes of an older run, so make a new
+    # workshop each time. It also dates everything beside its own folder. If that were all pages of
+    # the site, the next build would consider them older than their sources.
     apart = WORKSHOP / "site" / FOLDER
     command = [sys.executable, "-m", "jupyterlite_core", "build", "--output-dir", apart.resolve()]
     environment = os.environ | {"SOURCE_DATE_EPOCH": str(int(moment_of_sources().timestamp()))}

@@ -1,20 +1,20 @@
 """Code that runs in the page, with no server: Python itself comes with the site.
 
-The site's folder ``runtime`` holds all of it, and nothing there is loaded before the reader asks:
+The site's folder ``runtime`` holds all of it, and nothing there is loaded before the reader asks
+for it:
 
-- ``pyodide-<hash>/``: the interpreter, as npm brings it (``pyodide.js`` and what it loads);
+- ``pyodide-<hash>/``: the interpreter, as npm delivers it (``pyodide.js`` and its files);
 - ``wheels/<hash>/*.whl``: SymPy, mpmath and our own packages, byte-compiled;
 - ``sealed-<hash>/``: the sealed variants of the book's questions, of which a reader's Python
   fetches its own;
 - ``pyodide-lock.json``: the packages that a plain ``import`` finds, each with its hash. The file
-  names of
-  wheels in it are relative to the lock file. The same list lies in ``lock-<hash>/``, for the pages
-  of this edition, which may be open when the next one comes. NumPy and Matplotlib are listed as
-  ``numpy_in_the_page`` says;
-- ``scripts-<hash>/``: what makes the cells of a page run in place (``js``, ``python``).
+  names of wheels in it are relative to the lock file. The same list is in ``lock-<hash>/``, for
+  pages of this edition that are still open when the next one is published. NumPy and Matplotlib
+  are listed according to ``numpy_in_the_page``;
+- ``scripts-<hash>/``: the programs that run the cells of a page (``js``, ``python``).
 
-Whatever else is to run Python in a browser (a notebook interface, say) needs only the address of
-``pyodide.js`` and that of ``pyodide-lock.json``.
+Any other program that runs Python in a browser (a notebook interface, say) needs only the address
+of ``pyodide.js`` and that of ``pyodide-lock.json``.
 """
 
 import json
@@ -40,7 +40,7 @@ def write_runtime(app, exception):
 
 
 def cells_with_code(doctree):
-    """How many cells of a page show their code."""
+    """Count the cells of a page that show their code."""
     if doctree is None:
         return 0
     return sum(
@@ -49,7 +49,7 @@ def cells_with_code(doctree):
 
 
 def add_live_code(app, pagename, templatename, context, doctree):
-    """Give a page with code its buttons, and say what the build knows of its cells."""
+    """Give a page with code its buttons, and the build's information about its cells."""
     count = cells_with_code(doctree)
     if not count:
         return
@@ -62,19 +62,19 @@ def add_live_code(app, pagename, templatename, context, doctree):
     context["live_data"] = json.dumps(
         {
             "page": pagename,
-            # finish.py fills in the number of bytes that it takes to start Python.
+            # finish.py fills in the number of bytes of the download of Python.
             "bytes": 0,
             "runtime": pathto(f"{runtime.FOLDER}/", 1),
             "pyodide": f"{runtime.pyodide_folder()}/",
-            "lock": "",  # finish.py puts in where the packages of this edition are listed,
-            "variants": "",  # and where its sealed variants are
+            "lock": "",  # finish.py fills in where the packages of this edition are listed,
+            "variants": "",  # and where its sealed variants are.
             "scripts": pathto(f"{scripts.folder_name()}/", 1),
             "notebook": pathto(notebook_address(pagename), 1),
             "cells": {
-                index: told
+                index: shown
                 for index, kind in enumerate(kinds)
                 if (
-                    told := {
+                    shown := {
                         key: kind[key] for key in ("needs", "skip", "before", "name") if kind[key]
                     }
                 )
@@ -86,8 +86,9 @@ def add_live_code(app, pagename, templatename, context, doctree):
 
 
 def take_settings(app, config):
-    """Ask the environment for NumPy; have every page written anew whose scripts
-    or Pyodide have another version.
+    """Let the environment set the source of NumPy.
+
+    Write every page again if its scripts or Pyodide have another version.
     """
     config.numpy_in_the_page = runtime.numpy_setting(config.numpy_in_the_page)
     config.runtime_folders = f"{scripts.folder_name()} {runtime.pyodide_folder()}"

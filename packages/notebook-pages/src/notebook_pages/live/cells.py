@@ -1,10 +1,10 @@
-"""Which cells of the book run in the page, found out by running them as the page does.
+"""Determine which cells of the book run in the page, by running them as the page does.
 
-Every notebook is run once, from top to bottom, by the Python side of the page
-(``python/session.py``) with nothing but the standard library, SymPy and our own packages to import;
-plain Python stands in for NumPy as far as that goes (``python/plain_numpy.py``). A cell that then
-fails, or gives another result than the stored one, needs more; what it needs is what it failed to
-import, or what an earlier cell failed to import from which it takes a name.
+Every notebook is run once, from top to bottom, by the page's own Python program
+(``python/session.py``), which can import only the standard library, SymPy and our own packages.
+Plain Python replaces NumPy where it can (``python/plain_numpy.py``). A cell that then fails, or
+gives another result than the stored one, needs more: the package that it failed to import, or one
+that an earlier cell failed to import and from which it takes a name.
 """
 
 import ast
@@ -29,7 +29,7 @@ from ..used import fingerprint_of_used, names_imported, notebook_of, parse
 PYTHON = Path(__file__).parent / "python"
 PRETTY = Path(find_spec("IPython").submodule_search_locations[0], "lib", "pretty.py")
 RESULTS = REPOSITORY / "_build" / "runtime"
-#: MyST-NB's tags for cells whose code is not shown.
+# MyST-NB's tags for cells whose code is not shown.
 HIDDEN = {"remove-cell", "remove-input", "remove_cell", "remove_input"}
 ALONE = """
 import asyncio, json, sys
@@ -67,9 +67,7 @@ json.dump(told, sys.__stdout__)
 
 
 def write_python(folder):
-    """Write what the page's Python starts from: our files, and
-    IPython's way of writing values as text.
-    """
+    """Write the files that the page's Python starts from: ours, and IPython's printer of values."""
     shutil.copytree(
         PYTHON, folder, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True
     )
@@ -79,8 +77,9 @@ def write_python(folder):
 
 
 def run_alone(codes, *more):
-    """What the cells of a page put out, one after another, without
-    NumPy; or with ``"everything"``.
+    """Run the cells of a page one after another and return what they display.
+
+    NumPy is missing, unless ``more`` is ``"everything"``.
     """
     with tempfile.TemporaryDirectory() as folder:
         write_python(Path(folder, "python"))
@@ -92,9 +91,7 @@ def run_alone(codes, *more):
 
 
 def outputs_of_messages(messages):
-    """What a cell put out, as a list that can be compared: printed text,
-    and the shown form of each value.
-    """
+    """Return what a cell displayed as a comparable list: printed text, and each value's form."""
     outputs = []
     for message in messages:
         if message["type"] == "stream" and outputs and outputs[-1][0] == message["name"]:
@@ -109,7 +106,7 @@ def outputs_of_messages(messages):
 
 
 def stored_outputs(cell):
-    """The same for the outputs that a notebook stores."""
+    """Return the same list for the outputs that a notebook stores."""
     return [
         (output.name, output.text) if output.output_type == "stream" else shown_form(output.data)
         for output in cell.outputs
@@ -117,7 +114,7 @@ def stored_outputs(cell):
 
 
 def shown_form(data):
-    """The form that a page shows, and its text, without what differs from one run to the next."""
+    """Return the form that a page shows and its text, without parts that differ between runs."""
     form = next(
         form
         for form in ("text/html", "image/svg+xml", "text/markdown", "text/latex", "text/plain")
@@ -127,9 +124,7 @@ def shown_form(data):
 
 
 def alike(outputs, stored):
-    """Whether two lists of outputs are the same, but for what the
-    last digits of numbers may move by.
-    """
+    """Whether two lists of outputs are equal up to rounding in the last digits of numbers."""
     return [form for form, _ in outputs] == [form for form, _ in stored] and not any(
         move.too_far
         for (_, now), (_, before) in zip(outputs, stored)
@@ -138,7 +133,7 @@ def alike(outputs, stored):
 
 
 def names_bound(code):
-    """The names that a cell gives a meaning, at its top level."""
+    """Return the names that a cell assigns at its top level."""
     symbols = symtable.symtable(code, "cell", "exec").get_symbols()
     return {symbol.get_name() for symbol in symbols if symbol.is_assigned() or symbol.is_imported()}
 
@@ -149,9 +144,7 @@ def imports_numpy(code):
 
 
 def names_taken(code):
-    """The names that a cell may take from the cells before it: all
-    it uses, but for what it imports.
-    """
+    """Return the names that a cell may take from earlier ones: all it uses but does not import."""
     tree = parse(code)
     imported = {
         alias.asname or alias.name.partition(".")[0]
@@ -163,7 +156,7 @@ def names_taken(code):
 
 
 def needs_of_names(names, codes, kinds):
-    """What the cells need, of ``codes`` and ``kinds``, that gave ``names`` their last meaning."""
+    """Return the needs of the cells, of ``codes`` and ``kinds``, that last assigned ``names``."""
     needs = set()
     for code, kind in zip(reversed(codes), reversed(kinds)):
         bound = names_bound(code)
@@ -174,24 +167,23 @@ def needs_of_names(names, codes, kinds):
 
 
 def classify(cells):
-    """For each code cell what it needs beyond SymPy, whether a run may leave
-    it out, and its name for graders.
+    """Determine each code cell's needs beyond SymPy, whether a run may skip it, and its name.
 
-    Also whether it imports ``numpy`` itself, which plain Python may stand in for, and which a
-    notebook's kernel fetches then.
+    Also determine whether it imports ``numpy`` itself, which plain Python may replace in the page
+    and which a notebook's kernel then fetches.
 
-    A run leaves out a cell that only draws a figure, needs more for it, and gives names to other
-    such cells at most: its picture is there already. A result that differs from the stored one
+    A run skips a cell that only draws a figure, needs more for it, and gives names only to other
+    such cells, because its picture is already there. A result that differs from the stored one
     without such a reason is an error.
     """
     codes = [cell.source for cell in cells]
     kinds = []
-    for position, (cell, told) in enumerate(zip(cells, run_alone(codes))):
-        outcome = told["outcome"]
-        # A cell that never ran has no stored result to compare, so accept its result here.
+    for position, (cell, report) in enumerate(zip(cells, run_alone(codes))):
+        outcome = report["outcome"]
+        # A cell that never ran has no stored result to compare with, so accept its result here.
         known = cell.execution_count is not None
         same = outcome["status"] == "ok" and (
-            not known or alike(outputs_of_messages(told["messages"]), stored_outputs(cell))
+            not known or alike(outputs_of_messages(report["messages"]), stored_outputs(cell))
         )
         needs = set()
         if not same:
@@ -205,7 +197,7 @@ def classify(cells):
                 raise RuntimeError(
                     f"cell {position + 1} gives a different result in the page from the stored "
                     "one (if that is out of date, run `make "
-                    f"notebooks`):\n{cell.source}\n{outcome.get('traceback', told['messages'])}"
+                    f"notebooks`):\n{cell.source}\n{outcome.get('traceback', report['messages'])}"
                 )
         tags = cell.metadata.get("tags", [])
         kinds.append(
@@ -216,18 +208,19 @@ def classify(cells):
                 "numpy": imports_numpy(cell.source),
             }
         )  # fmt: skip
-    # The names that the cells below use, without the cells that are left out.
-    wanted = set()
+    # The names that the cells below use, without the cells that are skipped.
+    used_below = set()
     for code, kind in zip(reversed(codes), reversed(kinds)):
-        kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & wanted)
+        kind["skip"] = bool(kind["figure"] and kind["needs"] and not names_bound(code) & used_below)
         if not kind["skip"]:
-            wanted = (wanted - names_bound(code)) | names_taken(code)
+            used_below = (used_below - names_bound(code)) | names_taken(code)
     return kinds
 
 
 def kept_name(path, notebook):
-    """The name under which the kinds of a notebook's cells are kept, by all that
-    they follow from; not by its prose.
+    """Return the file name for the kinds of a notebook's cells: a hash of all they depend on.
+
+    The prose of the notebook does not matter.
     """
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
     seen = [
@@ -240,24 +233,24 @@ def kept_name(path, notebook):
 
 
 def kinds_of(path):
-    """The kinds of the code cells of a notebook, found out now or kept from before."""
+    """Return the kinds of the code cells of a notebook, from the cache if they are there."""
     notebook = notebook_of(path)
-    kept = RESULTS / path.parent.name / kept_name(path, notebook)
-    if not kept.exists():
+    cache_file = RESULTS / path.parent.name / kept_name(path, notebook)
+    if not cache_file.exists():
         try:
             kinds = classify([cell for cell in notebook.cells if cell.cell_type == "code"])
         except RuntimeError as error:
             raise RuntimeError(f"{path}: {error}") from None
-        for outdated in kept.parent.glob(f"cells-{path.stem}-????????????.json"):
+        for outdated in cache_file.parent.glob(f"cells-{path.stem}-????????????.json"):
             outdated.unlink()
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.write_text(json.dumps(kinds), "utf8")
-    return json.loads(kept.read_text("utf8"))
+        cache_file.parent.mkdir(parents=True, exist_ok=True)
+        cache_file.write_text(json.dumps(kinds), "utf8")
+    return json.loads(cache_file.read_text("utf8"))
 
 
 @cache
 def kinds_of_cells():
-    """The kinds of the code cells of every notebook, by the names of the pages."""
+    """Return the kinds of the code cells of every notebook, by the names of the pages."""
     from ..notebooks import all_notebooks
 
     paths = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob(f"{STORED}*.ipynb"))]
@@ -273,11 +266,10 @@ def kinds_of_cells():
 
 
 def on_the_page(kinds):
-    """The kinds of those cells that a page shows; each is to run, before itself, the
-    code of the hidden ones above it.
+    """Return the kinds of the cells that a page shows.
 
-    What hidden cells need, the next cell needs; and it is not left out, since
-    others may take names from them.
+    Each runs the code of the hidden cells above it first. What hidden cells need, the next cell
+    needs, and it is not skipped, since others may take names from them.
     """
     shown, code, needs = [], [], set()
     for kind in kinds:

@@ -1,8 +1,8 @@
-"""Runs inside Pyodide: byte-compile every wheel in /wheels/in into /wheels/out.
+"""Byte-compile every wheel in /wheels/in into /wheels/out; runs inside Pyodide.
 
-Importing SymPy from its sources takes the browser twice as long as from byte code. What is not
-needed is left out, and so are the sources of other people's packages, which would double the
-download; our own sources stay, because error messages show their lines.
+Importing SymPy from its sources takes the browser twice as long as from byte code. Unneeded files
+are left out, and so are the sources of third-party packages, which would double the download. Our
+own sources stay, because error messages show their lines.
 """
 
 import hashlib
@@ -16,7 +16,7 @@ from pathlib import Path
 
 SITE = sysconfig.get_path("purelib")
 OURS = tuple(f"{name}/" for name in Path("/wheels/ours.txt").read_text("utf8").split())
-# The sealed variants are fetched one by one, because a reader needs few of them. This file lists
+# The sealed variants are fetched individually, because a reader needs few of them. This file lists
 # where they are.
 APART = "/sealed/variants/"
 ELSEWHERE = "/sealed/elsewhere.txt"
@@ -27,11 +27,11 @@ THE_SAME_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def compiled(name, source):
-    """The names and contents that stand for one file of a wheel."""
+    """Return the files that replace one file of a wheel, contents by name."""
     if not name.endswith(".py"):
         return {name: source}
     code = compile(source, f"{SITE}/{name}", "exec", dont_inherit=True)
-    # "Unchecked": Python takes the byte code as it is, whatever date the unpacked source has.
+    # "Unchecked": Python accepts the byte code whatever date the unpacked source has.
     byte_code = bytes(_code_to_hash_pyc(code, importlib.util.source_hash(source), False))
     if not name.startswith(OURS):
         return {name + "c": byte_code}
@@ -43,8 +43,9 @@ def compiled(name, source):
 
 
 def place_of_variants(wheel):
-    """The file that says where the sealed variants are, with an address
-    that follows from their contents.
+    """Return the file that says where the sealed variants are.
+
+    Their address depends on their contents.
     """
     names = sorted(name for name in wheel.namelist() if APART in name)
     digest = hashlib.sha256(
@@ -64,7 +65,8 @@ def compile_wheel(path, target):
             ):
                 files |= compiled(name, wheel.read(name))
         (record,) = (name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
-    # Hashes of single files, which nothing compresses, stay out: the lock file has the wheel's.
+    # The hashes of single files do not compress and are left out; the lock file has the wheel's
+    # hash.
     files[record] = "".join(f"{name},,\n" for name in [*files, record]).encode()
     with zipfile.ZipFile(target, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
         for name, content in files.items():

@@ -1,8 +1,8 @@
-"""``make numpy``: the official wheels of NumPy and Matplotlib, to come with the site.
+"""``make numpy``: fetch the official wheels of NumPy and Matplotlib, to publish them with the site.
 
-Each is fetched from Pyodide's makers, once, and compared with the fingerprint that their own list
-names. Where BOOK_NUMPY (or ``numpy_in_the_page`` in ``_config.yml``) names their folder, the pages
-ask nobody else for anything.
+Each is fetched once from Pyodide's server and compared with the hash in Pyodide's own list. If
+BOOK_NUMPY (or ``numpy_in_the_page`` in ``_config.yml``) names their folder, the pages load nothing
+from other servers.
 """
 
 import sys
@@ -13,8 +13,9 @@ from . import runtime
 
 
 def fetch(folder, packages, address):
-    """Put the wheels that NumPy and Matplotlib need into ``folder``; return the
-    names of those that were fetched.
+    """Fetch the wheels of NumPy, Matplotlib and their dependencies into ``folder``.
+
+    Returns the names of those that were fetched.
     """
     folder.mkdir(parents=True, exist_ok=True)
     fetched = []

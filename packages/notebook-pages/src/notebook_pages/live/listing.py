@@ -1,6 +1,4 @@
-"""The directive ``cells-that-need-more``: which cells do not run with
-SymPy alone, page by page, and why.
-"""
+"""The directive ``cells-that-need-more``: the cells that need more than SymPy, by page, and why."""
 
 from docutils import nodes
 from docutils.statemachine import StringList
@@ -31,9 +29,7 @@ def column(kind):
 
 
 def asks_nobody(kind):
-    """Whether a cell runs with what comes with this site; the
-    Python side of a moving figure does.
-    """
+    """Whether a cell runs with the packages of this site, as that of a moving figure does."""
     return set(kind["needs"]) <= {"anywidget"}
 
 

@@ -1,9 +1,7 @@
-"""The runtime folder of the site: Pyodide from npm, wheels from
-PyPI and our own, and their lock file.
+"""The runtime folder of the site: Pyodide from npm, wheels from PyPI and our own, and a lock file.
 
-Whatever is fetched is fetched by ``notebook_pages.set_up``, pinned and hash-checked; here it is
-byte-compiled and put in place. A wheel is compiled once: the result is kept under its contents'
-hash.
+``notebook_pages.set_up`` fetches the wheels, pinned and hash-checked; this module byte-compiles and
+installs them. A wheel is compiled once, and the result is stored under the hash of its contents.
 """
 
 import fcntl
@@ -43,16 +41,16 @@ COMPILER = (HERE / "compile.mjs", HERE / "compile_wheels.py")
 
 FOLDER = "runtime"
 LOCK = "pyodide-lock.json"
-#: The book's own package, or SymPy alone. Its dependencies are everything that a page's Python
-#: starts with.
+# The book's own package, or SymPy alone. Its dependencies are everything that a page's Python
+# starts with.
 DISTRIBUTION = PROJECTS[-1].name if PROJECTS else "sympy"
-#: Wheels for the communication between moving figures and their Python, which the notebook
-#: interface needs as well.
+# Wheels for the communication between moving figures and their Python, which the notebook interface
+# needs as well.
 WIDGETS = ("comm", "ipywidgets", "psygnal", "traitlets", "typing-extensions")
 DEPENDS = {
     "sympy": ["mpmath"],
     **{
-        project.name: ["sympy", *(other.name for other in PROJECTS[:number])]
+        project.name: ["sympy", *(project.name for project in PROJECTS[:number])]
         for number, project in enumerate(PROJECTS)
     },
     "anywidget": list(WIDGETS),
@@ -63,7 +61,7 @@ NUMERICAL = ("numpy", "matplotlib")
 
 
 def pyodide_folder():
-    """Where Pyodide lies in the runtime folder: its files have the same names in every version."""
+    """Return Pyodide's place in the runtime folder; its files are named alike in each version."""
     return f"pyodide-{fingerprint(*(PYODIDE / source for source in PYODIDE_FILES.values()))}"
 
 
@@ -76,30 +74,30 @@ def size(path):
 
 
 def official_lock():
-    """Pyodide's own list of packages, as npm brings it."""
+    """Return Pyodide's own list of packages, as npm delivers it."""
     return json.loads((PYODIDE / LOCK).read_text("utf8"))
 
 
 def official_address():
-    """Where Pyodide's makers serve the packages of their list."""
+    """Return the address at which Pyodide's makers serve the packages of their list."""
     version = json.loads((PYODIDE / "package.json").read_text("utf8"))["version"]
     return f"https://cdn.jsdelivr.net/pyodide/v{version}/full/"
 
 
 def with_dependencies(names, packages):
-    """The names of ``packages`` that ``names`` lead to, themselves among them."""
-    found, waiting = set(), list(names)
+    """Return ``names`` and the names of all their dependencies among ``packages``."""
+    names_needed, waiting = set(), list(names)
     while waiting:
         name = waiting.pop()
-        if name not in found:
-            found.add(name)
+        if name not in names_needed:
+            names_needed.add(name)
             waiting += packages[name]["depends"]
-    return sorted(found)
+    return sorted(names_needed)
 
 
 @contextmanager
 def one_at_a_time():
-    """Let a second process wait, and use what the first has made."""
+    """Make a second process wait, so that it reuses the result of the first."""
     COMPILED.mkdir(parents=True, exist_ok=True)
     with open(COMPILED / "lock", "w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -107,7 +105,7 @@ def one_at_a_time():
 
 
 def our_packages_in(wheel):
-    """Those whose sources stay: of a wheel without them, any book's compiled form is the same."""
+    """Return our packages in a wheel; without any, its compiled form is the same for every book."""
     with zipfile.ZipFile(wheel) as file:
         held = {name.partition("/")[0] for name in file.namelist()}
     return [package for package in PACKAGES if package in held]
@@ -122,7 +120,7 @@ def compiled_form(wheel):
 
 @one_at_a_time()
 def compile_wheels(wheels):
-    """Return the compiled form of each of ``wheels``, made now or kept from before."""
+    """Return the compiled form of each of ``wheels``, compiling those that are not in the cache."""
     compiled = {wheel: compiled_form(wheel) for wheel in wheels}
     missing = {wheel: target for wheel, target in compiled.items() if not target.exists()}
     if missing:
@@ -143,7 +141,7 @@ def compile_wheels(wheels):
 
 
 def entry(name, version, imports, file_name, digest):
-    """A package of the lock file, in the form that Pyodide reads."""
+    """Return the entry of a package in the lock file, in the form that Pyodide reads."""
     return {
         "name": name,
         "version": version,
@@ -159,12 +157,12 @@ def entry(name, version, imports, file_name, digest):
 def own_packages(wheels, target):
     """Put ``wheels`` into the folder ``target`` and return their part of the lock file.
 
-    Each lies in a folder named by its contents: a browser that kept an older wheel of the same name
-    does not mistake it for this one.
+    Each is in a folder named by its contents, so that a browser that cached an older wheel of the
+    same name does not reuse it.
     """
     packages, imports_of_ours = (
         {},
-        {project.name: [Path(one).name for one in project.packages] for project in PROJECTS},
+        {project.name: [Path(place).name for place in project.packages] for project in PROJECTS},
     )
     for wheel in wheels:
         content = wheel.read_bytes()
@@ -180,17 +178,17 @@ def own_packages(wheels, target):
 
 
 def numpy_setting(stated):
-    """The setting numpy_in_the_page: as ``_config.yml`` has ``stated`` it,
-    unless BOOK_NUMPY names a folder.
+    """Return the setting numpy_in_the_page.
+
+    It is the folder in BOOK_NUMPY, or else what ``_config.yml`` has ``stated``.
     """
     return os.environ.get("BOOK_NUMPY") or stated
 
 
 def numerical_packages(setting, target, official, address):
-    """NumPy's and Matplotlib's part of the lock file: see the setting numpy_in_the_page.
+    """Return NumPy's and Matplotlib's part of the lock file: see the setting numpy_in_the_page.
 
-    Where ``setting`` is the path of a folder, the wheels that
-    ``official`` names are copied from it.
+    If ``setting`` is the path of a folder, the wheels that ``official`` names are copied from it.
     """
     if setting in (False, "off"):
         return {}
@@ -216,16 +214,14 @@ def numerical_packages(setting, target, official, address):
 
 
 def write_variants(wheels, compiled, target):
-    """Put beside the wheels what ``compiled`` have not of ``wheels``: the
-    sealed variants, each fetched alone.
-    """
-    kept = set()
+    """Write the sealed variants, which ``wheels`` have and ``compiled`` lack, as separate files."""
+    current = set()
     for before, after in zip(wheels, compiled, strict=True):
         with zipfile.ZipFile(before) as whole, zipfile.ZipFile(after) as rest:
             for place in rest.namelist():
                 if place.endswith("/sealed/elsewhere.txt"):
                     folder, address = place.removesuffix("elsewhere.txt"), rest.read(place).decode()
-                    kept.add((target / address).resolve())
+                    current.add((target / address).resolve())
                     for name in whole.namelist():
                         file = target / address / name.removeprefix(folder)
                         # Their names contain a hash of the content.
@@ -233,12 +229,12 @@ def write_variants(wheels, compiled, target):
                             file.parent.mkdir(parents=True, exist_ok=True)
                             file.write_bytes(whole.read(name))
     for outdated in target.glob("sealed-*/"):
-        if outdated.resolve() not in kept:
+        if outdated.resolve() not in current:
             shutil.rmtree(outdated)
 
 
 def wheels_of_widgets():
-    """The wheels that a moving figure's Python side needs, anywidget the first of them."""
+    """Return the wheels that a moving figure's Python needs, beginning with anywidget."""
     names = [name.replace("-", "_") for name in ("anywidget", *WIDGETS)]
     return [wheel for name in names for wheel in FETCHED_FOR_NOTEBOOKS.glob(f"{name}-*.whl")]
 

@@ -1,6 +1,4 @@
-"""The scripts of the page, put together by esbuild: a small one for every
-page with code, and what it loads.
-"""
+"""The scripts of the page, bundled by esbuild: a small one for every page, and what it loads."""
 
 import shutil
 import tempfile
@@ -14,13 +12,13 @@ from .cells import PRETTY, PYTHON, write_python
 from .runtime import FOLDER, HERE
 
 JS = HERE / "js"
-#: The script that a moving figure and its widget share. The figures of the build and of the page's
-#: Python use one.
+# The script that a moving figure and its widget share. The figures of the build and of the page's
+# Python use the same one.
 MODEL = named(REGISTERED["figures"]).FOLDER / "js" / "model.js" if "figures" in REGISTERED else None
 
 
 def folder_name():
-    """Its scripts have the same names in every version of the book: the folder tells them apart."""
+    """Return the folder of the scripts, which distinguishes versions: the file names do not."""
     ours = [JS, MODEL, PYTHON, Path(FONTS_PROGRAM), Path(__file__)]
     sources = filter(None, [*ours, PRETTY, WEBSITE / "package-lock.json"])
     return f"{FOLDER}/scripts-{fingerprint(*sources)}"
@@ -54,7 +52,7 @@ def write(site):
 
 
 def write_loaded(target):
-    """Write what a page loads when its reader asks for Python."""
+    """Write the files that a page loads when its reader starts Python."""
     target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         workshop = Path(folder)

@@ -1,8 +1,8 @@
-"""The search: an index of places, made from the built pages, and the palette that asks it (``js``).
+"""The search: an index of places, made from the built pages, and the palette that queries it.
 
 The places, with their numbers, first sentences and characteristic words, come from the pages. Two
-files are written for it: ``appendix/synonyms.yml`` holds the readers' words for what the book calls
-something else, and ``appendix/questions.txt`` what readers have asked.
+files are written for it by hand: ``appendix/synonyms.yml`` lists the readers' words for terms of
+the book, and ``appendix/questions.txt`` lists what readers have asked.
 """
 
 import json
@@ -20,79 +20,84 @@ from ..paths import YAML, esbuild, is_solutions, parts
 HERE = Path(__file__).parent
 SCRIPT, WORDS = Path("_static") / "search.js", Path("_static") / "search-words.js"
 WORD = re.compile(r"[a-z][a-z0-9_-]*[a-z0-9]")
-WORKBENCH = "workbench.html"  # a page that takes up what somebody has pasted, if the book has it
+WORKBENCH = "workbench.html"  # a page that accepts pasted text, if the book has it
 FIELDS = ("kind", "page", "anchor", "number", "title", "about", "asked")
 KINDS = ("page", "section", "term", "function", "exercise", "example", "equation", "figure")
 SYNONYMS, QUESTIONS = Path("appendix/synonyms.yml"), Path("appendix/questions.txt")
-LONG = 4  # phrases of more words come later: nobody types so many before the rest is there
+LONG = 4  # longer phrases are loaded later, before anyone has typed so many words
 LONGEST_SENTENCE = 76
 LATER = ("equation", "figure")
-SAID_LATER = ("function", "exercise", "example")  # their first sentences
-LITTLE = 0.5  # what counts no more than this, is found by its title alone
-#: Sections of every chapter: nobody looks for them by their name.
+SAID_LATER = ("function", "exercise", "example")  # kinds whose first sentences are loaded later
+LITTLE = 0.5  # entries that count no more than this are found by their titles alone
+# Sections of every chapter, which nobody looks for by name.
 EVERYWHERE = ("Summary", "Exercises", "Learning objectives")
 REST = "script, style, svg, pre, .eqno, table, .admonition-title"
 
 
 def text_of(element, left_out=()):
-    """The words of an element, without those of the elements ``left_out``."""
+    """Return the words of an element, without those of the elements ``left_out``."""
     parts, waiting = [], [element]
     while waiting:
-        one = waiting.pop()
-        if isinstance(one, str):
-            parts.append(one)
-        elif id(one) not in left_out:
-            waiting += reversed(one.contents)
-    # The sign by which a function is applied.
+        part = waiting.pop()
+        if isinstance(part, str):
+            parts.append(part)
+        elif id(part) not in left_out:
+            waiting += reversed(part.contents)
+    # Remove the invisible character for the application of a function.
     words = " ".join(" ".join(parts).replace("\u2061", "").split())
     return re.sub(r" (?=[,.;:)])|(?<=\() ", "", re.sub(r" ?∘", "°", words))
 
 
 def first_sentence(element, left_out=()):
-    """The first words that stand as text in ``element``: a sentence,
-    or as much of it as a line shows.
-    """
+    """Return the first sentence of the text in ``element``, or as much of it as fits on a line."""
     if element.name in ("dd", "p"):
         paragraph = element
-    else:  # a line that is nothing but emphasis stands beside the text
+    # A line of nothing but emphasis is not part of the text.
+    else:
         asides = [
-            one
-            for one in element.select(":scope > p > em:only-child")
-            if text_of(one) == text_of(one.parent)
+            emphasis
+            for emphasis in element.select(":scope > p > em:only-child")
+            if text_of(emphasis) == text_of(emphasis.parent)
         ]
-        beside = {id(one.parent) for one in asides}
+        beside = {id(emphasis.parent) for emphasis in asides}
         paragraph = next(
-            (one for one in element.find_all("p", recursive=False) if id(one) not in beside), None
+            (
+                candidate
+                for candidate in element.find_all("p", recursive=False)
+                if id(candidate) not in beside
+            ),
+            None,
         )
     words = text_of(paragraph, left_out) if paragraph else ""
     return first_words(re.split(r"(?<=[.?!]) (?=[A-Z])", words)[0])
 
 
 def first_words(text):
-    """As much of a text as a line shows."""
+    """Return as much of a text as fits on a line."""
     return (
         text if len(text) <= LONGEST_SENTENCE else text[:LONGEST_SENTENCE].rpartition(" ")[0] + " …"
     )
 
 
 def title_of(heading):
-    """The number and the words of a heading."""
+    """Return the number and the words of a heading."""
     number = heading.select_one(".section-number")
     words = number.extract().get_text().strip().rstrip(".") if number else ""
     return words, text_of(heading)
 
 
 def captions():
-    """The part of the book in which a page stands."""
+    """Return the caption of the part of the book to which each page belongs."""
     return {page: caption for caption, pages in parts() for page in pages}
 
 
 def entries_of_page(page, article):
-    """The places of one page, with the text of each in ``text``,
-    from which its words are chosen.
+    """Return the places of one page.
+
+    The text of each, from which its words are chosen, is in ``text``.
     """
     tex = {
-        box["id"]: " ".join(one["data-tex"] for one in box.select("[data-tex]"))
+        box["id"]: " ".join(formula["data-tex"] for formula in box.select("[data-tex]"))
         for box in article.select("div.math[id]")
     }
     numbers = {
@@ -101,8 +106,8 @@ def entries_of_page(page, article):
     }
     for rest in article.select(".headerlink, .katex > [aria-hidden]"):
         rest.extract()
-    rest = {id(one) for one in article.select(REST)}
-    inner = rest | {id(one) for one in article.select("section")}
+    rest = {id(part) for part in article.select(REST)}
+    inner = rest | {id(part) for part in article.select("section")}
     for section in article.select("section[id]"):
         heading = section.find(["h1", "h2", "h3", "h4"], recursive=False)
         if heading is None:
@@ -181,8 +186,9 @@ def entries_of_page(page, article):
 
 
 def words_of(entry):
-    """The words of an entry's text that its title and first sentence do not have;
-    one that comes back counts twice.
+    """Return the words of an entry's text that are not in its title or first sentence.
+
+    A word that occurs again counts twice.
     """
     count = Counter(word for word in WORD.findall(entry.pop("text", "").lower()) if len(word) > 2)
     shown = set(WORD.findall(f"{entry['title']} {entry.get('about', '')}".lower()))
@@ -192,9 +198,7 @@ def words_of(entry):
 
 
 def weight_of(page):
-    """What a page counts beside the others: chapters explain, and
-    others hold what belongs to them.
-    """
+    """Return the weight of a page: chapters explain, and other pages contain supplements."""
     if is_solutions(page):
         return 0.3
     if page.startswith("exercises/"):
@@ -203,7 +207,7 @@ def weight_of(page):
 
 
 def questions(path):
-    """What has been asked, and the places that answer it, the best first."""
+    """Iterate over the questions that readers ask and the places that answer them, best first."""
     for line in path.read_text("utf8").splitlines() if path.exists() else []:
         if not line.startswith("#"):
             typed, places, *_ = line.split("|")
@@ -211,8 +215,9 @@ def questions(path):
 
 
 def index(site):
-    """What the palette asks: pages, places and synonyms, as plain data; and, for
-    later, each place's words and TeX.
+    """Return the data of the palette: pages, places and synonyms.
+
+    Returns also each place's words and TeX, which are loaded later.
     """
     caption, pages, entries = captions(), [], []
     synonyms = yaml.load(SYNONYMS.read_text("utf8"), YAML) if SYNONYMS.exists() else {}
@@ -224,7 +229,7 @@ def index(site):
     memory = (
         site.parent / f"search-entries-{sha256(Path(__file__).read_bytes()).hexdigest()[:12]}.json"
     )
-    kept, used = json.loads(memory.read_text("utf8")) if memory.exists() else {}, {}
+    cached, used = json.loads(memory.read_text("utf8")) if memory.exists() else {}, {}
     for path in pages_of(site):
         page = path.relative_to(site).with_suffix("").as_posix()
         if page in ("search", "404", "appendix/subject-index"):
@@ -232,15 +237,15 @@ def index(site):
         # Drawings and code are most of a page, but no help in a search.
         text = re.sub(r"<(svg|pre|script)\b.*?</\1>", "", path.read_text("utf8"), flags=re.DOTALL)
         key = sha256(f"{page}\n{text[text.find('<article') :]}".encode()).hexdigest()
-        if key in kept:
-            found = kept[key]
+        if key in cached:
+            entries_found = cached[key]
         else:
             article = BeautifulSoup(text, "lxml").article
-            found = list(entries_of_page(page, article)) if article else []
-        used[key] = found
-        if not found:
+            entries_found = list(entries_of_page(page, article)) if article else []
+        used[key] = entries_found
+        if not entries_found:
             continue
-        pages.append([page, found[0]["title"], caption.get(page, ""), weight_of(page)])
+        pages.append([page, entries_found[0]["title"], caption.get(page, ""), weight_of(page)])
         phrases = asked.pop(page, {})
         entries += [
             entry
@@ -249,22 +254,22 @@ def index(site):
                 "asked": phrases.pop(entry["anchor"], ""),
                 "weight": weight_of(page),
             }
-            for entry in found
+            for entry in entries_found
         ]
     for old in site.parent.glob("search-entries-*.json"):
         old.unlink()
     memory.write_text(json.dumps(used), "utf8")
     # Equations are found by their content, and figures are many but seldom looked for, so load both
     # later.
-    first = [one for one in entries if one["kind"] not in LATER]
-    last = [one for one in entries if one["kind"] in LATER and one["weight"] > LITTLE]
+    first = [entry for entry in entries if entry["kind"] not in LATER]
+    last = [entry for entry in entries if entry["kind"] in LATER and entry["weight"] > LITTLE]
     words = [words_of(entry) if entry["weight"] > LITTLE else "" for entry in first]
     for entry in first:
         if entry["weight"] <= LITTLE and not entry["asked"]:
             entry["about"] = ""
-    long = [[one for one in entry["asked"] if len(one.split()) > LONG] for entry in first]
+    long = [[phrase for phrase in entry["asked"] if len(phrase.split()) > LONG] for entry in first]
     for entry, some in zip(first, long, strict=True):
-        entry["asked"] = [one for one in entry["asked"] if one not in some] or ""
+        entry["asked"] = [phrase for phrase in entry["asked"] if phrase not in some] or ""
     about = [
         [k, entry.pop("about")]
         for k, entry in enumerate(first)
@@ -274,21 +279,21 @@ def index(site):
         "words": words,
         "about": about,
         "asked": [[k, some] for k, some in enumerate(long) if some],
-        "entries": [row(one) for one in last],
-        "tex": [[k, one["tex"]] for k, one in enumerate(last, len(first)) if "tex" in one],
+        "entries": [row(entry) for entry in last],
+        "tex": [[k, entry["tex"]] for k, entry in enumerate(last, len(first)) if "tex" in entry],
     }
-    found = {
+    entries_found = {
         "pages": pages,
         "fields": FIELDS,
         "kinds": KINDS,
-        "entries": [row(one) for one in first],
+        "entries": [row(entry) for entry in first],
         "synonyms": synonyms,
     }
-    return found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), later
+    return entries_found | ({"workbench": WORKBENCH} if (site / WORKBENCH).exists() else {}), later
 
 
 def row(entry):
-    """An entry without the names of its fields, and without what is empty at its end."""
+    """Return an entry as a list of values, without the empty ones at its end."""
     values = [KINDS.index(entry["kind"]), *(entry.get(field, "") for field in FIELDS[1:])]
     while values[-1] == "":
         values.pop()
@@ -296,11 +301,10 @@ def row(entry):
 
 
 def write(site):
-    """Write the palette with its index as one script: it answers from a disk,
-    too, where pages may fetch nothing.
+    """Write the palette with its index as one script.
 
-    The words of the text and the formulas, which weigh more than all the rest,
-    come after it, as another script.
+    It is a script because pages opened from a disk may fetch nothing else. The words of the text
+    and the formulas, which are larger than all the rest, are loaded later, as another script.
     """
     flags = [
         "--bundle",
@@ -310,11 +314,11 @@ def write(site):
         "--log-level=warning",
     ]
     palette = esbuild(HERE / "js" / "palette.js", *flags)
-    found, later = index(site)
+    data_of_palette, later = index(site)
     text = f"self.searchWords={json.dumps(later, ensure_ascii=False, separators=(',', ':'))};"
     (site / WORDS).write_text(text, "utf8")
-    found["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
-    data = json.dumps(found, ensure_ascii=False, separators=(",", ":"))
+    data_of_palette["words"] = f"{WORDS.as_posix()}?v={sha256(text.encode()).hexdigest()[:8]}"
+    data = json.dumps(data_of_palette, ensure_ascii=False, separators=(",", ":"))
     (site / SCRIPT).write_text(f"self.searchIndex={data};\n{palette}", "utf8")
 
 

@@ -1,12 +1,10 @@
-"""What answers ``import numpy`` on a page, and in its notebook in the browser, until the real NumPy
-is there: small arrays, in plain Python.
+"""A stand-in for NumPy on pages and in notebooks in the browser, until the real one is there.
 
-It does what the book's cells do with a handful of orientations, with NumPy's results and in NumPy's
-way of writing them; ``tests/test_plain_numpy.py`` holds each function against the real one. What it
-does not do exactly so, it does not do: whatever is asked beyond it (another function, another
-option, a shape or a value that calls for a warning, or more work than plain Python gets through in
-a moment) is handed to the real NumPy. The page then fetches it; a notebook does so for a cell that
-imports it.
+It provides small arrays in plain Python. It does what the book's cells do with a handful of
+orientations, with NumPy's results and NumPy's output format; ``tests/test_plain_numpy.py`` compares
+each function with the real one. Everything else (another function, another option, a shape or a
+value that calls for a warning, or more work than plain Python can do in a moment) is left to the
+real NumPy. The page then fetches it; a notebook does so for a cell that imports it.
 """
 
 import bisect
@@ -19,11 +17,11 @@ import operator
 import sys
 import types
 
-MOST_WORK = 4_000_000  # entries that one cell may make: some seconds in a browser
+MOST_WORK = 4_000_000  # entries that one cell may make, which takes some seconds in a browser
 work = 0  # entries made since the page last asked
 nan = math.nan
-KINDS = {"b": bool, "i": int, "f": float}  # of entries: truth values, whole numbers, floats
-# By the names that NumPy has.
+KINDS = {"b": bool, "i": int, "f": float}  # of entries: Booleans, integers, floats
+# Public names, as NumPy has them.
 OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": None}
 
 
@@ -31,50 +29,49 @@ OFFERED = {"pi": math.pi, "e": math.e, "inf": math.inf, "nan": nan, "newaxis": N
 
 
 def real():
-    """The real NumPy; where it is not here, the error that makes the page fetch it."""
-    found = importlib.import_module("numpy")
-    if found is STAND_IN:
+    """Return the real NumPy or, if it is missing, raise the error that makes the page fetch it."""
+    numpy = importlib.import_module("numpy")
+    if numpy is STAND_IN:
         raise ModuleNotFoundError(
             "this needs the real NumPy: `import numpy` in the same cell has it fetched, where it "
             "can be",
             name="numpy",
         )
-    return found
+    return numpy
 
 
 def handed_on(value):
-    """``value`` as the real NumPy takes it."""
+    """Return ``value`` in a form that the real NumPy accepts."""
     if isinstance(value, Array):
         return value.__array__()
     if isinstance(value, Scalar):
         return value.__array__()[()]
-    # A tuple with names takes its parts one by one.
+    # A named tuple takes its parts as separate arguments.
     if isinstance(value, (list, tuple)):
         return getattr(value, "_make", type(value))(map(handed_on, value))
     return value
 
 
-class Told(Exception):
-    """Wraps an error in the reader's own use of an array, in NumPy's words: it is
-    theirs, and needs no real NumPy.
+class UserError(Exception):
+    """An error in the reader's own use of an array, with NumPy's message.
+
+    It wraps the error, so that it is not passed on to the real NumPy.
     """
 
 
 def or_the_real_one(function, find):
-    """``function``; where it cannot answer, what the real NumPy has in its
-    place, by ``find(real, arguments)``.
-    """
+    """Return ``function`` with a fallback to the real NumPy's ``find(real, arguments)``."""
 
     @functools.wraps(function)
     def careful(*arguments, **options):
         try:
             return function(*arguments, **options)
-        except Told as told:
-            raise told.args[0] from None
+        except UserError as user_error:
+            raise user_error.args[0] from None
         except ModuleNotFoundError:
             error = None
-        except Exception as other:
-            error = other
+        except Exception as failure:
+            error = failure
         try:
             arguments = handed_on(arguments)
             instead = find(real(), arguments)
@@ -86,7 +83,7 @@ def or_the_real_one(function, find):
 
 
 def offered(function, within=None, name=None):
-    """Offer ``function`` by its name, or in the part of NumPy that is called ``within``."""
+    """Offer ``function`` by its name, in the part ``within`` of NumPy if that is given."""
     name = name or function.__name__.rstrip("_")
 
     def find(numpy, arguments):
@@ -102,28 +99,29 @@ def within(part):
 
 
 class Part(types.ModuleType):
-    """What stands for ``numpy``, ``numpy.linalg`` or ``numpy.random``: whatever it
-    does not offer, the real one has.
+    """A replacement of ``numpy``, ``numpy.linalg`` or ``numpy.random``.
+
+    Names that it does not offer come from the real one.
     """
 
     __path__ = ()
 
     def __init__(self, name, offered):
         super().__init__(name)
-        # For code that checks whether NumPy is installed.
+        # Code that checks whether NumPy is installed needs this.
         self.__spec__ = importlib.machinery.ModuleSpec(name, None)
         self.offered = offered
 
     def __getattr__(self, name):
         if name in self.offered:
             return self.offered[name]
-        # Python asks this of any module.
+        # Python asks any module for these attributes.
         if name.startswith("__") and name != "__version__":
             raise AttributeError(name)
-        found = real()
+        namesake = real()
         for part in self.__name__.split(".")[1:]:
-            found = getattr(found, part)
-        return getattr(found, name)
+            namesake = getattr(namesake, part)
+        return getattr(namesake, name)
 
 
 PARTS = {"linalg": Part("numpy.linalg", {}), "random": Part("numpy.random", {})}
@@ -132,20 +130,21 @@ OFFERED.update(PARTS)
 
 
 def stand_in():
-    """Answer ``import numpy`` from now on."""
+    """Install the stand-in, so that ``import numpy`` returns it."""
     sys.modules.update({part.__name__: part for part in (STAND_IN, *PARTS.values())})
 
 
 def step_aside(names):
-    """Let the real NumPy take the place: in all modules that have imported this
-    one, and among the reader's names.
+    """Replace the stand-in by the real NumPy in the modules that imported it and in ``names``.
+
+    ``names`` are the reader's own.
     """
     if sys.modules.get("numpy") is not STAND_IN:
         return
     for part in (STAND_IN, *PARTS.values()):
         del sys.modules[part.__name__]
     numpy = importlib.import_module("numpy")
-    # Leave this module out, because its own names tell the real NumPy from the stand-in.
+    # Leave this module out, because its own names distinguish the real NumPy from the stand-in.
     others = [module for module in sys.modules.values() if isinstance(module, types.ModuleType)]
     for space in (names, *(vars(module) for module in others if module.__name__ != __name__)):
         for name, value in list(space.items()):
@@ -174,7 +173,7 @@ def load_ipython_extension(shell):
 
 
 def is_fetched():
-    """Whether the real NumPy could be imported."""
+    """Whether the real NumPy can be imported."""
     try:
         return any(finder.find_spec("numpy", None) for finder in sys.meta_path)
     # A finder raises this, with its own message about where NumPy could come from.
@@ -183,8 +182,9 @@ def is_fetched():
 
 
 def is_at_fault(error):
-    """Whether an error speaks of what stands in for NumPy: with the real
-    one there may be none, or another.
+    """Whether the message of an error mentions the stand-in.
+
+    The real NumPy may have another message or raise no error.
     """
     return any(
         f"'{kind.__name__}'" in str(error)
@@ -193,7 +193,7 @@ def is_at_fault(error):
 
 
 def begin():
-    """Count a cell's work from its start."""
+    """Start counting the work of a cell."""
     global work
     work = 0
 
@@ -230,7 +230,7 @@ class DType:
 
 
 class Scalar:
-    """What the numbers of NumPy have beyond Python's own."""
+    """The methods of NumPy's scalars that Python's own numbers lack."""
 
     ndim, shape, size = 0, (), 1
 
@@ -340,7 +340,7 @@ SCALARS = {"f": Number, "i": Integer, "b": Truth}
 OFFERED.update({"float64": Number, "int64": Integer, "bool_": Truth, "generic": Scalar})
 
 
-#: The attributes of the real array. Some exist here, and the rest need the real NumPy.
+# The attributes of the real array. Some exist here, and the rest need the real NumPy.
 METHODS = set(
     """
     T all any argmax argmin argpartition argsort astype base byteswap choose clip compress conj
@@ -371,9 +371,7 @@ def scalar(kind, value):
 
 
 class Array:
-    """Entries in a list, which views share; where in it the entries stand, in
-    order; the shape; and their kind.
-    """
+    """An array: a list of entries, which views share, the places in it, the shape and the kind."""
 
     # In an operation with an array of the real NumPy, the real one decides.
     __array_priority__ = -1
@@ -395,7 +393,7 @@ class Array:
 
     @property
     def values(self):
-        """The entries in order, as a list that is not to be changed."""
+        """The entries in order, as a list that must not be changed."""
         places, entries = self.places, self.entries
         if isinstance(places, range) and places.step == 1:
             return entries if len(places) == len(entries) else entries[places.start : places.stop]
@@ -432,7 +430,7 @@ class Array:
 
     def __bool__(self):
         if self.size != 1:
-            raise Told(ValueError("The truth value of an array with more than one element is "
+            raise UserError(ValueError("The truth value of an array with more than one element is "
                 "ambiguous. "
                                   "Use a.any() or a.all()"))  # fmt: skip
         return bool(self.values[0])
@@ -461,7 +459,7 @@ class Array:
             rest = math.prod(length for length in shape if length != -1)
             shape = tuple(self.size // rest if length == -1 else length for length in shape)
         if math.prod(shape) != self.size:
-            raise Told(
+            raise UserError(
                 ValueError(f"cannot reshape array of size {self.size} into shape {written(shape)}")
             )
         alike = isinstance(self.places, range)
@@ -482,14 +480,14 @@ class Array:
             raise ValueError(order)
         steps = steps_of(self.shape)
         shape = [self.shape[position] for position in order]
-        found = places_of(shape, [steps[position] for position in order])
-        return self.view(shape, [self.places[place] for place in found])
+        indices = places_of(shape, [steps[position] for position in order])
+        return self.view(shape, [self.places[place] for place in indices])
 
     T = property(lambda self: self.transpose() if self.ndim > 1 else self)
 
-    def swapaxes(self, one, two):
+    def swapaxes(self, axis1, axis2):
         order = list(range(self.ndim))
-        order[one], order[two] = order[two], order[one]
+        order[axis1], order[axis2] = order[axis2], order[axis1]
         return self.transpose(order)
 
     def squeeze(self):
@@ -504,11 +502,11 @@ class Array:
     # Parts.
 
     def select(self, index):
-        """The shape of the part at ``index``, its places, and whether it is a view."""
+        """Return the shape of the part at ``index``, its places, and whether it is a view."""
         if type(index) is int and self.shape:
             length = self.shape[0]
             if not -length <= index < length:
-                raise Told(
+                raise UserError(
                     IndexError(f"index {index} is out of bounds for axis 0 with size {length}")
                 )
             rest = len(self.places) // length
@@ -531,27 +529,31 @@ class Array:
             else part
             for part in index
         ]
-        wanted = sum(part.ndim if isinstance(part, Array) and part.kind == "b" else part is not None
-                     for part in index if part is not Ellipsis)  # fmt: skip
-        if wanted > self.ndim:
-            raise Told(IndexError(f"too many indices for array: array is {self.ndim}-dimensional, "
-                                  f"but {wanted} were indexed"))  # fmt: skip
+        axes = sum(part.ndim if isinstance(part, Array) and part.kind == "b" else part is not None
+                   for part in index if part is not Ellipsis)  # fmt: skip
+        if axes > self.ndim:
+            raise UserError(
+                IndexError(
+                    f"too many indices for array: array is {self.ndim}-dimensional, "
+                    f"but {axes} were indexed"
+                )
+            )
         if Ellipsis not in [part for part in index if not isinstance(part, Array)]:
             index.append(Ellipsis)
         lists = [position for position, part in enumerate(index) if isinstance(part, Array)]
         singles = [position for position, part in enumerate(index) if isinstance(part, int)]
         if len(lists) > 1 or (lists and any(abs(position - lists[0]) > 1 for position in singles)):
             raise NotImplementedError("lists of places along two axes")
-        shape, found, axis, steps = [], [0], 0, steps_of(self.shape)
+        shape, indices, axis, steps = [], [0], 0, steps_of(self.shape)
         for part in index:
             if part is None:
                 shape.append(1)
             elif part is Ellipsis:
-                skipped = range(axis, axis + self.ndim - wanted)
+                skipped = range(axis, axis + self.ndim - axes)
                 shape += [self.shape[k] for k in skipped]
-                found = [
+                indices = [
                     place + more
-                    for place in found
+                    for place in indices
                     for more in places_of(
                         self.shape[axis : skipped.stop], steps[axis : skipped.stop]
                     )
@@ -560,25 +562,25 @@ class Array:
             elif isinstance(part, int):
                 length = self.shape[axis]
                 if not -length <= part < length:
-                    raise Told(
+                    raise UserError(
                         IndexError(
                             f"index {part} is out of bounds for axis {axis} with size {length}"
                         )
                     )
-                found = [place + part % length * steps[axis] for place in found]
+                indices = [place + part % length * steps[axis] for place in indices]
                 axis += 1
             elif isinstance(part, slice):
-                taken = range(*part.indices(self.shape[axis]))
-                shape.append(len(taken))
-                found = [place + k * steps[axis] for place in found for k in taken]
+                positions = range(*part.indices(self.shape[axis]))
+                shape.append(len(positions))
+                indices = [place + k * steps[axis] for place in indices for k in positions]
                 axis += 1
             elif part.kind == "b":
                 if part.shape != self.shape[axis : axis + part.ndim] or not part.ndim:
                     raise IndexError(part.shape)
                 end, step = axis + part.ndim, steps[axis + part.ndim - 1]
-                taken = [k * step for k, chosen in enumerate(part.values) if chosen]
-                shape.append(len(taken))
-                found = [place + more for place in found for more in taken]
+                positions = [k * step for k, chosen in enumerate(part.values) if chosen]
+                shape.append(len(positions))
+                indices = [place + more for place in indices for more in positions]
                 axis = end
             else:
                 length = self.shape[axis]
@@ -586,15 +588,17 @@ class Array:
                     raise IndexError("arrays used as indices must be of integer (or boolean) type")
                 for k in part.values:
                     if not -length <= k < length:
-                        raise Told(
+                        raise UserError(
                             IndexError(
                                 f"index {k} is out of bounds for axis {axis} with size {length}"
                             )
                         )
                 shape += part.shape
-                found = [place + k % length * steps[axis] for place in found for k in part.values]
+                indices = [
+                    place + k % length * steps[axis] for place in indices for k in part.values
+                ]
                 axis += 1
-        return tuple(shape), [self.places[place] for place in found], not lists
+        return tuple(shape), [self.places[place] for place in indices], not lists
 
     def __getitem__(self, index):
         shape, places, view = self.select(index)
@@ -652,7 +656,9 @@ class Array:
 
     def __format__(self, form):
         if form:
-            raise Told(TypeError("unsupported format string passed to numpy.ndarray.__format__"))
+            raise UserError(
+                TypeError("unsupported format string passed to numpy.ndarray.__format__")
+            )
         return str(self)
 
 
@@ -688,21 +694,21 @@ def steps_of(shape):
 
 
 def places_of(shape, steps):
-    found = [0]
+    places = [0]
     for length, step in zip(shape, steps):
-        taken = range(0, length * step, step) if step else [0] * length
-        found = [place + more for place in found for more in taken]
-    return found
+        offsets = range(0, length * step, step) if step else [0] * length
+        places = [place + more for place in places for more in offsets]
+    return places
 
 
 def spread(value, shape):
-    """The entries of an array as they stand for those of a larger shape."""
+    """Return the entries of an array, repeated to fill a larger shape."""
     if value.shape == shape:
         return value.values
     steps = [step if length > 1 else 0 for length, step in zip(value.shape, steps_of(value.shape))]
     new = len(shape) - value.ndim
     if new < 0 or any(length not in (1, there) for length, there in zip(value.shape, shape[new:])):
-        raise Told(
+        raise UserError(
             ValueError(
                 f"could not broadcast input array from shape {written(value.shape)} into shape "
                 f"{written(shape)}"
@@ -721,11 +727,15 @@ def common_shape(*shapes):
     padded = [(1,) * (longest - len(shape)) + tuple(shape) for shape in shapes]
     together = []
     for lengths in zip(*padded):
-        other = set(lengths) - {1}
-        if len(other) > 1:
-            told = " ".join(map(written, shapes))
-            raise Told(ValueError(f"operands could not be broadcast together with shapes {told} "))
-        together.append(other.pop() if other else 1)
+        lengths_above_one = set(lengths) - {1}
+        if len(lengths_above_one) > 1:
+            written_shapes = " ".join(map(written, shapes))
+            raise UserError(
+                ValueError(
+                    f"operands could not be broadcast together with shapes {written_shapes} "
+                )
+            )
+        together.append(lengths_above_one.pop() if lengths_above_one else 1)
     return tuple(together)
 
 
@@ -734,46 +744,46 @@ def can_join(value):
 
 
 def as_array(value, dtype=None):
-    """``value`` as an array, itself if it is one of the right kind."""
+    """Return ``value`` as an array; an array of the right kind is returned unchanged."""
     if isinstance(value, Array):
-        found = value
+        array = value
     elif isinstance(value, (bool, Truth)):
-        found = Array([bool(value)], (), "b")
+        array = Array([bool(value)], (), "b")
     elif isinstance(value, int):
-        found = Array([in_range(int(value))], (), "i")
+        array = Array([in_range(int(value))], (), "i")
     elif isinstance(value, float):
-        found = Array([float(value)], (), "f")
+        array = Array([float(value)], (), "f")
     elif isinstance(value, str) and dtype is float:
-        found = Array([float(value)], (), "f")
+        array = Array([float(value)], (), "f")
     elif isinstance(value, (list, tuple, range)):
         value = list(value)
         if value and all(type(entry) is float for entry in value):
-            found = Array(value, (len(value),), "f")
+            array = Array(value, (len(value),), "f")
         else:
             parts = [as_array(entry, dtype) for entry in value]
             shapes = {part.shape for part in parts}
             if len(shapes) > 1:
                 raise ValueError("ragged")
             kind = max([part.kind for part in parts], key="bif".index, default="f")
-            found = Array([KINDS[kind](entry) for part in parts for entry in part.values],
+            array = Array([KINDS[kind](entry) for part in parts for entry in part.values],
                           (len(parts), *(shapes.pop() if shapes else ())), kind)  # fmt: skip
     elif hasattr(value, "tolist") and hasattr(value, "rows"):  # a matrix of SymPy
         if dtype is None:
             raise TypeError(type(value))
-        found = as_array(value.tolist(), dtype)
+        array = as_array(value.tolist(), dtype)
     elif hasattr(value, "shape") and not type(value).__module__.startswith("numpy"):
-        # An array of orientation's own.
-        found = as_array(value.tolist(), dtype)
+        # This is an array of orientation's own.
+        array = as_array(value.tolist(), dtype)
     elif dtype is not None and kind_of(dtype) == "f" and hasattr(value, "is_number"):
-        # A number of SymPy.
-        found = Array([float(value)], (), "f")
+        # This is a number of SymPy.
+        array = Array([float(value)], (), "f")
     else:
         raise TypeError(type(value))
-    if dtype is None or found.kind == (kind := kind_of(dtype)):
-        return found
-    if kind == "i" and not all(map(math.isfinite, found.values)):
+    if dtype is None or array.kind == (kind := kind_of(dtype)):
+        return array
+    if kind == "i" and not all(map(math.isfinite, array.values)):
         raise ValueError("not finite")
-    return Array([KINDS[kind](entry) for entry in found.values], found.shape, kind)
+    return Array([KINDS[kind](entry) for entry in array.values], array.shape, kind)
 
 
 def in_range(value):
@@ -790,8 +800,10 @@ def result(values, shape, kind):
 
 
 def entry_by_entry(function, *arguments, kind=None, quiet=False):
-    """Apply ``function`` to the entries. What would be infinite or no number, of numbers that are,
-    is left to the real one, which warns."""
+    """Apply ``function`` to the entries.
+
+    If finite numbers give an infinite result or nan, the real NumPy takes over, which warns.
+    """
     arrays = [as_array(argument) for argument in arguments]
     kind = kind or max([array.kind for array in arrays], key="bif".index)
     if len(arrays) == 1:
@@ -812,9 +824,7 @@ def all_finite(values):
 
 
 def arithmetic(name, function, kind=None):
-    """An operator, both ways round, for arrays and for numbers, and the
-    function of NumPy's that does the same.
-    """
+    """Define an operator for arrays and numbers, in both directions, and NumPy's function."""
 
     def there(self, other):
         return joined(self, other) if can_join(other) else NotImplemented
@@ -822,11 +832,11 @@ def arithmetic(name, function, kind=None):
     def back(self, other):
         return joined(other, self) if can_join(other) else NotImplemented
 
-    def joined(one, two):
-        found = entry_by_entry(function, one, two, kind=kind)
-        if kind is None and found.dtype.kind == "b":
+    def joined(left, right):
+        entries = entry_by_entry(function, left, right, kind=kind)
+        if kind is None and entries.dtype.kind == "b":
             raise TypeError("truth values, with which NumPy does not count")
-        return found
+        return entries
 
     for owner in (Array, Number, Integer, Truth):
         setattr(owner, f"__{name}__", there)
@@ -839,15 +849,15 @@ def raised(base, exponent):
         return base * base
     if exponent == 0.5 and isinstance(exponent, float):
         return math.sqrt(base)
-    found = base**exponent
+    power = base**exponent
     if (
         isinstance(base, int)
         and isinstance(exponent, int)
         and exponent < 0
-        or isinstance(found, complex)
+        or isinstance(power, complex)
     ):
         raise ValueError("needs another kind of number")
-    return found
+    return power
 
 
 def rest(value, divisor):
@@ -874,7 +884,7 @@ def of_booleans(function):
             and self.kind == "b"
         ):
             return entry_by_entry(
-                lambda one, two: function(bool(one), bool(two)), self, other, kind="b"
+                lambda left, right: function(bool(left), bool(right)), self, other, kind="b"
             )
         raise TypeError("not truth values")
 
@@ -933,10 +943,10 @@ def of_numbers(name, function, kind="f"):
             raise TypeError("truth values")
         if name in ("floor", "ceil") and arrays[0].kind != "f":
             raise TypeError("whole numbers stay whole")
-        found = entry_by_entry(function, *arrays, kind=kind)
+        entries = entry_by_entry(function, *arrays, kind=kind)
         if out is None:
-            return found
-        out[...] = found
+            return entries
+        out[...] = entries
         return out
 
     applied.__name__ = name
@@ -947,12 +957,12 @@ def nearest_whole(value):
     return math.copysign(round(value), value) if math.isfinite(value) else value
 
 
-def larger(one, two):
-    return one if one >= two or one != one else two
+def larger(x, y):
+    return x if x >= y or x != x else y
 
 
-def smaller(one, two):
-    return one if one <= two or one != one else two
+def smaller(x, y):
+    return x if x <= y or x != x else y
 
 
 def sign_of(value):
@@ -1022,8 +1032,8 @@ OFFERED["round"] = around
 
 @offered
 def clip(a, a_min, a_max):
-    found = a if a_min is None else OFFERED["maximum"](a, a_min)
-    return found if a_max is None else OFFERED["minimum"](found, a_max)
+    raised = a if a_min is None else OFFERED["maximum"](a, a_min)
+    return raised if a_max is None else OFFERED["minimum"](raised, a_max)
 
 
 @offered
@@ -1184,11 +1194,11 @@ def broadcast_to(array, shape):
 
 
 def in_other_words(function, *arguments):
-    """What ``function`` answers; the reader's own error NumPy tells in other words."""
+    """Return the result of ``function``; raise errors in the reader's use with NumPy's message."""
     try:
         return function(*arguments)
-    except Told as told:
-        raise told.args[0] from None
+    except UserError as user_error:
+        raise user_error.args[0] from None
 
 
 @offered
@@ -1274,10 +1284,10 @@ def tile(A, reps):
 def diag(v):
     value = as_array(v)
     if value.ndim == 1:
-        found = zeros((value.size, value.size), value.dtype)
+        matrix = zeros((value.size, value.size), value.dtype)
         for k, entry in enumerate(value.values):
-            found[k, k] = entry
-        return found
+            matrix[k, k] = entry
+        return matrix
     if value.ndim != 2:
         raise NotImplementedError("stacks")
     return Array(
@@ -1289,7 +1299,7 @@ def diag(v):
 
 
 def pairwise(values):
-    """The sum of floats in the order in which NumPy adds them up."""
+    """Return the sum of floats in the order in which NumPy adds them up."""
     count = len(values)
     if count < 8:
         total = 0.0 if count == 0 else values[0]
@@ -1299,7 +1309,7 @@ def pairwise(values):
     if count <= 128:
         r = list(values[:8])
         for start in range(8, count - count % 8, 8):
-            r = [one + two for one, two in zip(r, values[start : start + 8])]
+            r = [subtotal + value for subtotal, value in zip(r, values[start : start + 8])]
         total = ((r[0] + r[1]) + (r[2] + r[3])) + ((r[4] + r[5]) + (r[6] + r[7]))
         for value in values[count - count % 8 :]:
             total += value
@@ -1316,10 +1326,10 @@ def in_turn(values):
     return total
 
 
-def along(value, axis, function, kind=None, keepdims=False, other=None):
+def along(value, axis, function, kind=None, keepdims=False, across=None):
     """Apply ``function`` to the lists of entries along one axis, several, or all (None).
 
-    ``other`` is for an axis that is not the last: there NumPy adds up in another order.
+    For an axis that is not the last, NumPy adds up in another order, so ``across`` is applied.
     """
     value = as_array(value)
     kind = kind or value.kind
@@ -1332,14 +1342,14 @@ def along(value, axis, function, kind=None, keepdims=False, other=None):
     axes = sorted(operator.index(k) + (value.ndim if k < 0 else 0) for k in axes)
     if any(k not in range(value.ndim) for k in axes) or len(set(axes)) < len(axes):
         raise ValueError("axes")
-    kept = [k for k in range(value.ndim) if k not in axes]
-    if kept and axes and axes[-1] < kept[-1] and other:
+    axes_kept = [k for k in range(value.ndim) if k not in axes]
+    if axes_kept and axes and axes[-1] < axes_kept[-1] and across:
         if len(axes) > 1:
             raise NotImplementedError("several axes that are not the last")
-        function = other
+        function = across
     count = math.prod(value.shape[k] for k in axes)
-    entries = (value.transpose(*kept, *axes) if kept and axes else value).values
-    shape = tuple(value.shape[k] for k in kept)
+    entries = (value.transpose(*axes_kept, *axes) if axes_kept and axes else value).values
+    shape = tuple(value.shape[k] for k in axes_kept)
     values = (
         [
             function(entries[start : start + count])
@@ -1355,11 +1365,11 @@ def along(value, axis, function, kind=None, keepdims=False, other=None):
     return result(values, shape, kind)
 
 
-def reduction(name, function, kind=None, other=None):
+def reduction(name, function, kind=None, across=None):
     """Offer a reduction as a function and as a method."""
 
     def applied(a, axis=None, *, keepdims=False):
-        return along(a, axis, function, kind, keepdims, other)
+        return along(a, axis, function, kind, keepdims, across)
 
     applied.__name__ = name
     offered(applied)
@@ -1367,13 +1377,13 @@ def reduction(name, function, kind=None, other=None):
 
 
 def largest(values):
-    found = max(values)
-    return found if all_finite(values) or not any(map(math.isnan, values)) else nan
+    maximum = max(values)
+    return maximum if all_finite(values) or not any(map(math.isnan, values)) else nan
 
 
 def smallest(values):
-    found = min(values)
-    return found if all_finite(values) or not any(map(math.isnan, values)) else nan
+    minimum = min(values)
+    return minimum if all_finite(values) or not any(map(math.isnan, values)) else nan
 
 
 def without_truth(value):
@@ -1392,12 +1402,12 @@ OFFERED.update({"amax": OFFERED["max"], "amin": OFFERED["min"]})
 
 
 def place_of(choose):
-    def found(values):
+    def place_in(values):
         if not all_finite(values):
             raise ValueError("not finite")
         return values.index(choose(values))
 
-    return found
+    return place_in
 
 
 def place(name, choose):
@@ -1452,14 +1462,14 @@ def percentile(a, q, axis=None):
         raise ValueError("not finite")
 
     def at(part):
-        def found(values):
+        def interpolated(values):
             ordered, exact = sorted(values), part / 100 * (len(values) - 1)
             below = math.floor(exact)
             low, high = ordered[below], ordered[min(below + 1, len(values) - 1)]
             share = exact - below
             return high - (high - low) * (1 - share) if share >= 0.5 else low + (high - low) * share
 
-        return found
+        return interpolated
 
     if not q.shape:
         return along(value, axis, at(q.item()))
@@ -1474,16 +1484,16 @@ def cumsum(a, axis=None):
     last = value.swapaxes(axis, -1)
     length = last.shape[-1]
     rows = [last.values[start : start + length] for start in range(0, last.size, length)]
-    found = Array(
+    sums = Array(
         [entry for row in rows for entry in itertools.accumulate(row)],
         last.shape,
         "i" if value.kind == "b" else value.kind,
     )
-    return found.swapaxes(axis, -1)
+    return sums.swapaxes(axis, -1)
 
 
 def between(value, axis):
-    """All but the first along an axis, and all but the last."""
+    """Return all but the first along an axis, and all but the last."""
     front = (slice(None),) * range(value.ndim)[axis]
     return value[(*front, slice(1, None))], value[(*front, slice(None, -1))]
 
@@ -1513,16 +1523,16 @@ def unwrap(p, *, period=2 * math.pi, axis=-1):
         return half if rest_of_it == -half and step > 0 else rest_of_it
 
     corrections = where(abs_(steps) < half, 0.0, entry_by_entry(wrapped, steps) - steps)
-    found = value.copy()
+    unwrapped = value.copy()
     later = (*(slice(None),) * range(value.ndim)[axis], slice(1, None))
-    found[later] = value[later] + cumsum(corrections, axis)
-    return found
+    unwrapped[later] = value[later] + cumsum(corrections, axis)
+    return unwrapped
 
 
 @offered
 def flatnonzero(a):
-    found = [place for place, entry in enumerate(as_array(a).values) if entry]
-    return Array(found, (len(found),), "i")
+    places = [place for place, entry in enumerate(as_array(a).values) if entry]
+    return Array(places, (len(places),), "i")
 
 
 @offered
@@ -1555,23 +1565,23 @@ def spend(count):
         real()
 
 
-def product(one, two):
-    """``one @ two``, rows times columns."""
-    one, two = as_array(one), as_array(two)
-    if not one.shape or not two.shape:
+def product(first, second):
+    """Return ``first @ second``, rows times columns."""
+    first, second = as_array(first), as_array(second)
+    if not first.shape or not second.shape:
         raise ValueError("NumPy says in its own words which of the two")
-    left = one.reshape(1, -1) if one.ndim == 1 else one
-    right = two.reshape(-1, 1) if two.ndim == 1 else two
+    left = first.reshape(1, -1) if first.ndim == 1 else first
+    right = second.reshape(-1, 1) if second.ndim == 1 else second
     if left.shape[-1] != right.shape[-2]:
-        said = f"size {right.shape[-2]} is different from {left.shape[-1]}"
-        raise Told(
+        sizes = f"size {right.shape[-2]} is different from {left.shape[-1]}"
+        raise UserError(
             ValueError(
                 "matmul: Input operand 1 has a mismatch in its core dimension 0, with gufunc "
                 "signature (n?,k),(k,m?)->(n?,m?) "
-                f"({said})"
+                f"({sizes})"
             )
         )
-    kind = max(one.kind, two.kind, key="bif".index)
+    kind = max(first.kind, second.kind, key="bif".index)
     if kind == "b":
         raise TypeError("truth values")
     batch = common_shape(left.shape[:-2], right.shape[:-2])
@@ -1586,18 +1596,18 @@ def product(one, two):
         values += [
             in_turn(list(map(operator.mul, row, column))) for row in rows for column in columns
         ]
-    shape = batch + ((n,) if one.ndim > 1 else ()) + ((m,) if two.ndim > 1 else ())
+    shape = batch + ((n,) if first.ndim > 1 else ()) + ((m,) if second.ndim > 1 else ())
     return result(values, shape, kind)
 
 
 @offered
 def dot(a, b):
-    one, two = as_array(a), as_array(b)
-    if not one.shape or not two.shape:
-        return one * two
-    if two.ndim > 2 or one.ndim > 2:
+    left, right = as_array(a), as_array(b)
+    if not left.shape or not right.shape:
+        return left * right
+    if right.ndim > 2 or left.ndim > 2:
         raise NotImplementedError("stacks")
-    return in_other_words(product, one, two)
+    return in_other_words(product, left, right)
 
 
 @offered
@@ -1607,10 +1617,10 @@ def outer(a, b):
 
 @offered
 def cross(a, b):
-    one, two = as_array(a), as_array(b)
-    if one.shape[-1] != 3 or two.shape[-1] != 3:
+    left, right = as_array(a), as_array(b)
+    if left.shape[-1] != 3 or right.shape[-1] != 3:
         raise ValueError("three components")
-    (r, s, t), (x, y, z) = ([value[..., k] for k in range(3)] for value in (one, two))
+    (r, s, t), (x, y, z) = ([value[..., k] for k in range(3)] for value in (left, right))
     return stack([s * z - t * y, t * x - r * z, r * y - s * x], -1)
 
 
@@ -1624,10 +1634,10 @@ def trace(a):
 
 @offered
 def tensordot(a, b, axes):
-    one, two = as_array(a), as_array(b)
-    if axes != 1 or one.ndim != 1:
+    left, right = as_array(a), as_array(b)
+    if axes != 1 or left.ndim != 1:
         raise NotImplementedError("other axes")
-    return (one @ two.reshape(two.shape[0], -1)).reshape(two.shape[1:])
+    return (left @ right.reshape(right.shape[0], -1)).reshape(right.shape[1:])
 
 
 @offered
@@ -1671,7 +1681,7 @@ def einsum(formula, /, *operands):
 
 
 def matrices(value):
-    """The square matrices of a stack, as lists of rows, and the shape of the stack."""
+    """Return the square matrices of a stack, as lists of rows, and the shape of the stack."""
     value = as_array(value, float)
     if value.ndim < 2 or value.shape[-1] != value.shape[-2] or not all_finite(value.values):
         raise ValueError("square matrices")
@@ -1680,12 +1690,12 @@ def matrices(value):
     return nested(value.values, (value.size // (n * n), n, n)), value.shape[:-2], n
 
 
-def inner(one, two):
-    return sum(map(operator.mul, one, two))
+def inner(x, y):
+    return sum(map(operator.mul, x, y))
 
 
 def eliminated(rows, right, careful=True):
-    """Solve by Gauss's elimination with row exchanges; returns the solution and the determinant."""
+    """Solve by Gaussian elimination with row exchanges; return the solution and the determinant."""
     rows, right, n, determinant = (
         [row[:] for row in rows],
         [row[:] for row in right],
@@ -1756,7 +1766,7 @@ def det(a):
 
 
 def of_symmetric(rows):
-    """Eigenvalues in rising order and eigenvectors, as rows, by Jacobi's turns."""
+    """Return eigenvalues in ascending order and eigenvectors, as rows, by Jacobi rotations."""
     a, n = [row[:] for row in rows], len(rows)
     vectors = eye(n).tolist()
     for _ in range(60):
@@ -1792,7 +1802,7 @@ SVDResult = collections.namedtuple("SVDResult", "U S Vh")
 
 
 def symmetric(a):
-    """Matrices as the halves below their diagonals have them: NumPy looks at no more."""
+    """Return symmetric matrices from the lower triangles, the only part that NumPy reads."""
     stack_of, batch, n = matrices(a)
     halves = range(n)
     return (
@@ -1805,10 +1815,10 @@ def symmetric(a):
 @within("linalg")
 def eigh(a):
     stack_of, batch, n = symmetric(a)
-    found = [of_symmetric(rows) for rows in stack_of]
-    # A vector and its opposite are both right, and LAPACK does not say which it returns.
-    vectors = [entry for _, rows in found for column in zip(*rows) for entry in column]
-    sizes = Array([value for values, _ in found for value in values], (*batch, n), "f")
+    decompositions = [of_symmetric(rows) for rows in stack_of]
+    # A vector and its opposite are both right, and LAPACK does not specify which it returns.
+    vectors = [entry for _, rows in decompositions for column in zip(*rows) for entry in column]
+    sizes = Array([value for values, _ in decompositions for value in values], (*batch, n), "f")
     return EighResult(sizes, Array(vectors, (*batch, n, n), "f"))
 
 
@@ -1819,8 +1829,9 @@ def eigvalsh(a):
 
 
 def singular(rows):
-    """Columns of the left factor, singular values, and rows of the right
-    factor, by turning columns (Hestenes).
+    """Decompose by rotating columns (Hestenes).
+
+    Returns the columns of the left factor, the singular values, and the rows of the right factor.
     """
     n = len(rows)
     columns, right = [list(column) for column in zip(*rows)], eye(n).tolist()
@@ -1851,23 +1862,24 @@ def singular(rows):
 
 
 def orthonormal(columns, sizes):
-    """Columns that are at right angles, of unit length; where one has shrunk to
-    nothing, another at right angles.
+    """Scale orthogonal columns to unit length.
+
+    A column that has shrunk to zero is replaced by another that is orthogonal to the rest.
     """
-    found = []
+    units = []
     for column, size in zip(columns, sizes):
         if size <= 1e-14 * sizes[0] or not size:
             rests = []
             for unit in eye(len(columns)).tolist():
                 for _ in range(2):
-                    for other in found:
-                        share = inner(unit, other)
-                        unit = [a - share * b for a, b in zip(unit, other)]
+                    for previous in units:
+                        share = inner(unit, previous)
+                        unit = [a - share * b for a, b in zip(unit, previous)]
                 rests.append(unit)
             column = max(rests, key=lambda rest: inner(rest, rest))
             size = math.hypot(*column)
-        found.append([entry / size for entry in column])
-    return found
+        units.append([entry / size for entry in column])
+    return units
 
 
 @within("linalg")
@@ -1901,16 +1913,16 @@ def norm(x, *, axis=None, keepdims=False):
 
 @within("linalg")
 def matrix_power(a, n):
-    found, matrix, exponent = None, as_array(a), operator.index(n)
+    power, matrix, exponent = None, as_array(a), operator.index(n)
     if exponent < 1 or matrix.ndim < 2 or matrix.shape[-1] != matrix.shape[-2]:
         raise ValueError("positive powers of square matrices")
     if exponent == 3:
         return product(product(matrix, matrix), matrix)
     while exponent:
         exponent, odd = divmod(exponent, 2)
-        found = (matrix if found is None else product(found, matrix)) if odd else found
+        power = (matrix if power is None else product(power, matrix)) if odd else power
         matrix = product(matrix, matrix) if exponent else matrix
-    return found
+    return power
 
 
 @within("linalg")
@@ -1923,7 +1935,7 @@ def matrix_rank(A):
 
 
 class Quiet:
-    """Nothing here warns: what would is left to the real NumPy."""
+    """A context without effect: nothing here warns, and the real NumPy does whatever would."""
 
     def __init__(self, **settings):
         pass
@@ -1944,7 +1956,7 @@ WORD, LONG, HUGE = 2**32 - 1, 2**64 - 1, 2**128 - 1
 
 
 def seeded(seed):
-    """The state and the increment of PCG64 for a whole number: NumPy's SeedSequence."""
+    """Return the state and the increment of PCG64 for an integer, as NumPy's SeedSequence does."""
     words = []
     while seed or not words:
         words.append(seed & WORD)
@@ -1959,8 +1971,8 @@ def seeded(seed):
         return value ^ value >> 16
 
     def mixed(x, y):
-        found = (0xCA01F9DD * x - 0x4973F715 * y) & WORD
-        return found ^ found >> 16
+        difference = (0xCA01F9DD * x - 0x4973F715 * y) & WORD
+        return difference ^ difference >> 16
 
     pool = [hashed(words[k] if k < len(words) else 0) for k in range(4)]
     for source, target in itertools.product(range(4), range(4)):
@@ -1978,8 +1990,8 @@ def seeded(seed):
     return first << 64 | second, third << 64 | fourth
 
 
-#: NumPy's table of widths was computed with rounding. This is its largest error, in units in the
-#: last place.
+# NumPy's table of widths was computed with rounding. This is its largest error, in units in the
+# last place.
 ROUNDED = """
     -9 -130 -40 -33 -28 -26 -26 -22 -22 -11 -10 -9 -8 -8 -8 -8 -8 -9 -8 -8 -9 -9 -9 -10 -9 -8 -8 -7
     -8 -8 -8 -7 -8 -8 -7 -7 -8 -8 -6 -6 -6 -5 -5 -6 -5 -6 -5 -5 -5 -5 -6 -6 -3 -4 -4 -4 -4 -4 -4 -4
@@ -1994,8 +2006,9 @@ ROUNDED = """
 
 @functools.cache
 def ziggurat():
-    """The 256 layers of equal area under the bell curve: their bounds as
-    whole numbers, widths and heights.
+    """Return the 256 layers of equal area under the bell curve.
+
+    The results are their bounds as integers, their widths and their heights.
     """
     import mpmath
 
@@ -2008,7 +2021,7 @@ def ziggurat():
         edges = [start]
         for _ in range(254):
             edges.append(mpmath.sqrt(-2 * mpmath.log(area / edges[-1] + height(edges[-1]))))
-        # From the widest, which stands for the tail, to the narrowest.
+        # From the widest layer, which represents the tail, to the narrowest.
         edges = [area / height(start), *edges]
         scale = mpmath.mpf(2) ** 52
         widths = [edges[0], *reversed(edges[1:])]
@@ -2101,7 +2114,7 @@ class Generator:
 
 
 def _from_here_on(name):
-    """A method of a generator; where it cannot answer, a real one goes on from the same state."""
+    """Return a generator's method, with a fallback to a real one that goes on from its state."""
 
     def find(numpy, arguments):
         return lambda self, *rest, **options: getattr(self.as_real(), name)(*rest, **options)
@@ -2130,9 +2143,7 @@ def places_after(value, form):
 
 
 def writer(values, kind):
-    """The function that writes each entry, all in one width, as
-    NumPy's default settings have it.
-    """
+    """Return the function that formats the entries to one width, with NumPy's default settings."""
     if kind == "b":
         return lambda value: f"{value!s:>5}"
     if kind == "i":
@@ -2149,7 +2160,7 @@ def writer(values, kind):
         default=0,
     )
 
-    def one(value):
+    def written_entry(value):
         if not math.isfinite(value):
             return str(value)
         text = format(value, f".{digits}{form}")
@@ -2161,12 +2172,12 @@ def writer(values, kind):
             return text
         return text.replace("e", ".e") if exponents else f"{text}."
 
-    width = max((len(one(value)) for value in values), default=0)
-    return lambda value: f"{one(value):>{width}}"
+    width = max((len(written_entry(value)) for value in values), default=0)
+    return lambda value: f"{written_entry(value):>{width}}"
 
 
 def shortest(value, form):
-    """Digits after the point of the shortest decimal that is this float."""
+    """Return the number of decimals in the shortest representation of a float."""
     import decimal
 
     digits, exponent = decimal.Decimal(repr(value)).as_tuple()[1:]
@@ -2176,7 +2187,7 @@ def shortest(value, form):
 
 
 def written_array(value, between, prefix):
-    """An array as NumPy writes it: lines of at most 75 characters."""
+    """Format an array as NumPy does, in lines of at most 75 characters."""
     if value.size > 1000:
         raise NotImplementedError("NumPy leaves out the middle")
     write = writer(value.values, value.kind)

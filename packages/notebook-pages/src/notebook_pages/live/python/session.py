@@ -1,7 +1,7 @@
-"""Runs the cells of a page and says what they put out: the Python side of code in the page.
+"""Run the cells of a page and report their output: the Python part of code in the page.
 
-The same file runs in the browser, in Pyodide, and at build time, where it finds out which cells
-need more than SymPy. Results take the forms that IPython gives them, so that they equal the stored
+The same file runs in the browser, in Pyodide, and at build time, where it determines which cells
+need more than SymPy. Results have the forms that IPython gives them, so that they equal the stored
 ones. Everything goes to the page as JSON, through one function.
 """
 
@@ -33,13 +33,13 @@ REPRESENTATIONS = {
     "text/latex": "_repr_latex_",
 }
 WIDGET = "application/vnd.jupyter.widget-view+json"
-MOST_CHARACTERS = 60_000  # that one cell may print; a page holds no more with comfort
-FIRST_LINES = 50  # sent one by one
+MOST_CHARACTERS = 60_000  # of one cell, because more would make a page slow
+FIRST_LINES = 50  # sent individually
 PAUSE = 0.1  # seconds between two messages after that
 
 
 class Missing:
-    """First in line to answer an import: names the packages that are not here, and why."""
+    """An import hook before all others: it names the packages that are missing, and why."""
 
     def __init__(self):
         self.reasons = {}
@@ -51,7 +51,7 @@ class Missing:
         return None
 
     def cause(self, error):
-        """The missing package that ``error`` comes from, or None."""
+        """Return the missing package that caused ``error``, or None."""
         while error is not None:
             if isinstance(error, ModuleNotFoundError) and error.name in self.reasons:
                 return error.name
@@ -60,17 +60,17 @@ class Missing:
 
 
 class Absent(types.ModuleType):
-    """Stands for a missing package until it is used: many a cell imports NumPy for later ones."""
+    """Replace a missing package until it is used: many cells import NumPy only for later ones."""
 
     def __getattr__(self, attribute):
-        # Other libraries ask this of any module.
+        # Other libraries ask any module for these attributes.
         if attribute in ("__path__", "__file__", "__wrapped__"):
             raise AttributeError(attribute)
         return getattr(importlib.import_module(self.__name__), attribute)
 
 
 class Formatter:
-    """How values of some types are shown in one form: the part of IPython's that SymPy sets."""
+    """The representation of some types in one form: the part of IPython's that SymPy sets."""
 
     def __init__(self, method=None):
         self.method, self.type_printers = method, {}
@@ -105,7 +105,7 @@ class DisplayFormatter:
         self.formatters["text/plain"] = PlainFormatter()
 
     def format(self, value):
-        """The forms of ``value``, a dictionary from MIME types."""
+        """Return the forms of ``value``, a dictionary from MIME types."""
         data = {}
         bundle = getattr(value, "_repr_mimebundle_", None)
         if callable(bundle) and not isinstance(value, type):
@@ -120,7 +120,7 @@ class DisplayFormatter:
 
 
 class Printed(io.TextIOBase):
-    """Standard output or error of a cell, sent in batches and cut where it grows too long."""
+    """Standard output or error of a cell, sent in batches and cut off when it grows too long."""
 
     def __init__(self, shell, name):
         self.shell, self.name = shell, name
@@ -136,13 +136,13 @@ class Printed(io.TextIOBase):
     def write(self, text):
         if not isinstance(text, str):
             raise TypeError(f"write() argument must be str, not {type(text).__name__}")
-        kept = text[: self.room]
-        self.room -= len(kept)
-        self.dropped += len(text) - len(kept)
-        if kept:
-            self.parts.append(kept)
-            # Send a few lines at once, so that they can be read while the cell works on.
-            soon = self.messages < FIRST_LINES and kept.endswith("\n")
+        accepted = text[: self.room]
+        self.room -= len(accepted)
+        self.dropped += len(text) - len(accepted)
+        if accepted:
+            self.parts.append(accepted)
+            # Send the first lines at once, so that they can be read while the cell runs.
+            soon = self.messages < FIRST_LINES and accepted.endswith("\n")
             if soon or time.monotonic() - self.sent > PAUSE:
                 self.flush()
         return len(text)
@@ -161,7 +161,7 @@ class Printed(io.TextIOBase):
 
 
 class Events:
-    """Tells packages when a cell begins and ends, as IPython's shell does."""
+    """Notify packages when a cell begins and ends, as IPython's shell does."""
 
     def __init__(self):
         self.listeners = []
@@ -176,9 +176,9 @@ class Events:
 
 
 class Shell:
-    """One run of Python for one page: its names, and how its values are shown."""
+    """The Python process of one page: its names, and how its values are shown."""
 
-    # SymPy asks for this to choose a colour for pictures that nobody draws here.
+    # SymPy asks for this to choose a colour for pictures that are not drawn here.
     colors = "neutral"
 
     def __init__(self, send):
@@ -195,7 +195,7 @@ class Shell:
             "display": display,
             "get_ipython": lambda: self,
         }
-        # SymPy looks for it among the names of Python itself.
+        # SymPy looks for this among the built-in names.
         builtins.get_ipython = lambda: self
         sys.modules["__main__"] = main
         sys.meta_path.insert(0, self.missing)
@@ -211,7 +211,7 @@ class Shell:
             return Absent(name)
 
     def lack(self, reasons):
-        """Tell which packages are not here: a dictionary from their names to the reasons."""
+        """Record which packages are missing: a dictionary from their names to the reasons."""
         self.missing.reasons = reasons
         importlib.invalidate_caches()
         if "numpy" in reasons:
@@ -225,7 +225,7 @@ class Shell:
     # --- figures that move ----------------------------------------------------------------------
 
     def open_line(self):
-        """Have widgets talk with the page, through the package that is made for it and now here."""
+        """Connect widgets with the page, through the package ``comm``, which is now installed."""
         import comm
         from comm.base_comm import BaseComm
 
@@ -238,16 +238,14 @@ class Shell:
                     )
                 self.send({"type": msg_type, "id": line.comm_id, "data": data})
 
-            # The original would report to the events of IPython's shell.
+            # The original method would report to the events of IPython's shell.
             def handle_msg(line, message):
                 line._msg_callback(message)
 
         comm.create_comm = Line
 
     def hear(self, name, data):
-        """Take what the page says to the widget ``name``: JSON, in the
-        form of Jupyter's own messages.
-        """
+        """Pass a message from the page to the widget ``name``: JSON, in the form of Jupyter's."""
         import comm
 
         message = {"content": {"comm_id": name, "data": json.loads(data)}, "buffers": []}
@@ -255,10 +253,10 @@ class Shell:
             comm.get_comm_manager().comm_msg(None, None, message)
 
     def showtraceback(self):
-        """Print the error that is being handled: widgets ask for it where an observer fails."""
-        told = traceback.TracebackException.from_exception(sys.exception(), compact=True)
-        shorten(told)
-        print("".join(told.format()).rstrip(), file=sys.stderr)
+        """Print the error that is being handled; widgets call this when an observer fails."""
+        report = traceback.TracebackException.from_exception(sys.exception(), compact=True)
+        shorten(report)
+        print("".join(report.format()).rstrip(), file=sys.stderr)
 
     # --- showing --------------------------------------------------------------------------------
 
@@ -292,9 +290,9 @@ class Shell:
     async def run(self, code, name):
         """Run one cell; return its outcome as JSON.
 
-        The outcome has a ``status``: 'ok' (and whether ``plain`` Python computed in the place of
-        NumPy), 'error' (with a ``traceback``), 'interrupted', or 'missing' (with the ``package``
-        that is not here, and the reason).
+        The outcome has a ``status``: 'ok' (and whether ``plain`` Python replaced NumPy), 'error'
+        (with a ``traceback``), 'interrupted', or 'missing' (with the ``package`` that is missing,
+        and the reason).
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
@@ -313,7 +311,7 @@ class Shell:
 
     @contextlib.contextmanager
     def printing(self):
-        """Send to the page what is printed meanwhile."""
+        """Send printed text to the page."""
         before = sys.stdout, sys.stderr
         sys.stdout, sys.stderr = self.printed
         try:
@@ -334,7 +332,7 @@ class Shell:
         self.show_plots()
 
     async def evaluate(self, tree, name, mode):
-        """Run a part of a cell, which may await something outside any function."""
+        """Run a part of a cell, which may use ``await`` outside any function."""
         compiled = compile(tree, name, mode, ast.PyCF_ALLOW_TOP_LEVEL_AWAIT, dont_inherit=True)
         value = eval(compiled, self.names)
         return await value if compiled.co_flags & inspect.CO_COROUTINE else value
@@ -349,21 +347,20 @@ class Shell:
                 "package": package,
                 "reason": self.missing.reasons[package],
             }
-        told = traceback.TracebackException.from_exception(error, compact=True)
-        shorten(told)
+        report = traceback.TracebackException.from_exception(error, compact=True)
+        shorten(report)
         if isinstance(error, SyntaxError) and error.filename == name:
             # The parser's own lines do not belong to the cell's traceback.
-            told.stack.clear()
+            report.stack.clear()
         return {
             "status": "error",
             "name": type(error).__name__,
-            "traceback": "".join(told.format()).rstrip() + hint(error, name),
+            "traceback": "".join(report.format()).rstrip() + hint(error, name),
         }
 
 
 def hint(error, name):
-    """A word to those who import what is not here, or know Jupyter's own commands, which are not
-    Python."""
+    """Explain to readers why a package is missing, or that a Jupyter command is not Python."""
     if isinstance(error, ModuleNotFoundError) and "." not in (error.name or "."):
         return (
             f"\n\n{error.name} is not part of this page's Python, and nothing can be installed "
@@ -401,21 +398,22 @@ def ends_in_semicolon(code):
     return [token.string for token in tokens if token.type not in skipped][-1:] == [";"]
 
 
-def shorten(told):
-    """Keep of a traceback the cells' own lines: what a package says helps, and
-    not the line of it that says so.
+def shorten(report):
+    """Keep only the cells' own lines of a traceback.
+
+    The message of a package helps, but not its line of code.
     """
-    while told is not None:
-        frames = [frame for frame in told.stack if frame.filename != __file__]
+    while report is not None:
+        frames = [frame for frame in report.stack if frame.filename != __file__]
         own = [frame for frame in frames if frame.filename.startswith("cell ")]
-        # This is an infinite recursion.
+        # Such a long traceback comes from an infinite recursion.
         if len(own) > 12:
             own = own[:4] + own[-4:]
-        told.stack = traceback.StackSummary.from_list(own or frames[-1:])
-        told = told.__cause__ or (None if told.__suppress_context__ else told.__context__)
+        report.stack = traceback.StackSummary.from_list(own or frames[-1:])
+        report = report.__cause__ or (None if report.__suppress_context__ else report.__context__)
 
 
 def start(send):
-    """Start the one shell of this run of Python; ``send`` takes each message, as JSON."""
+    """Start the only shell of this Python process; ``send`` takes each message, as JSON."""
     IPython.shell = Shell(send)
     return IPython.shell

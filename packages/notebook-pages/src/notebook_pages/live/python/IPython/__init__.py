@@ -1,13 +1,13 @@
-"""What code in the page finds of IPython: displaying, and nothing of its terminal.
+"""The part of IPython that code in the page can use: display, and nothing of its terminal.
 
-``lib/pretty.py`` beside this file is IPython's own: it writes values as plain text.
+``lib/pretty.py`` beside this file is IPython's own, which writes values as plain text.
 """
 
 version_info = (9, 0)
 __version__ = "9.0"
 
 
-#: The one shell of this run of Python, once the page has started it.
+# The only shell of this Python process, once the page has started it.
 shell = None
 
 

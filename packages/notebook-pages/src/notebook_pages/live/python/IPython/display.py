@@ -12,7 +12,7 @@ def display(*values, **ignored):
 
 
 def clear_output(wait=False):
-    """Take away what the cell has put out so far."""
+    """Remove what the cell has displayed so far."""
     get_ipython().clear()
 
 
@@ -52,7 +52,7 @@ class Image(_Content):
 
 
 class Code(_Content):
-    """Coloured as IPython does it, which the page's own Python cannot."""
+    """Code, shown without the colours of IPython, which need a package that the page lacks."""
 
     def __init__(self, data, language=None):
         import pygments  # noqa: F401 (not part of it: the error names what is missing)

@@ -1,4 +1,4 @@
-"""Here because ipywidgets imports the name; the page's own shell is ``session.Shell``."""
+"""A name that ipywidgets imports; the page's own shell is ``session.Shell``."""
 
 
 class InteractiveShell:
