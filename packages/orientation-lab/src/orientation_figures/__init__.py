@@ -1,5 +1,4 @@
-"""The pictures of the book, beside its mathematics: drawings, plots, animations
-and figures that the reader moves.
+"""The pictures of the book: drawings, plots, animations and interactive figures.
 
-This package draws with what :mod:`orientation` computes; ``orientation`` knows nothing of it.
+This package draws what :mod:`orientation` computes; ``orientation`` does not import it.
 """

@@ -1,4 +1,4 @@
-"""Drawings that move: key frames computed with the module, played by the browser, never unasked."""
+"""Animated drawings: key frames computed in Python and played by the browser on request."""
 
 import hashlib
 import json
@@ -9,8 +9,8 @@ import numpy as np
 from .drawing import collapsed, pair, path_data
 from .style import STYLE
 
-# Without this script the figure is a still. It shows the controls, and lets the browser's own
-# animation clock (SMIL) be set by the slider or run by the button.
+# Without this script the figure is a still. It shows the controls, and lets the slider set the
+# browser's animation clock (SMIL) and the button run it.
 SCRIPT = """
 document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure => {
   const svg = figure.querySelector('svg');
@@ -55,8 +55,7 @@ document.querySelectorAll('[data-moving="%s"]:not([data-ready])').forEach(figure
 
 
 def one_after_another(angles, progress):
-    """Return the angles as they are when ``progress`` of the turns are
-    done, each turn after the one before.
+    """Return the angles when ``progress`` of the rotations are done, one after another.
 
     Examples
     --------
@@ -70,7 +69,7 @@ def one_after_another(angles, progress):
 
 
 class Animation:
-    """A drawing that moves in steps when the reader asks for it, and is a still until then.
+    """A drawing that is animated in steps on request, and is a still until then.
 
     Parameters
     ----------
@@ -78,14 +77,14 @@ class Animation:
         ``draw(progress)`` returns the ``Drawing`` at that moment; ``progress`` runs from 0 to the
         number of steps. All drawings must consist of the same marks in the same order.
     steps : list of (str, float or str)
-        What happens in each step: the words shown under the picture, and what a screen reader adds
-        to them, either the angle turned so far (the last value is given, in radians) or more words.
+        The words shown under the picture in each step, and what a screen reader adds: either the
+        angle rotated so far (give its last value, in radians) or more words.
     still : float, optional
         The moment shown at first, by default the end. The ``alt`` of its drawing is used.
     frames : int
         Key frames in each step.
     seconds : float
-        How long a step lasts.
+        The duration of each step.
 
     Raises
     ------
@@ -114,9 +113,7 @@ class Animation:
                 )
 
     def texts(self):
-        """Return, for each key frame, the number of its step (from 0) and what a screen reader
-        adds.
-        """
+        """Return the number of each key frame's step (from 0) and a screen reader's addition."""
         texts = []
         for moment in self.moments:
             step = max(int(np.ceil(moment)) - 1, 0)
@@ -155,7 +152,7 @@ class Animation:
 
 
 def _motion(marks):
-    """Return what goes inside the element of a mark, given the mark at every key frame."""
+    """Return the content of a mark's element, given the mark at every key frame."""
     if all(collapsed(mark) for mark in marks):
         return ""
     shape = marks[0][1]

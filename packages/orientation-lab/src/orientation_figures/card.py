@@ -1,6 +1,4 @@
-"""``python -m orientation_figures.card``: the convention card, a
-sheet with two sides, from the table.
-"""
+"""``python -m orientation_figures.card``: draw the two sides of the convention card."""
 
 import io
 import textwrap
@@ -16,9 +14,9 @@ FILES = {
     for name in ("convention-card.pdf", "convention-card.svg", "convention-card-back.svg")
 }
 FILE = FILES["convention-card.pdf"]
-WIDTH, HEIGHT, MARGIN = 595, 842, 34  # points: A4
-# What stands in the lines: the parts of a quaternion, of a rotation vector and of
-# a matrix, and the gimbal's angles.
+WIDTH, HEIGHT, MARGIN = 595, 842, 34  # in points: A4
+# The names of the parts of a quaternion, a rotation vector and a matrix, and of the gimbal's
+# angles, in the lines of code.
 QUATERNION = {"w": "q0", "x": "qi", "y": "qj", "z": "qk"}
 VECTOR = {"x": "rx", "y": "ry", "z": "rz"}
 ANGLES = {
@@ -67,10 +65,11 @@ QUESTIONS = (
 
 
 def rows():
-    """What the card says of each program: name, version that was run, convention,
-    and a line of code for each form.
+    """Return what the card states about each program.
+
+    That is its name, the version that was run, its convention, and a line of code for each form.
     """
-    found = []
+    programs = []
     for program, facts in PROGRAMS.items():
         scalar = f"scalar {facts['scalar']}" if facts["scalar"] else "no quaternions"
         matrix = "C.T" if facts["matrix"] == "transposed" else "C"
@@ -100,8 +99,8 @@ def rows():
         convention = f"matrix {facts['matrix']}, {scalar}, {facts['unit']}"
         if facts.get("body"):
             convention += f"; x, y, z point {', '.join(facts['body'])}"
-        found.append((program, facts["version"], convention, lines))
-    return found
+        programs.append((program, facts["version"], convention, lines))
+    return programs
 
 
 class _Side:
@@ -161,13 +160,13 @@ def _rule(height):
 
 
 def metadata(kind):
-    """What a file says of itself: no dates, so that it is the same every time."""
+    """Return the metadata of a file, without dates, so that it is reproducible."""
     dates = {"CreationDate": None, "ModDate": None} if kind == "pdf" else {"Date": None}
     return dates | {"Title": "The convention card"}
 
 
 def drawn():
-    """The bytes of each file, by its name; the same every time."""
+    """Return the bytes of each file, by its name; they are reproducible."""
     import matplotlib
     from matplotlib.backends.backend_pdf import PdfPages
 

@@ -22,7 +22,7 @@ from .style import EITHER, STYLE, style_of_picture
 from .vectors import unit
 from .words import Words, hatted  # noqa: F401  # those who draw took it from here before
 
-#: The typeset labels of the book's drawings, which ``python -m tools.labels`` writes.
+# The typeset labels of the book's drawings, which ``python -m tools.labels`` writes.
 LABELS = Path(__file__).with_name("labels.json")
 
 
@@ -127,14 +127,12 @@ class Drawing(Words):
         self.alt, self.scale, self.marks = alt.strip(), scale, []
 
     def on_sheet(self, points):
-        """Return where points of shape ``(..., 3)`` stand: pixels
-        right and down from the origin.
-        """
+        """Return the places of points of shape ``(..., 3)``, in pixels right and down."""
         return self.scale * (np.asarray(points, dtype=float) @ self.view.T)[..., :2] * (1, -1)
 
     @property
     def size(self):
-        """Pixels for one unit of length, by the name that the words have for it."""
+        """Pixels for one unit of length, under the name that the shared drawing methods use."""
         return self.scale
 
     @size.setter
@@ -142,8 +140,10 @@ class Drawing(Words):
         self.scale = pixels
 
     def path(self, commands, points, kind, depth=0):
-        """Add an SVG path, one letter of ``commands`` per step; ``points`` on the sheet, ``kind``
-        its classes. On paper what comes later lies above, whatever its ``depth``.
+        """Add an SVG path with one letter of ``commands`` per step.
+
+        ``points`` are on the sheet, and ``kind`` is the classes of the path. On paper, later marks
+        are drawn above earlier ones, whatever their ``depth``.
         """
         self.marks.append(
             (kind.strip(), commands, np.asarray(points, dtype=float).reshape(-1, 2), 1.0)
@@ -151,12 +151,12 @@ class Drawing(Words):
         return self
 
     def text(self, text, place, colour, size=20, opacity=1.0):
-        """Write ``text``, its middle at a place of the sheet."""
+        """Write ``text`` centred at a place of the sheet."""
         self.marks.append((f"text {colour}", (text, size), np.asarray(place, dtype=float), opacity))
         return self
 
     def note(self, text, colour="ink", size=18):
-        """Write a line of ``text`` under all that has been drawn so far."""
+        """Write a line of ``text`` under everything drawn so far."""
         left, _, right, bottom = self.bounds()
         return self.text(text, ((left + right) / 2, bottom + 1.4 * size), colour, size)
 
@@ -171,12 +171,12 @@ class Drawing(Words):
         size=20,
         kind="",
     ):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond
-        its tip or ``shift`` from the tip.
+        """Draw an arrow from ``start`` to ``end``, with a label ``shift`` from the tip or beyond
+        it.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross. An arrow with a ``bow`` curves to its left by so many pixels,
-        and carries its label at its middle.
+        and its label is at its middle.
         """
         if not bow:
             return super().arrow(end, start, colour, label, shift, size, kind)
@@ -192,7 +192,7 @@ class Drawing(Words):
         return self.text(label, place, colour, size) if label else self
 
     def node(self, point, letter):
-        """Draw a circle that stands for the frame ``letter`` in a diagram of connected frames."""
+        """Draw a circle for the frame ``letter`` in a diagram of connected frames."""
         self.ellipse(self.on_sheet(point), (19, 0), (0, 19), f"fill-8 axis {letter}")
         return self.label(point, f"${letter}$", letter)
 
@@ -205,7 +205,7 @@ class Drawing(Words):
         return f"Drawing: {self.alt}"
 
     def bounds(self):
-        """Return left, top, right and bottom of what has been drawn, in pixels from the origin."""
+        """Return left, top, right and bottom of everything drawn, in pixels from the origin."""
         corners = []
         for _, shape, place, _ in self.marks:
             ink = (
@@ -220,8 +220,9 @@ class Drawing(Words):
         return np.concatenate([np.min(corners, axis=0), np.max(corners, axis=0)])
 
     def svg(self, motions=None, bounds=None, decimals=2):
-        """Return the SVG element; an ``Animation`` gives what goes
-        inside each mark, and its own bounds.
+        """Return the SVG element.
+
+        An ``Animation`` gives the content of each mark's element, and its own bounds.
         """
         bounds = self.bounds() if bounds is None else bounds
         left, top, right, bottom = np.rint(np.add(bounds, (-8.01, -8.01, 8.01, 8.01))).astype(int)
@@ -245,9 +246,9 @@ class Drawing(Words):
         )
 
     def picture(self):
-        """Return the drawing as an SVG file of its own, which needs no style of any page.
+        """Return the drawing as a stand-alone SVG file, without the style of a page.
 
-        It has no ground of its own, and can be read on a light page as on a dark one.
+        Its background is transparent, and it is legible on light and dark pages.
         """
         head, _, inside = self.svg().partition(">")
         view = head.partition('viewBox="')[2].partition('"')[0]
@@ -261,9 +262,7 @@ class Drawing(Words):
 
 
 def collapsed(mark):
-    """Return whether a mark is a path that has shrunk to one
-    point, as the far sides of bodies do.
-    """
+    """Return whether a mark is a path of a single point, as the far sides of bodies are."""
     return isinstance(mark[1], str) and np.ptp(mark[2], axis=0).max() < 1e-6
 
 
@@ -286,12 +285,11 @@ def _element(mark, motion, outlines, decimals):
 
 @cache
 def typeset(text):
-    """Set ``text`` in Computer Modern, 1000 units to the em, right and down
-    from the middle of a small letter.
+    """Typeset ``text`` in Computer Modern, 1000 units to the em.
 
-    Returns a list of (outline as path data, place, size), and the two corners of the ink. Where
-    there is no Matplotlib, as on a page that has not fetched it, the labels of the book's own
-    drawings are at hand.
+    The origin is the middle of a small letter, with axes right and down. Returns a list of (outline
+    as path data, place, size), and the two corners of the ink. Without Matplotlib, as on a page
+    that has not fetched it, only the labels of the book's own drawings are available.
     """
     try:
         from matplotlib.font_manager import FontProperties
@@ -302,12 +300,12 @@ def typeset(text):
         return _kept_labels()[text]
     font = FontProperties(family="cmr10", math_fontfamily="cm")
     placed, shapes, rules = text_to_path.get_glyphs_mathtext(font, text)
-    found = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [
+    pieces = [(*shapes[name], (x, y), size) for name, x, y, size in placed] + [
         (*rule, (0, 0), 1) for rule in rules
     ]
     unit = 1000 / text_to_path.FONT_SCALE * np.array((1, -1))
     glyphs, ink = [], []
-    for vertices, codes, corner, size in found:
+    for vertices, codes, corner, size in pieces:
         if len(codes):
             vertices, codes, corner = unit * vertices, np.asarray(codes), unit * corner
             glyphs.append((_outline(vertices, codes), corner, size))
@@ -322,19 +320,20 @@ def typeset(text):
 
 @cache
 def _kept_labels():
-    kept = json.loads(LABELS.read_text("utf8"))
+    stored = json.loads(LABELS.read_text("utf8"))
     return {
         text: (
-            [(kept["outlines"][k], np.array((x, y)), size) for k, x, y, size in glyphs],
+            [(stored["outlines"][k], np.array((x, y)), size) for k, x, y, size in glyphs],
             np.array(ink),
         )
-        for text, (glyphs, ink) in kept["labels"].items()
+        for text, (glyphs, ink) in stored["labels"].items()
     }
 
 
 def labels_to_keep(texts):
-    """Return what ``labels.json`` holds: the outlines of glyphs, and for each
-    text where they stand and its ink.
+    """Return the content of ``labels.json``.
+
+    It consists of the outlines of glyphs and, for each text, their places and its ink.
     """
     outlines, labels = {}, {}
     for text in sorted(texts):
@@ -348,7 +347,7 @@ def labels_to_keep(texts):
 
 
 def _outline(vertices, codes):
-    """Return a glyph's path data in whole numbers relative to the point before, which is short."""
+    """Return a glyph's path data in integers relative to the previous point, which is short."""
     data, k = "", 0
     last = beginning = np.zeros(2, dtype=int)
     while k < len(codes):

@@ -1,6 +1,4 @@
-"""The machines of the cases from practice: an aircraft, a robot's
-wrist, a satellite, a phone and a leg.
-"""
+"""The machines of the practical cases: an aircraft, a wrist, a satellite, a phone and a leg."""
 
 import numpy as np
 
@@ -10,14 +8,12 @@ from orientation.euler_angles import dcm_from_body_fixed
 
 from .drawing import Drawing, hatted, view_from
 
-# Along north, west and up, in which these drawings are made: rows of the frame north, east, down.
+# The frame north, east, down by rows, along the north, west and up of these drawings.
 NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
 
 
 def aircraft_drawing(bank=np.radians(30)):
-    """Return a drawing of an airliner in a turn to the right, banked by
-    ``bank`` radians, seen from ahead.
-    """
+    """Return a drawing of an airliner in a right turn, banked by ``bank`` radians, from ahead."""
     drawing = Drawing(
         "An airliner seen from ahead and a little above, banked to the right by "
         f"{np.degrees(bank):.0f} degrees. "
@@ -53,8 +49,9 @@ def aircraft_drawing(bank=np.radians(30)):
 
 
 def wrist_drawing(angles=(0.3, 0.9, 0.4)):
-    r"""Return a drawing of a robot's wrist, bent by ``angles`` (radians), body
-    fixed z-y-z, from forearm to gripper.
+    r"""Return a drawing of a robot's wrist, from forearm to gripper.
+
+    Its ``angles`` (radians) are body fixed z-y-z.
     """
     drawing = Drawing(
         "A robot's wrist. "
@@ -99,9 +96,7 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
 
 
 def star_cameras_drawing(apart=np.radians(102)):
-    """Return a drawing of a satellite whose two star cameras look
-    ``apart`` (radians) from each other.
-    """
+    """Return a drawing of a satellite with two star cameras at an angle of ``apart`` (radians)."""
     drawing = Drawing(
         "A satellite with two wings of solar cells and two star cameras on its body. "
         "Each camera is a short tube with a cone of view before it. "
@@ -143,8 +138,9 @@ def star_cameras_drawing(apart=np.radians(102)):
 
 
 def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
-    """Return a drawing of a phone, turned by ``angles`` (radians,
-    z-x-y), with what its two sensors feel.
+    """Return a drawing of a phone with the measurements of its two sensors.
+
+    The phone is rotated by ``angles`` (radians, z-x-y).
     """
     drawing = Drawing(
         "A phone lies inclined above the ground. "
@@ -174,8 +170,9 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
 
 
 def leg_drawing(bend=np.radians(35)):
-    """Return a drawing of a leg, its knee bent by ``bend`` radians, with
-    four markers on thigh and shank.
+    """Return a drawing of a leg with four markers each on thigh and shank.
+
+    The knee is bent by ``bend`` radians.
     """
     drawing = Drawing(
         "A leg seen from its right side, the knee bent. "
@@ -228,9 +225,7 @@ def leg_drawing(bend=np.radians(35)):
 
 
 def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
-    """Return a drawing of the Earth with its own frame and, at one place,
-    the two frames of the ground there.
-    """
+    """Return a drawing of the Earth with its own frame and the two ground frames at one place."""
     drawing = Drawing(
         "The Earth as a sphere with its equator and one meridian. "
         "From its middle: e z to the north pole, e x to where the meridian of Greenwich meets the "

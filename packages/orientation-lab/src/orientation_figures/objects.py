@@ -1,4 +1,4 @@
-"""Figures and things that the book draws more than once: plane figures, an eye, a book."""
+"""Objects that the book draws more than once: plane figures, an eye, a book."""
 
 import numpy as np
 
@@ -23,9 +23,7 @@ def draw_eye(drawing, point, size=40, colour="ink"):
 
 
 def draw_book(drawing, dcm, origin=(0, 0, 0), colour="A", size=(0.8, 1.1, 0.22)):
-    """Draw a closed book: the rows of ``dcm`` point across the cover, up
-    the cover, and out of the cover.
-    """
+    """Draw a closed book; the rows of ``dcm`` point across, up, and out of the cover."""
     rows, (width, height, depth) = np.asarray(dcm, dtype=float), size
     drawing.box(rows, size, origin, colour)
     if rows[2] @ drawing.view[2] > 0:
@@ -102,8 +100,8 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
             letter,
             dcm,
             labels=[
-                None if other == shared else rf"$\hat{{{letter.lower()}}}_{other}$"
-                for other in "xyz"
+                None if axis_of_label == shared else rf"$\hat{{{letter.lower()}}}_{axis_of_label}$"
+                for axis_of_label in "xyz"
             ],
         )
     drawing.arc(x, tip, 0.44, f"${symbol}$").arc(y, top, 0.44, f"${symbol}$")
@@ -132,10 +130,9 @@ TURNING_FRAMES_ALT = (
 
 
 def turning_frames_animation():
-    """Return the animation of four frames that turn one after another,
-    for the exercise on Euler angles.
+    """Return the animation of four frames rotated in succession, for the exercise on Euler angles.
 
-    The turns are kept here, so that the page of the exercise does not tell its answer.
+    The rotations are stored here, so that the page of the exercise does not reveal its answer.
 
     Returns
     -------

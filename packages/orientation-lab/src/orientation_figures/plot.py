@@ -44,8 +44,7 @@ SET = 411
 
 
 class Plot:
-    """One or more Matplotlib axes, shown as inline SVG in the
-    colours of the light or the dark page.
+    """Matplotlib axes, shown as inline SVG in the colours of the light or the dark page.
 
     Draw inside ``with Plot(...) as plot:``, where Matplotlib has the book's settings.
 
@@ -122,11 +121,11 @@ class Plot:
 
 
 def _lighten(root, name):
-    """Leave out of Matplotlib's drawing what nobody sees: it would be most of its weight.
+    """Remove the invisible parts of Matplotlib's drawing, which would be most of its size.
 
-    Numbers keep a tenth of a pixel along curves and a hundredth elsewhere; ids that nothing refers
-    to, groups without a meaning, invisible frames and the document's own style go. The ids that
-    stay begin with `name`.
+    Numbers keep a tenth of a pixel along curves and a hundredth elsewhere. Unused IDs, groups
+    without a meaning, invisible frames and the document's own style are removed. The remaining IDs
+    begin with `name`.
     """
     # Matplotlib's style applies to every element of a page, and would remove the round ends of
     # lines from all drawings.
@@ -159,9 +158,7 @@ def _lighten(root, name):
 
 
 def _drop_shells(element):
-    """Take out paths that draw nothing, and put the children of groups
-    that say nothing in their place.
-    """
+    """Remove paths that draw nothing, and replace groups without attributes by their children."""
     for child in list(element):
         _drop_shells(child)
         place = list(element).index(child)
@@ -175,19 +172,19 @@ def _drop_shells(element):
 
 
 def _short(number, digits):
-    """The number with so many digits after the point at most, without zeros that say nothing."""
+    """Return the number with at most ``digits`` decimals, without redundant zeros."""
     text = f"{number:.{digits}f}"
     text = text.rstrip("0").rstrip(".")
     return re.sub(r"^(-?)0\.", r"\1.", text) if text not in ("-0", "-") else "0"
 
 
 def _shorter(numbers):
-    """The text of a match with each of its numbers rounded to a hundredth."""
+    """Return the text of a match with each of its numbers rounded to a hundredth."""
     return re.sub(r"-?\d+\.\d+", lambda number: _short(float(number[0]), 2), numbers[0])
 
 
 def _short_path(path):
-    """The same path in steps from point to point, whose rounding errors do not add up."""
+    """Return the path in relative steps, whose rounding errors do not accumulate."""
     tokens = re.findall(r"[A-Za-z]|-?[\d.]+(?:e-?\d+)?", path)
     digits = 1 if len(tokens) > 150 else 2
     here, start, place, letter, steps = [0.0, 0.0], [0.0, 0.0], 0, "", []
@@ -215,16 +212,16 @@ def _short_path(path):
         ):
             step = [sum(both) for both in zip(step, steps.pop()[1])]
         steps.append((letter, step))
-    found = ""
+    text = ""
     for (letter, step), (before, _) in zip(steps, [("", []), *steps], strict=False):
         # A repeated letter can be left out, and a minus sign separates two numbers as well as a
-        # blank.
-        written = "" if letter == before != "M" else letter.lower() if found else letter
+        # space.
+        written = "" if letter == before != "M" else letter.lower() if text else letter
         numbers = " ".join(_short(value, digits) for value in step).replace(" -", "-")
-        found += written + (" " if not written and not numbers.startswith("-") else "") + numbers
-    return found
+        text += written + (" " if not written and not numbers.startswith("-") else "") + numbers
+    return text
 
 
 def _along(step, before, axis):
-    """Whether two steps go on along one axis, to the same side: then they are one."""
+    """Whether two steps have the same direction along one axis, so that they can be merged."""
     return step[1 - axis] == before[1 - axis] == 0 and step[axis] * before[axis] >= 0

@@ -1,11 +1,11 @@
 """The look of the drawings: colours, strokes, and the style sheet that goes with every figure.
 
-Moving figures need it where there is no NumPy to draw with.
+Interactive figures need it where there is no NumPy to draw with.
 """
 
 import re
 
-# Each colour is kept at 4.5 : 1 or more on its page: LIGHT on white, DARK on #121212.
+# Each colour has a contrast of 4.5 : 1 or more on its page: LIGHT on white, DARK on #121212.
 LIGHT = {
     "N": "#3a3f45",
     "A": "#946200",
@@ -32,7 +32,7 @@ DARK = {
     "muted": "#a2a9b1",
     "accent": "#5fd3da",
 }
-# For a picture that must stand on any page: 4 : 1 or more on white and on #15181d alike.
+# For a picture on any page: a contrast of 4 : 1 or more on white and on #15181d alike.
 EITHER = {
     "N": "#707a86",
     "A": "#a66e00",
@@ -47,8 +47,8 @@ EITHER = {
     "accent": "#00868e",
 }
 
-# Without colour, frames differ in the stroke of their arrows (width,
-# dashes) and in the shape of the head.
+# Without colour, frames differ in the stroke of their arrows (width, dashes) and in the shape of
+# the head.
 STROKES = {
     "N": (1.7, "none"),
     "A": (3.4, "none"),
@@ -95,9 +95,7 @@ RULES = {
 
 
 def _style():
-    """Return the style sheet that goes with every figure; a page
-    may set ``--frame-a`` and so on.
-    """
+    """Return the style sheet of every figure; a page may set ``--frame-a`` and so on."""
 
     def colours(table):
         return "".join(

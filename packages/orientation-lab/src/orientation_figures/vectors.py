@@ -1,5 +1,4 @@
-"""Vectors as lists of numbers: the words of pictures, the same in
-Python and in ``js/mathematics.js``.
+"""Vectors as lists of numbers, with the same functions in Python and in ``js/mathematics.js``.
 
 They do without NumPy, as figures do until they are drawn.
 """
@@ -38,7 +37,7 @@ def length(v):
 
 
 def unit(v):
-    """A zero vector stays zero."""
+    """Return ``v`` at unit length; a zero vector stays zero."""
     return scale(1 / (length(v) or 1), v)
 
 
@@ -47,7 +46,7 @@ def transpose(matrix):
 
 
 def times(matrix, v):
-    """v_A = A_C_N v_N."""
+    """Return v_A = A_C_N v_N."""
     return [dot(row, v) for row in matrix]
 
 

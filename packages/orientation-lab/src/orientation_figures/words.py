@@ -1,8 +1,8 @@
-"""The words in which pictures are described: arrows, triads, turns, circles, bodies.
+"""The drawing methods of pictures: arrows, triads, rotations, circles, bodies.
 
-They say where lines and areas lie, in paths on a sheet, with its ``view``, ``size``, ``on_sheet``,
+They draw lines and areas as paths on a sheet with the attributes ``view``, ``size``, ``on_sheet``,
 ``path`` and ``text``. ``python -m orientation_figures.moving.javascript`` translates them for the
-sheets of the page. What is hidden shrinks to nothing instead of being left out, so that an
+sheets of the page. Hidden parts shrink to nothing instead of being left out, so that an
 ``Animation`` finds the same marks at every moment.
 """
 
@@ -25,7 +25,7 @@ HEADS = {
     "Z": TRIANGLE,
 }
 ROUND = 0.5523  # a cubic with its inner points this far along the tangents is a quarter of a circle
-STEEP = 1.6  # radians that one cubic of a turn can have
+STEEP = 1.6  # radians that one cubic of an arc can have
 
 
 def hatted(letter):
@@ -34,7 +34,7 @@ def hatted(letter):
 
 
 def turned(axis, angle, vector):
-    """Return a vector turned about ``axis`` through ``angle``."""
+    """Return a vector rotated about ``axis`` through ``angle``."""
     normal = unit(axis)
     along, beside = scale(dot(normal, vector), normal), cross(normal, vector)
     rest = subtract(vector, along)
@@ -42,7 +42,7 @@ def turned(axis, angle, vector):
 
 
 def layers(kind):
-    """Return the looks of a line that is drawn, one above the other: a tube has a core."""
+    """Return the styles of a line, drawn one above the other; a tube has a core."""
     return [kind, f"{kind} core"] if kind.startswith("tube") else [kind]
 
 
@@ -60,27 +60,23 @@ def half_round(u, v):
 
 
 class Words:
-    """What can be drawn on a sheet; each word returns the sheet, so that they can be chained."""
+    """The methods that draw on a sheet; each returns the sheet, so that they can be chained."""
 
     def depth_of(self, points):
         """Return how near the middle of ``points`` is to the reader."""
         return dot(self.view[2], add(*points)) / len(points)
 
-    # Lines, areas and words.
+    # Lines, areas and labels.
 
     def line(self, points, colour="ink", kind=""):
-        """Draw a line through points; ``kind`` is '', 'guide'
-        (dashed), 'faint', 'thick' or 'tube'.
-        """
+        """Draw a line; ``kind`` is '', 'guide' (dashed), 'faint', 'thick' or 'tube'."""
         places, depth = [self.on_sheet(point) for point in points], self.depth_of(points)
         for k, layer in enumerate(layers(kind)):
             self.path(f"M{'L' * (len(points) - 1)}", places, f"{layer} {colour}", depth + 1e-6 * k)
         return self
 
     def area(self, points, colour="ink", fill=16, edge=True):
-        """Fill the polygon with these corners; ``fill`` is 8, 16,
-        26 or 38 per cent of the colour.
-        """
+        """Fill a polygon by its corners; ``fill`` is 8, 16, 26 or 38 per cent of the colour."""
         places = [self.on_sheet(point) for point in points]
         kind = f"fill-{fill} {'' if edge else 'bare '}{colour}"
         return self.path(f"M{'L' * (len(points) - 1)}Z", places, kind, self.depth_of(points))
@@ -102,7 +98,7 @@ class Words:
         return self.ellipse(place, [radius, 0], [0, radius], f"paper {colour}", depth)
 
     def label(self, point, text, colour="ink", shift=(0, 0), size=20):
-        """Write ``text``, its middle on a point."""
+        """Write ``text`` centred on a point."""
         return self.text(text, add(self.on_sheet(point), shift), colour, size)
 
     def label_beyond(self, point, text, colour="ink", pixels=17):
@@ -110,9 +106,7 @@ class Words:
         return self.label(point, text, colour, scale(pixels, unit(self.on_sheet(point))))
 
     def shadow(self, vector, direction, colour="accent"):
-        """Draw the part of one vector that lies along another: its shadow, the line
-        that drops it, and a right angle.
-        """
+        """Draw the projection of one vector onto another, with a dropped line and a right angle."""
         along = unit(direction)
         foot = scale(dot(vector, along), along)
         down = subtract(foot, vector)
@@ -126,8 +120,8 @@ class Words:
     # Arrows and frames.
 
     def arrow(self, end, start=(0, 0, 0), colour="ink", label="", shift=None, size=20, kind=""):
-        """Draw an arrow from ``start`` to ``end``, with a label beyond
-        its tip or ``shift`` from the tip.
+        """Draw an arrow from ``start`` to ``end``, with a label ``shift`` from the tip or beyond
+        it.
 
         An arrow that points straight at the reader is a circle with a dot, one that points straight
         away a circle with a cross.
@@ -194,9 +188,7 @@ class Words:
         kind="",
         head=True,
     ):
-        """Draw the arc swept by the direction ``start``, turned through
-        ``angle`` (radians) about ``axis``.
-        """
+        """Draw the arc of ``start`` rotated through ``angle`` (radians) about ``axis``."""
         normal, arm = unit(axis), scale(radius, unit(start))
         swept, pieces = abs(angle) * radius * self.size, max(4, math.ceil(abs(angle) / STEEP))
         size = min(0.8, swept / 28) if head else 0
@@ -222,7 +214,8 @@ class Words:
             self.head(tip, unit(subtract(tip, place(at(last)))), size, colour, depth + 1e-6)
         if label:
             outward = scale(15, unit(subtract(middle, self.on_sheet(origin))))
-            shown = min(1, abs(angle) / 0.2)  # it fades where there is no angle
+            # Fade the arc where there is no angle.
+            shown = min(1, abs(angle) / 0.2)
             self.text(label, add(middle, outward, shift), colour, 20, shown)
         return self
 
@@ -238,9 +231,7 @@ class Words:
         kind="",
         head=True,
     ):
-        """Draw the angle from the direction ``start`` to the
-        direction ``end``, the short way round.
-        """
+        """Draw the angle from the direction ``start`` to ``end``, the short way round."""
         axis = cross(start, end)
         return self.turn(
             axis,
@@ -261,13 +252,17 @@ class Words:
         return self.line([add(origin, point) for point in [u, add(u, v), v]], colour)
 
     def circle(self, normal, radius=1.0, origin=(0, 0, 0), colour="muted", kind="guide", half=""):
-        """Draw the circle about ``normal``, or the half of it that is nearer to the reader
-        ('front') or farther ('back'); ``kind`` as in ``line``, or 'fill-8', 'fill-16', ...
+        """Draw the circle about ``normal``.
+
+        ``half`` selects the half nearer to the reader ('front') or farther ('back'); ``kind`` is as
+        in ``line``, or 'fill-8', 'fill-16', ...
         """
         axis = unit(normal)
         sizes = [abs(entry) for entry in axis]
-        level, other = cross(axis, self.view[2]), IDENTITY[sizes.index(min(sizes))]
-        across = scale(radius, unit(level if half and length(level) > 1e-6 else cross(axis, other)))
+        level, farthest_axis = cross(axis, self.view[2]), IDENTITY[sizes.index(min(sizes))]
+        across = scale(
+            radius, unit(level if half and length(level) > 1e-6 else cross(axis, farthest_axis))
+        )
         u, v = self.on_sheet(across), self.on_sheet(cross(axis, across))
         middle, depth = self.on_sheet(origin), self.depth_of([origin])
         for k, layer in enumerate(layers(kind)):
@@ -282,7 +277,7 @@ class Words:
     # Solid bodies. On paper, draw what lies farther from the reader first.
 
     def box(self, dcm, size, origin=(0, 0, 0), colour="ink"):
-        """Draw a box with edges ``size`` along the rows of ``dcm``, its middle at ``origin``."""
+        """Draw a box centred at ``origin``, with edges ``size`` along the rows of ``dcm``."""
         half = [scale(size[k] / 2, row) for k, row in enumerate(dcm)]
         for i, fill in enumerate([26, 16, 8]):
             u, v = half[(i + 1) % 3], half[(i + 2) % 3]
@@ -300,7 +295,7 @@ class Words:
         along = unit(subtract(far, near)) if abs(facing) < 0.9999 else [1, 0]
         bulge, side = scale(pixels * abs(facing), along), scale(pixels, [-along[1], along[0]])
         front = [add(far, point) for point in half_round(side, bulge)]
-        back = [add(near, one) for one in half_round(scale(-1, side), scale(-1, bulge))]
+        back = [add(near, point) for point in half_round(scale(-1, side), scale(-1, bulge))]
         self.path("MCCLCCZ", [*front, *back], f"fill-{fill} {colour}", depth)
         for place, seen in [[near, facing < 0], [far, facing > 0]]:
             shown = 1 if seen else 0

@@ -168,7 +168,7 @@ def test_half_a_turn_has_no_shorter_way():
 )
 def test_still_has_the_state_and_stands_for_the_figure(figure):
     soup = BeautifulSoup(figure.still(), "html.parser")
-    told = {name: getattr(figure, name) for name in figure.trait_names(told=True)}
+    told = {name: getattr(figure, name) for name in figure.trait_names(constant=True)}
     assert json.loads(soup.figure["data-state"]) == told | json.loads(json.dumps(figure.state()))
     assert soup.figure["data-figure"] == figure.kind
     alt = soup.svg["aria-label"]

@@ -206,7 +206,7 @@ def test_state_goes_to_the_page_and_back(figure):
     _, still = bundle_of(first)
     state = json.loads(still["data-state"])
     # Constants of the front end.
-    told = {name: state.pop(name) for name in first.trait_names(told=True)}
+    told = {name: state.pop(name) for name in first.trait_names(constant=True)}
     assert told == {name: getattr(first, name) for name in told}
     assert state and set(state) == set(first.state())
     second = figure(**state)

@@ -1,4 +1,4 @@
-"""Figures that the reader moves: alive in Jupyter, and on the pages of the book without a kernel.
+"""Interactive figures, which work in Jupyter and, without a kernel, on the pages of the book.
 
 ``orientation`` does not load this package, which needs anywidget.
 """
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .triad import TriadFigure
     from .workbench import WorkbenchFigure
 
-#: The module of each figure. Importing a name loads only the module of that figure.
+# The module of each figure. Importing a name loads only the module of that figure.
 _MODULES = {
     "BeltFigure": "belt",
     "ChallengeFigure": "challenge",
@@ -50,7 +50,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> type:
-    """A figure, loaded when it is first asked for."""
+    """Return a figure, which is loaded on first use."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     # If anywidget is missing, the error says so.

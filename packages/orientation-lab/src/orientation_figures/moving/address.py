@@ -1,10 +1,10 @@
-"""What an address of the book carries behind its ``#``, in one format with a version.
+"""The data after the ``#`` in an address of the book, in one format with a version.
 
-As a rule that is the name of a place on the page. Where there is more to say, ``=1.`` follows and
-then plain data: how a figure stands, or what two programs gave. The number is the version of this
-format: an address that somebody has kept is read for ever, and one of a newer format is refused in
-words. What stands behind ``#`` is sent to no server. ``js/address.js`` is the same in the language
-of the page, where it is ``orientation.fragmentOf`` and ``orientation.carriedBy``.
+It is usually the name of a place on the page. More data follow after ``=1.``: the state of a
+figure, or the numbers of two programs. The number is the version of this format. An address that
+somebody has kept remains readable, and one of a newer format is refused with a message. The part
+after ``#`` is not sent to any server. ``js/address.js`` is the counterpart for the page, where it
+is ``orientation.fragmentOf`` and ``orientation.carriedBy``.
 """
 
 import base64
@@ -14,39 +14,37 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 VERSION = 1
-#: Plain data of the kind that JSON can hold.
+# Plain data that JSON can represent.
 Plain: TypeAlias = "None | bool | float | str | list[Plain] | dict[str, Plain]"
-#: In characters. Some programs cut longer addresses when they pass them on.
+# In characters. Some programs truncate longer addresses when they pass them on.
 LARGEST = 6000
 FRAGMENT = re.compile(r"#?([a-z0-9-]+)=([0-9]+)\.(.*)", re.DOTALL)
 
 
 class BadAddress(ValueError):
-    """An address carries too much, or is not whole, or of a newer
-    format; the message says which.
-    """
+    """An address carries too much, is incomplete, or has a newer format; the message says which."""
 
 
 def fragment_of(place: str, content: Mapping[str, Plain]) -> str:
-    """The fragment of an address that carries plain data to a place on a page.
+    """Return the fragment of an address that carries plain data to a place on a page.
 
     Parameters
     ----------
     place : str
         The name of the place: the label of a figure, say.
     content : dict
-        Plain data, as JSON has it.
+        Plain data that JSON can represent.
 
     Returns
     -------
     str
-        Begins with ``#``; holds letters, digits and ``# - . = _`` alone, so that no program changes
-        it.
+        Begins with ``#`` and contains only letters, digits and ``# - . = _``, so that no program
+        changes it.
 
     Raises
     ------
     BadAddress
-        There is too much of it.
+        There are too many data.
 
     Examples
     --------
@@ -65,21 +63,19 @@ def fragment_of(place: str, content: Mapping[str, Plain]) -> str:
 
 
 def carried_by(fragment: str) -> tuple[str, dict[str, Plain]] | None:
-    """The place and the data that a fragment carries, or ``None``
-    where it is a plain name of a place.
+    """Return the place and the data in a fragment, or ``None`` if it is only the name of a place.
 
-    The data may come from anybody: whoever takes it up accepts what a reader
-    could have entered, and nothing else.
+    The data may come from anyone, so callers must accept only what a reader could have entered.
 
     Raises
     ------
     BadAddress
-        It is not whole, or of a newer format.
+        The fragment is incomplete or has a newer format.
     """
-    found = FRAGMENT.fullmatch(fragment)
-    if found is None:
+    match = FRAGMENT.fullmatch(fragment)
+    if match is None:
         return None
-    place, version, text = found.groups()
+    place, version, text = match.groups()
     if int(version) > VERSION:
         raise BadAddress(
             f"This address is of format {version}, and this edition of the book reads {VERSION}."

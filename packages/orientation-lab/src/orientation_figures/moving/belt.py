@@ -1,4 +1,4 @@
-"""The belt trick: one full turn leaves a twist that stays, two full turns leave none."""
+"""The belt trick: one full rotation leaves a twist that stays, two full rotations leave none."""
 
 import math
 
@@ -47,8 +47,9 @@ class BeltFigure(MovingFigure):
         return dcm_from_quaternion(self.quaternion_at(1))
 
     def quaternion_at(self, share):
-        """Return the unit quaternion of the belt at a share of its length,
-        four floats; the belt lies along y.
+        """Return the unit quaternion of the belt at a share of its length, four floats.
+
+        The belt lies along y.
         """
         return tuple(
             round(entry, 15) + 0.0 for entry in quaternion_at(self.angle, self.passed, share)

@@ -1,8 +1,7 @@
-"""Put the modules of a figure together: one text for Jupyter, classic
-scripts for pages without a kernel.
+"""Combine the modules of a figure: one for Jupyter, classic scripts for pages without a kernel.
 
-Pages opened from disk cannot import modules, and anywidget wants one module for each figure. Both
-come from the same files.
+Pages opened from a disk cannot import modules, and anywidget needs one module for each figure. Both
+are made from the same files.
 """
 
 import re
@@ -16,23 +15,23 @@ SHARED = (
     "formulas", "mathematics", "words_picture", "common_picture", "glyphs", "model", "address",
     "shared",
 )  # fmt: skip
-#: The pictures that ``pictures`` describes and ``javascript`` has translated.
+# The pictures that ``pictures`` describes and ``javascript`` has translated.
 PICTURES = sorted(
     path.name.removesuffix("_picture.js") for path in (FOLDER / "js").glob("*_picture.js")
 )
-#: Modules that only one figure needs, to be loaded before its own.
+# Modules that only one figure needs, to be loaded before its own.
 OWN = {"workbench": ("mismatch",), "converter": ("take_away",), "formula": ("take_away",)}
 OWN |= {
     name: (*OWN.get(name, ()), f"{name}_picture")
     for name in PICTURES
     if f"{name}_picture" not in SHARED
 }
-#: Figures that use npm packages. This script is the source of what their page loads when they come
-#: into view, and each has its own style sheet.
+# Figures that use npm packages. This script is the source of what their page loads when they come
+# into view, and each has its own style sheet.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
-#: Loads that script when the page is complete and the figure is in sight. Where scripts run, the
-#: stills are stored as text until they are needed: on paper, and where figure and text do not fit
-#: beside each other (as in essay.css).
+# This loads that script when the page is complete and the figure is in sight. Where scripts run,
+# the stills are stored as text until they are needed: on paper, and where figure and text do not
+# fit beside each other (as in essay.css).
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
 const unfold = () => {
@@ -66,7 +65,7 @@ COMMENT = re.compile(r"^\s*//.*\n|^ +| {2,}// .*$", re.MULTILINE)
 
 @cache
 def source(name):
-    """Return the text of a module without comments and indentation, which only weigh."""
+    """Return the text of a module without comments and indentation, which only add size."""
     return COMMENT.sub("", (FOLDER / "js" / f"{name}.js").read_text("utf8"))
 
 
@@ -76,12 +75,12 @@ def body(name):
 
 
 def whole(name):
-    """Return the body of a figure's module, after those of the modules that it alone needs."""
+    """Return the body of a figure's module, after those of the modules that only it needs."""
     return "".join(map(body, (*OWN.get(name, ()), name)))
 
 
 def esm(name):
-    """Return the figure ``name`` as one module that imports nothing, as anywidget takes it."""
+    """Return the figure ``name`` as one module without imports, as anywidget requires."""
     # The figure has its own scope, so that it may reuse a name of the shared modules.
     figure = f"const render = (() => {{\n{whole(name)}return render;\n}})();\n"
     return "".join(map(body, SHARED)) + figure + "export default { render };\n"
@@ -97,17 +96,17 @@ def shared_script():
 
 
 def script(name):
-    """Return the classic script that brings the figures of one kind to life."""
+    """Return the classic script that activates the figures of one kind."""
     own = OWN.get(name, ())
     texts = [IMPORT_FROM.findall(source(module)) for module in (*own, name)]
-    taken = {
-        one.strip(): 0
+    imported = {
+        name.strip(): 0
         for text in texts
         for names, module in text
         if module not in own
-        for one in names.split(",")
+        for name in names.split(",")
     }
-    names = ", ".join(filter(None, taken))
+    names = ", ".join(filter(None, imported))
     return (
         f"(() => {{\nconst {{ {names} }} = orientation;\n"
         f"{whole(name)}orientation.start('{name}', render);\n}})();\n"
@@ -115,7 +114,7 @@ def script(name):
 
 
 def beside(name):
-    """Return what a figure of this kind loads when it needs it, by the names of the files."""
+    """Return the files that a figure of this kind loads on demand, by name."""
     if "take_away" not in OWN.get(name, ()):
         return {}
     # This needs NumPy, unlike the figures in a page.

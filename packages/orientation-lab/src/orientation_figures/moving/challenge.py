@@ -1,4 +1,4 @@
-"""Challenges: match a matrix, undo what was done, find the sequence of a ghost."""
+"""Challenges: match a matrix, undo a rotation, find the sequence of a ghost."""
 
 import math
 
@@ -61,7 +61,7 @@ class ChallengeFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N` of the box as it is now, shape ``(3, 3)``."""
+        r""":math:`{}^A\mathbf{C}^N` of the box in its current state, shape ``(3, 3)``."""
         return chain((*self.given, *self.turns) if self.task == "undo" else self.turns, "body")[-1]
 
     @property
@@ -80,5 +80,5 @@ class ChallengeFigure(MovingFigure):
 
     @property
     def remaining(self):
-        """Angle of the turn from the box to its goal, in radians."""
+        """Angle of the rotation from the box to its goal, in radians."""
         return float(axis_angle_from_dcm(self.goal @ self.dcm.T)[1])

@@ -1,4 +1,4 @@
-"""Numbers of one program turned into those of another."""
+"""Convert the numbers of one program to those of another."""
 
 import traitlets
 
@@ -43,9 +43,7 @@ _FORM_OF = {"quaternion": "quaternion", "rotation vector": "axis times angle", "
 
 
 def _as_the_page_has_it(program):
-    """What the table says of a program, with the forms that mean the inverse,
-    and its axes as rows of numbers.
-    """
+    """Return the table's facts on a program, with the inverse forms and its axes as numbers."""
     facts, inverse = PROGRAMS[program], expected_of(program)["inverse"]
     axes = [
         [list(_WAYS[way]) for way in facts[whose]] if facts.get(whose) else None
@@ -86,8 +84,7 @@ class Side(traitlets.TraitType):
 
 
 class ConverterFigure(MovingFigure):
-    r"""Numbers of one program, read as that program means them, and
-    the same orientation in another.
+    r"""Numbers of one program, as it means them, and the same orientation in another.
 
     Attributes
     ----------
@@ -114,7 +111,7 @@ class ConverterFigure(MovingFigure):
     target = Side(
         FIRST | {"program": "this book", "form": "body fixed angles", "sequence": "zxy"}
     ).tag(sync=True, state=True)
-    programs = traitlets.Dict(FOR_THE_PAGE, read_only=True).tag(sync=True, told=True)
+    programs = traitlets.Dict(FOR_THE_PAGE, read_only=True).tag(sync=True, constant=True)
 
     @property
     def dcm(self):

@@ -1,9 +1,8 @@
-"""Pages with one figure each, to stand in other people's pages: in
-a frame, or as an element of HTML.
+"""Pages with one figure each, to embed in other people's pages: in a frame, or as an HTML element.
 
-Both show a figure as an address says that it stands (see ``address.py``). The element's name ends
-in its version, and it leaves no other name in the page. It only sets the frame and gives it the
-height that the figure asks for.
+Both show a figure in the state that an address gives (see ``address.py``). The element's name ends
+in its version, and it defines no other name in the page. It only creates the frame and sets the
+height that the figure requests.
 """
 
 from importlib import import_module
@@ -73,17 +72,17 @@ SCRIPT = """(() => {
 
 
 def figures():
-    """The figures that can be embedded, by their kind."""
+    """Return the figures that can be embedded, by their kind."""
     package = import_module(__package__)
-    found = (getattr(package, name) for name in package.__all__)
-    return {one.kind: one for one in found if getattr(one, "kind", "")}
+    all_figures = (getattr(package, name) for name in package.__all__)
+    return {figure.kind: figure for figure in all_figures if getattr(figure, "kind", "")}
 
 
 def line(site, kind, fragment=""):
-    """The one line of HTML that puts a figure into a page: a frame.
+    """Return the line of HTML that embeds a figure in a page: a frame.
 
-    ``site`` is the address of the book, ``fragment`` what
-    :func:`orientation_figures.moving.address.fragment_of` gives.
+    ``site`` is the address of the book, and ``fragment`` is a result of
+    :func:`orientation_figures.moving.address.fragment_of`.
 
     >>> print(line('https://example.org/book/', 'gimbal'))  # doctest: +NORMALIZE_WHITESPACE
     <iframe src="https://example.org/book/embed/gimbal.html" title="A figure that can be moved"
@@ -96,21 +95,21 @@ def line(site, kind, fragment=""):
 
 
 def files():
-    """What lies in the folder ``embed`` of the site: texts by their names."""
-    found = {f"{ELEMENT}.js": SCRIPT.replace("NAME", ELEMENT)}
+    """Return the files in the folder ``embed`` of the site, texts by name."""
+    texts = {f"{ELEMENT}.js": SCRIPT.replace("NAME", ELEMENT)}
     for kind, figure in figures().items():
         scripts = "".join(
             f'<script defer src="../_static/moving/{name}.js"></script>'
             for name in ("shared", kind)
         )
-        found[f"{kind}.html"] = PAGE.format(
+        texts[f"{kind}.html"] = PAGE.format(
             kind=kind, style="", sheet="moving", scripts=scripts, figure=figure().still()
         )
     for kind in bundle.BUILT:
         still = Gimbal("which-way")._repr_html_().replace("<figure ", "<figure data-play ", 1)
         scripts = f'<script defer src="../_static/moving/{kind}.js"></script>'
         style = STYLE + painted_style()
-        found[f"{kind}.html"] = PAGE.format(
+        texts[f"{kind}.html"] = PAGE.format(
             kind=kind, style=style, sheet=kind, scripts=scripts, figure=still
         )
-    return found
+    return texts

@@ -1,5 +1,4 @@
-"""An explorer of the twelve sequences: choose one, type angles, and read
-what the three turns multiply out to.
+"""An explorer of the twelve sequences, which multiplies the three simple matrices for any angles.
 
 SymPy does the algebra, so this needs Python: a kernel's, or that of the page.
 """
@@ -34,11 +33,11 @@ FUNCTIONS = {
     name: getattr(sm, name) for name in ("pi", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan")
 }
 KINDS_OF_NUMBERS = {name: getattr(sm, name) for name in ("Integer", "Float", "Rational")}
-# Beyond this the angle may have been meant in degrees.
+# A larger angle may have been meant in degrees.
 TURN = 2 * sm.pi
 SPACE = '<mspace width="0.17em"></mspace>'
 FIXED = '<mo stretchy="false">{}</mo>'
-#: The symbol of the matrix, with its frames around it.
+# The symbol of the matrix, with its frames around it.
 SYMBOL = (
     '<mmultiscripts><mi mathvariant="normal" '
     'class="matrix">C</mi><mrow></mrow><mi>A</mi><mprescripts></mprescripts>'
@@ -47,12 +46,11 @@ SYMBOL = (
 
 
 class SequenceExplorer(anywidget.AnyWidget):
-    r"""The direction cosine matrix of any of the twelve sequences, with its
-    factors, as the reader changes them.
+    r"""The direction cosine matrix of any of the twelve sequences, with its factors.
 
-    Shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied out,
-    and what is left of it at gimbal lock, where only the sum or the difference of two angles
-    counts.
+    It shows :math:`{}^D\mathbf{C}^A` as the product of its three simple matrices and multiplied
+    out, and what remains of it at gimbal lock, where only the sum or the difference of two angles
+    counts. The reader can change the sequence and the angles.
 
     Parameters
     ----------
@@ -62,7 +60,7 @@ class SequenceExplorer(anywidget.AnyWidget):
         Radians: symbols, numbers, or expressions such as ``'pi/6'``. They are kept as they are
         typed.
     fixed : {'body', 'space'}
-        Whether the turns are about axes of the turned frame or of the frame that stays.
+        Whether the rotations are about axes of the rotated frame or of the fixed frame.
 
     Raises
     ------
@@ -98,7 +96,7 @@ class SequenceExplorer(anywidget.AnyWidget):
         return STYLE + bundle.style()
 
     def __init__(self, sequence="zxy", angles=NAMES, fixed="body"):
-        # Its message says more than the list's.
+        # Its message is more helpful than that of ``list.index``.
         layout_of(sequence)
         for name, angle in zip(NAMES, angles, strict=True):
             angle_from_text(str(angle), name)
@@ -113,7 +111,7 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def factors(self):
-        """The matrices of the three simple turns, in the order in which they are made."""
+        """The matrices of the three simple rotations, in order."""
         return tuple(simple_dcm(axis, angle) for axis, angle in zip(self.sequence, self.values))
 
     @property
@@ -123,8 +121,9 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def matrices(self):
-        """All that is shown: the factors as they are multiplied, their
-        product, and that at gimbal lock.
+        """All displayed matrices: the factors in the order of multiplication, and their product.
+
+        The last is the product at gimbal lock.
         """
         psi, _, phi = self.values
         factors = self.factors[::-1] if self.fixed == "body" else self.factors
@@ -136,7 +135,7 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     @property
     def tex(self):
-        """All that is shown, as TeX."""
+        """All displayed matrices, as TeX."""
         *factors, product, left = map(_tex, self.matrices)
         lines = [
             r"{}^D\mathbf{C}^A &= " + "".join(factors),
@@ -146,7 +145,7 @@ class SequenceExplorer(anywidget.AnyWidget):
         return r"\begin{aligned}" + r" \\ ".join(lines) + r"\end{aligned}"
 
     def _mathml(self):
-        """The same as formulas that a browser sets by itself, each of which may begin a line."""
+        """The same as formulas that a browser typesets itself, each of which may begin a line."""
         *factors, product, left = map(_mathml, self.matrices)
         place = f"<mi>θ</mi><mo>=</mo>{_mathml(self._locked)}"
         locked = f"<msub><mrow>{SYMBOL}<mo>|</mo></mrow><mrow>{place}</mrow></msub>"
@@ -156,21 +155,19 @@ class SequenceExplorer(anywidget.AnyWidget):
         return "".join(f'<div class="line">{formula}</div>' for formula in formulas)
 
     def lock(self):
-        """Return a sentence that says where the sequence locks,
-        and how far from there it stands.
-        """
+        """Return a sentence on where the sequence locks, and how far from there the angles are."""
         proper = self.sequence in PROPER_EULER
         where = "θ = 0 and θ = π" if proper else "θ = π/2 and θ = −π/2"
         axes = "the first and the third turn are about one line"
-        said = f"{'-'.join(self.sequence)} locks at {where}: there {axes}."
+        sentence = f"{'-'.join(self.sequence)} locks at {where}: there {axes}."
         theta = self.values[1]
         if not theta.is_number:
-            return said
+            return sentence
         [margin] = lock_margin_formula(self.sequence)(NUMBERS, 0, float(theta), 0)
         return (
-            f"{said} Here it is {margin:.3g} rad away from that."
+            f"{sentence} Here it is {margin:.3g} rad away from that."
             if margin > 1e-12
-            else f"{said} Here it is locked."
+            else f"{sentence} Here it is locked."
         )
 
     def _dcm(self, angles):
@@ -179,17 +176,17 @@ class SequenceExplorer(anywidget.AnyWidget):
 
     def _show(self, change=None):
         try:
-            result, said = self._mathml(), [self.lock()]
-            said += [
+            result, message = self._mathml(), [self.lock()]
+            message += [
                 f"{name} is taken as {text} radians. {text} degrees would be ({text})*pi/180."
                 for name, text, angle in zip(NAMES, self.angles, self.values)
                 if angle.is_number and abs(angle) > TURN
             ]
         except ValueError as error:
-            result, said = "", [f"{error}."]
+            result, message = "", [f"{error}."]
         with self.hold_sync():
             self.set_trait("result", result)
-            self.set_trait("message", " ".join(said))
+            self.set_trait("message", " ".join(message))
 
     def _repr_mimebundle_(self, **kwargs):
         data, metadata = super()._repr_mimebundle_(**kwargs)
@@ -200,8 +197,7 @@ class SequenceExplorer(anywidget.AnyWidget):
 
 
 def angle_from_text(text, name="angle"):
-    """Return the SymPy expression that was typed; nothing but arithmetic
-    and the usual functions is read.
+    """Return the SymPy expression in a text; only arithmetic and the usual functions are allowed.
 
     Raises
     ------
@@ -250,21 +246,19 @@ def _tex(value):
 
 
 def _mathml(value):
-    """Return MathML without the brackets round a single symbol, as
-    ``fold_func_brackets`` leaves them out of TeX.
-    """
+    """Return MathML without the brackets round a single symbol, as ``fold_func_brackets`` does."""
     text = mathml(_rounded(value), printer="presentation").replace("<mi>varphi</mi>", "<mi>φ</mi>")
     text = text.replace("<mn>-", "<mn>−")
     text = re.sub(r"<mrow><mo>\(</mo>(<m[in]>[^<]+</m[in]>)<mo>\)</mo></mrow>", rf"{SPACE}\1", text)
-    for found, wanted in (
+    for sign, element in (
         ("&InvisibleTimes;", SPACE),
         ("-", "<mo>−</mo>"),
-        *((one, FIXED.format(one)) for one in "()"),
+        *((bracket, FIXED.format(bracket)) for bracket in "()"),
     ):
-        text = text.replace(f"<mo>{found}</mo>", wanted)
+        text = text.replace(f"<mo>{sign}</mo>", element)
     return text
 
 
 def _rounded(value):
-    """Four digits for each decimal number."""
+    """Return ``value`` with four digits for each decimal number."""
     return value.xreplace({number: sm.Float(number, 4) for number in value.atoms(sm.Float)})

@@ -1,8 +1,8 @@
 """Write the formulas of ``orientation`` for the page, in ``js/formulas.js``.
 
-Run it with ``python -m orientation_figures.moving.formulas``. They are recorded from the module, so
-that none stands in JavaScript a second time; the file is kept with the others, as the figures need
-it where nothing is recorded.
+Run it with ``python -m orientation_figures.moving.formulas``. The formulas are recorded from the
+module, so that none is written in JavaScript a second time. The file is committed with the others,
+as the figures need it where nothing can be recorded.
 """
 
 from dataclasses import replace
@@ -26,7 +26,7 @@ from .tumbling import angular_acceleration
 COMMAND = "python -m orientation_figures.moving.formulas"
 FILE = FOLDER / "js" / "formulas.js"
 
-#: The formulas that figures use, with the sequences or axes that they use them for.
+# The formulas that figures use, with the sequences or axes that they use them for.
 NAMES = {
     "simple_dcm": "xyz",
     "dcm_from_body_fixed": SEQUENCES,
@@ -49,7 +49,7 @@ JAVASCRIPT = replace(
 
 
 def text():
-    """The module: matrices are three rows, here as in the other modules of the figures."""
+    """Return the module; matrices are three rows, as in the other modules of the figures."""
     lines = [
         f"// Written by `{COMMAND}`: the formulas of the module `orientation`. Angles in radians, "
         "quaternions",
@@ -66,23 +66,25 @@ def text():
         if choices is None:
             lines.append(f"export const {camel(name)} = {function(name, takes, gives)};")
             continue
-        what = CHOICES[name][0]
+        choice_name = CHOICES[name][0]
         rows = (f"  {choice}: {function(name, takes, gives, choice)},\n" for choice in choices)
         lines.append(f"const {camel(name)}By = {{\n{''.join(rows)}}};")
-        order = [what, *takes] if name == "simple_dcm" else [*takes, what]
+        order = [choice_name, *takes] if name == "simple_dcm" else [*takes, choice_name]
         lines.append(
             f"export const {camel(name)} = ({', '.join(order)}) => "
-            f"{camel(name)}By[{what}]({', '.join(takes)});"
+            f"{camel(name)}By[{choice_name}]({', '.join(takes)});"
         )
     quaternion, (omega, moments) = (
         components("quaternion", "q"),
-        (components("vector", one) for one in "om"),
+        (components("vector", letter) for letter in "om"),
     )
-    for name, entries, given in (
+    for name, entries, parameters in (
         ("axisAngleComponents", applied(axis_angle_components, *quaternion), [quaternion]),
         ("angularAcceleration", list(angular_acceleration(omega, moments)), [omega, moments]),
     ):
-        lines.append(f"export const {name} = {arrow(given, ['vector'] * 2, entries, 'vector')};")
+        lines.append(
+            f"export const {name} = {arrow(parameters, ['vector'] * 2, entries, 'vector')};"
+        )
     return "\n".join(lines) + "\n"
 
 
@@ -99,20 +101,21 @@ def components(kind, letter):
 
 
 def function(name, takes, gives, choice=None):
-    given = [components(kind, letter) for kind, letter in zip(takes.values(), "abc")]
-    results = formula_of(name, given, choice)
+    parameters = [components(kind, letter) for kind, letter in zip(takes.values(), "abc")]
+    results = formula_of(name, parameters, choice)
     if gives == "angles":
-        # As in the module: -0 would look like a wrong sign.
-        results = [one + 0.0 for one in results]
-    return arrow(given, list(takes.values()), results, gives)
+        # Add zero, as the module does, because -0 would look like a wrong sign.
+        results = [result + 0.0 for result in results]
+    return arrow(parameters, list(takes.values()), results, gives)
 
 
-def arrow(given, kinds, results, gives):
-    """A function of lists that are taken apart, as its parts and its result."""
-    names = {entry.parts[0]: entry.parts[0] for entries in given for entry in entries}
+def arrow(parameters, kinds, results, gives):
+    """Return a JavaScript function with destructured parameters."""
+    names = {entry.parts[0]: entry.parts[0] for entries in parameters for entry in entries}
     lines, values = written(JAVASCRIPT, results, names)
     head = ", ".join(
-        shaped([one.parts[0] for one in entries], kind) for entries, kind in zip(given, kinds)
+        shaped([entry.parts[0] for entry in entries], kind)
+        for entries, kind in zip(parameters, kinds)
     )
     result = shaped(values, gives)
     return (

@@ -49,7 +49,7 @@ class GimbalFigure(MovingFigure):
         sync=True, state=True
     )
     sequence = Sequence("zxy").tag(sync=True, state=True)
-    more = traitlets.Bool(True).tag(sync=True, told=True)
+    more = traitlets.Bool(True).tag(sync=True, constant=True)
 
     @property
     def room(self):
@@ -68,6 +68,6 @@ class GimbalFigure(MovingFigure):
 
     @property
     def margin(self):
-        """How far the gimbal is from lock, in radians."""
+        """Distance of the gimbal from lock, in radians."""
         [margin] = lock_margin_formula(self.sequence)(NUMBERS, *self.angles)
         return margin

@@ -1,9 +1,9 @@
-"""Set the labels of the moving figures, and write them down in ``js/glyphs.js``.
+"""Typeset the labels of the interactive figures and write them into ``js/glyphs.js``.
 
 Run it with ``python -m orientation_figures.moving.glyphs``.
 
-They look like those of ``orientation_figures.drawing``. The file is kept with the others, so that
-the figures are alive where there is no Matplotlib to set anything.
+They look like those of ``orientation_figures.drawing``. The file is committed with the others, so
+that the figures work without Matplotlib.
 """
 
 import json
@@ -14,7 +14,7 @@ from .bundle import FOLDER
 COMMAND = "python -m orientation_figures.moving.glyphs"
 FILE = FOLDER / "js" / "glyphs.js"
 
-#: Every label that a figure typesets as mathematics.
+# Every label that a figure typesets as mathematics.
 LABELS = (
     *(rf"\hat{{{frame}}}_{axis}" for frame in "nabcdm" for axis in "xyz"),
     r"\hat{e}",
@@ -78,7 +78,7 @@ LABELS = (
 
 
 def glyphs():
-    """Return the module of outlines and of where they stand in each label, 1000 units to the em."""
+    """Return the module of outlines and of their places in each label, 1000 units to the em."""
     outlines, labels = {}, {}
     for text in LABELS:
         placed, ink = typeset(f"${text}$")

@@ -13,9 +13,7 @@ LETTERS = "NABCDE"
 
 
 class Edges(traitlets.TraitType):
-    """One to five orientations: a new frame, the one it is turned in,
-    an axis and an angle in radians.
-    """
+    """One to five orientations: a new frame, its reference, an axis and an angle in radians."""
 
     def validate(self, obj, value):
         whole = isinstance(value, (list, tuple)) and 1 <= len(value) < len(LETTERS)
@@ -98,7 +96,7 @@ class GraphFigure(MovingFigure):
 
     @property
     def frames(self):
-        """The same as :class:`orientation.Frames`."""
+        """The graph as :class:`orientation.Frames`."""
         frames = Frames()
         for edge in self.edges:
             frames = frames.orient_axis(*edge)
@@ -111,5 +109,5 @@ class GraphFigure(MovingFigure):
 
     @property
     def path(self):
-        """The frames from ``target`` to ``source``, as text."""
+        """The frames from ``target`` to ``source``, as a string."""
         return self.frames.path(self.target, self.source)

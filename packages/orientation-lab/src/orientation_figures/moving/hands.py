@@ -1,4 +1,4 @@
-"""A triad, and its mirror image, which no turning brings onto it."""
+"""A triad and its mirror image, which no rotation can align."""
 
 import traitlets
 
@@ -9,8 +9,7 @@ from .state import Direction
 
 
 class HandsFigure(MovingFigure):
-    r"""A right-handed triad :math:`N`, and beside it either its mirror image
-    or a copy, which the reader turns.
+    r"""A right-handed triad :math:`N`, and its mirror image or a copy, which the reader rotates.
 
     The angles between the arrows of the same name are shown. A copy can be brought onto :math:`N`.
     Of the mirror image two arrows can fit, and then the third points the wrong way.
@@ -41,7 +40,7 @@ class HandsFigure(MovingFigure):
 
     @property
     def dcm(self):
-        r""":math:`{}^A\mathbf{C}^N` of a frame that has made the same turn, shape ``(3, 3)``."""
+        r""":math:`{}^A\mathbf{C}^N` of a frame after the same rotation, shape ``(3, 3)``."""
         return dcm_from_quaternion(self.quaternion)
 
     @property

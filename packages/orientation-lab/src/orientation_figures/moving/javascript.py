@@ -1,15 +1,17 @@
-"""Write the pictures of the moving figures in JavaScript, too, in ``js/*_picture.js``.
+"""Translate the pictures of the interactive figures to JavaScript, in ``js/*_picture.js``.
 
-Run it with ``python -m orientation_figures.moving.javascript``. What a figure shows is described
-once, in ``pictures``: functions of its state in the words of a sheet, which stand in
-:mod:`~orientation_figures.words`, and of :mod:`~orientation_figures.vectors`. Python paints stills
-with them; here they are translated, statement by statement, for the figures in the page. The files
-are kept with the others, as the figures need them where nothing is translated.
+Run it with ``python -m orientation_figures.moving.javascript``. The content of a figure is
+described once, in ``pictures``: functions of its state that use the methods of a sheet
+(:mod:`~orientation_figures.words`) and the functions of :mod:`~orientation_figures.vectors`. Python
+draws stills with them; this module translates them, statement by statement, for the figures in the
+page. The files are committed with the others, as the figures need them where nothing can be
+translated.
 
-A description is plain: functions, constants, loops and comprehensions, conditions, lists. What is
-given by name becomes an object, and what may be left out of a word has to be given so. What begins
-with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an empty list counts
-as true, so ask for its length; and a text is no list until ``list`` makes it one.
+A description consists of functions, constants, loops and comprehensions, conditions and lists.
+Keyword arguments become an object, and the optional arguments of a method must be passed by name.
+Names that begin with ``_``, and functions of a whole ``figure``, stay in Python. In JavaScript an
+empty list counts as true, so ask for its length; and a string is not a list until ``list`` makes it
+one.
 """
 
 import ast
@@ -20,7 +22,7 @@ from .bundle import FOLDER
 COMMAND = "python -m orientation_figures.moving.javascript"
 
 _NAMES = {"len": "{}.length", "abs": "Math.abs({})", "list": "[...{}]"}
-#: Words of a sheet that take their arguments in order, in both languages.
+# Methods of a sheet that take their arguments in order, in both languages.
 _IN_ORDER = (
     "area", "cylinder", "dot", "ellipse", "head", "label", "label_beyond", "line", "path", "ring",
     "shadow", "text",
@@ -31,7 +33,7 @@ _METHODS = {
     "lower": "toLowerCase",
     "startswith": "startsWith",
 }
-#: The module with the words of the sheets. The pictures have a folder.
+# The module with the methods of the sheets. The pictures have a folder.
 _WORDS = FOLDER.parent / "words.py"
 _OPERATORS = {
     ast.Add: ("+", 1), ast.Sub: ("-", 1), ast.Mult: ("*", 2), ast.Div: ("/", 2), ast.Mod: ("%", 2),
@@ -39,12 +41,12 @@ _OPERATORS = {
     ast.GtE: ">=", ast.Is: "===", ast.IsNot: "!==", ast.And: " && ", ast.Or: " || ", ast.Not: "!",
     ast.USub: "-",
 }  # fmt: skip
-#: The precedence of expressions that are not operations on two numbers.
+# The precedence of expressions that are not operations on two numbers.
 _STRENGTHS = {ast.Compare: 0.9, ast.And: 0.6, ast.Or: 0.5, ast.IfExp: 0, ast.Lambda: 0}
 
 
 def translated(path):
-    """The module of JavaScript that says what a file says."""
+    """Return the JavaScript module for a file."""
     parts, modules = [], dict.fromkeys(("enumerate", "range", "sum", "zip"), "mathematics")
     for node in ast.parse(path.read_text("utf8")).body:
         match node:
@@ -67,36 +69,38 @@ def translated(path):
                     )
                 )
             case ast.ClassDef(name=name):
-                methods = [method(one) for one in node.body if isinstance(one, ast.FunctionDef)]
+                methods = [
+                    method(child) for child in node.body if isinstance(child, ast.FunctionDef)
+                ]
                 parts.append((node, f"\nexport class {name} {braces(methods)}"))
-    used = {one.id for node, _ in parts for one in ast.walk(node) if isinstance(one, ast.Name)}
+    used = {part.id for node, _ in parts for part in ast.walk(node) if isinstance(part, ast.Name)}
     lines = [f"// Written by `{COMMAND}` from {path.relative_to(FOLDER.parent)}."]
-    for module in sorted({modules[one] for one in used & set(modules)}):
+    for module in sorted({modules[name] for name in used & set(modules)}):
         names = ", ".join(
-            sorted(camel(one) for one in used & set(modules) if modules[one] == module)
+            sorted(camel(name) for name in used & set(modules) if modules[name] == module)
         )
         lines.append(f"import {{ {names} }} from './{module}.js';")
     return "\n".join([*lines, *(text for _, text in parts)]) + "\n"
 
 
 def camel(name):
-    return name if name.isupper() else re.sub(r"(?<=.)_(\w)", lambda found: found[1].upper(), name)
+    return name if name.isupper() else re.sub(r"(?<=.)_(\w)", lambda match: match[1].upper(), name)
 
 
 def parameters(arguments):
-    """Of a function: what may be left out has a default, what is given by name is an object."""
-    given = [camel(one.arg) for one in arguments.args]
+    """Return the parameters of a function; optional ones have defaults, keywords form an object."""
+    positional = [camel(argument.arg) for argument in arguments.args]
     for k, default in enumerate(reversed(arguments.defaults), 1):
-        given[-k] += f" = {expression(default)}"
+        positional[-k] += f" = {expression(default)}"
     named = [
-        f"{camel(one.arg)} = {expression(value)}"
-        for one, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
+        f"{camel(argument.arg)} = {expression(value)}"
+        for argument, value in zip(arguments.kwonlyargs, arguments.kw_defaults)
     ]
-    return ", ".join(given + ([f"{{ {', '.join(named)} }} = {{}}"] if named else []))
+    return ", ".join(positional + ([f"{{ {', '.join(named)} }} = {{}}"] if named else []))
 
 
 def method(function):
-    """A word: what may be left out is given by name, unless it is one of those in order."""
+    """Return a method; optional parameters are passed by name, unless it is listed in _IN_ORDER."""
     arguments = function.args
     arguments.args = arguments.args[1:]
     if function.name not in _IN_ORDER and (defaults := arguments.defaults):
@@ -106,22 +110,27 @@ def method(function):
 
 
 def block(function):
-    """The body of a function; a variable is constant if it is set in one place."""
-    together, found = [], [*function.body]
-    while found:
-        node = found.pop()
+    """Return the body of a function; a variable is constant if it is set in one place."""
+    together, waiting = [], [*function.body]
+    while waiting:
+        node = waiting.pop()
         if isinstance(node, ast.Assign | ast.AugAssign):
             together.append(
                 names_in(node.targets[0] if isinstance(node, ast.Assign) else node.target)
             )
         if isinstance(node, ast.stmt) and not isinstance(node, ast.FunctionDef):
-            found += ast.iter_child_nodes(node)
+            waiting += ast.iter_child_nodes(node)
     every = sum(together, [])
     changing = sorted(
-        {one for names in together if any(every.count(name) > 1 for name in names) for one in names}
+        {
+            child
+            for names in together
+            if any(every.count(name) > 1 for name in names)
+            for child in names
+        }
     )
     first = [f"let {', '.join(map(camel, changing))};"] if changing else []
-    return braces(first + [statement(one, changing) for one in function.body])
+    return braces(first + [statement(child, changing) for child in function.body])
 
 
 def braces(lines):
@@ -131,15 +140,15 @@ def braces(lines):
 
 def names_in(target):
     return [
-        one.id
-        for one in ast.walk(target)
-        if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)
+        part.id
+        for part in ast.walk(target)
+        if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
     ]
 
 
 def statement(node, changing):
     def all_of(body):
-        return braces([statement(one, changing) for one in body])
+        return braces([statement(child, changing) for child in body])
 
     match node:
         case ast.Expr(value=ast.Constant()):
@@ -147,7 +156,7 @@ def statement(node, changing):
         case ast.Expr():
             return f"{expression(node.value)};"
         case ast.Return(value=ast.Name(id="self")):
-            # Words are not chained in the page.
+            # Methods are not chained in the page.
             return ""
         case ast.Return():
             return f"return {expression(node.value)};" if node.value else "return;"
@@ -171,13 +180,13 @@ def statement(node, changing):
                 f"{all_of(node.body)}"
             )
         case ast.If():
-            other = ""
+            alternative = ""
             if node.orelse:
                 chained = len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
-                other = " else " + (
+                alternative = " else " + (
                     statement(node.orelse[0], changing) if chained else all_of(node.orelse)
                 )
-            return f"if ({expression(node.test)}) {all_of(node.body)}{other}"
+            return f"if ({expression(node.test)}) {all_of(node.body)}{alternative}"
         case ast.FunctionDef(body=[ast.Return(value=value)]):
             return f"const {camel(node.name)} = ({parameters(node.args)}) => {expression(value)};"
         case ast.FunctionDef():
@@ -188,7 +197,7 @@ def statement(node, changing):
 
 
 def within(node, least=4):
-    """An operand, in brackets where it binds less than what stands around it."""
+    """Return an operand, in brackets where it binds less tightly than its context."""
     if isinstance(node, ast.BinOp):
         strength = _OPERATORS[type(node.op)][1]
     else:
@@ -235,12 +244,12 @@ def expression(node):
         case ast.UnaryOp():
             return f"{_OPERATORS[type(node.op)]}{within(node.operand)}"
         case ast.BoolOp():
-            return _OPERATORS[type(node.op)].join(within(one, 0.6) for one in node.values)
+            return _OPERATORS[type(node.op)].join(within(operand, 0.6) for operand in node.values)
         case ast.Compare(ops=[ast.In() | ast.NotIn()], comparators=[known]):
             sign = "!" if isinstance(node.ops[0], ast.NotIn) else ""
             return f"{sign}{within(known)}.includes({expression(node.left)})"
-        case ast.Compare(ops=[operator], comparators=[other]):
-            return f"{within(node.left, 1)} {_OPERATORS[type(operator)]} {within(other, 1)}"
+        case ast.Compare(ops=[operator], comparators=[right]):
+            return f"{within(node.left, 1)} {_OPERATORS[type(operator)]} {within(right, 1)}"
         case ast.IfExp():
             return f"{within(node.test, 0.5)} ? {within(node.body, 0.5)} : {within(node.orelse, 0)}"
         case ast.Lambda():
@@ -260,31 +269,31 @@ def expression(node):
 
 def over(part):
     conditions = "".join(
-        f".filter(({expression(part.target)}) => {expression(one)})" for one in part.ifs
+        f".filter(({expression(part.target)}) => {expression(condition)})" for condition in part.ifs
     )
     return within(part.iter) + conditions
 
 
 def call(node):
-    given = [expression(one) for one in node.args]
+    arguments = [expression(argument) for argument in node.args]
     if isinstance(node.func, ast.Attribute) and node.func.attr == "get":
-        return f"({within(node.func.value)}[{given[0]}] ?? {given[1]})"
+        return f"({within(node.func.value)}[{arguments[0]}] ?? {arguments[1]})"
     if node.keywords and not (isinstance(node.func, ast.Name) and node.func.id == "zip"):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
             raise ValueError(
                 f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, without "
                 "names"
             )
-        given.append(entries((one.arg, one.value) for one in node.keywords))
+        arguments.append(entries((keyword.arg, keyword.value) for keyword in node.keywords))
     if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):
-        return f"Math.{node.func.id}({'...' if len(given) == 1 else ''}{', '.join(given)})"
+        return f"Math.{node.func.id}({'...' if len(arguments) == 1 else ''}{', '.join(arguments)})"
     if isinstance(node.func, ast.Name) and node.func.id in _NAMES:
-        return _NAMES[node.func.id].format(", ".join(given))
-    return f"{within(node.func)}({', '.join(given)})"
+        return _NAMES[node.func.id].format(", ".join(arguments))
+    return f"{within(node.func)}({', '.join(arguments)})"
 
 
 def entries(pairs):
-    """An object; what has the name of its key is not named twice."""
+    """Return an object; an entry whose value has the name of its key is written once."""
     pairs = [(camel(key), expression(value)) for key, value in pairs]
     return f"{{ {', '.join(key if key == value else f'{key}: {value}' for key, value in pairs)} }}"
 
@@ -300,7 +309,7 @@ def filled(part):
 
 
 def files():
-    """All that is written, by the names of the files."""
+    """Return all files to write, by name."""
     paths = [*sorted((FOLDER / "pictures").glob("[!_]*.py")), _WORDS]
     return {FOLDER / "js" / f"{path.stem}_picture.js": translated(path) for path in paths}
 

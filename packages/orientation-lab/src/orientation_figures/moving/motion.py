@@ -1,6 +1,4 @@
-"""A racket that tumbles, its orientation integrated as a matrix,
-as a quaternion and as Euler angles.
-"""
+"""A tumbling racket, with its orientation integrated as a matrix, a quaternion and Euler angles."""
 
 import traitlets
 
@@ -13,7 +11,7 @@ PLOT = (-180, 0, 180, 356)  # left, top, right and bottom
 
 
 class Between(Numbers):
-    """One number from ``least`` to ``most``."""
+    """A number from ``least`` to ``most``."""
 
     def __init__(self, default, least, most, unit):
         super().__init__(default)
@@ -47,8 +45,7 @@ class Moments(Numbers):
 
 
 class MotionFigure(MovingFigure):
-    r"""A body that tumbles freely, integrated in three descriptions
-    with or without the restoring step.
+    r"""A freely tumbling body, integrated in three descriptions with or without restoring steps.
 
     The body spins with 4 rad/s about one of its principal axes, slightly disturbed. Its orientation
     is carried along as a direction cosine matrix, as a quaternion and as Euler angles in the
@@ -107,12 +104,11 @@ class MotionFigure(MovingFigure):
     time = Between(6.0, 0, SECONDS, "seconds").tag(sync=True, state=True)
 
     def run(self):
-        """Return what has been computed from 0 to ``time``, as a dict of
-        arrays with one row for each step.
+        """Return the results from 0 to ``time``, as a dict of arrays with one row for each step.
 
         ``'time'``; ``'angular_velocity'`` along A; ``'matrix'``, ``'quaternion'``, ``'angles'`` as
         integrated from it; and ``'reference'``, the unit quaternion of the fine integration. A run
-        ends early where its numbers have grown beyond ten thousand.
+        ends early if its numbers exceed ten thousand.
         """
         # Import it only here, because it needs NumPy.
         from . import tumbling
@@ -131,12 +127,12 @@ class MotionFigure(MovingFigure):
 
     @property
     def body(self):
-        """What is drawn: 'racket', 'book' or, for other moments of inertia, 'block'."""
+        """The drawn body: 'racket', 'book' or, for other moments of inertia, 'block'."""
         return body_of(self.moments)
 
     @property
     def flips(self):
-        """How often the body has turned its spin axis over against the angular momentum."""
+        """How often the spin axis has flipped with respect to the angular momentum."""
         from . import tumbling
 
         return tumbling.flips(self.run(), self.moments, self.axis)
@@ -147,7 +143,7 @@ class MotionFigure(MovingFigure):
         return super().still().removesuffix(end) + plot + end
 
     def plot(self):
-        """Return the ``Drawing`` of how the drift has grown up to ``time``."""
+        """Return the ``Drawing`` of the growth of the drift up to ``time``."""
         from .sheet import Sheet
 
         return pictures.plot(self, Sheet)

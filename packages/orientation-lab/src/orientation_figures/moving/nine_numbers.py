@@ -1,6 +1,4 @@
-"""Nine numbers that should be a direction cosine matrix: what fails,
-and the nearest matrix that is one.
-"""
+"""Nine numbers that should be a direction cosine matrix, and the nearest valid matrix."""
 
 from orientation.direction_cosines import check_dcm, nearest_dcm
 
@@ -43,7 +41,7 @@ class NineNumbersFigure(MovingFigure):
         return nearest_dcm(self.matrix)
 
     def check(self):
-        """Return what ``check_dcm`` says of the matrix, or nothing if it is valid."""
+        """Return the message of ``check_dcm`` on the matrix, or nothing if it is valid."""
         try:
             check_dcm(self.matrix)
         except ValueError as error:

@@ -1,6 +1,4 @@
-"""The reader's own phone: its sensors as a browser reports them,
-or a recording where there are none.
-"""
+"""The reader's own phone: its sensors as a browser reports them, or else a recording."""
 
 import math
 
@@ -50,5 +48,5 @@ class PhoneFigure(MovingFigure):
 
     @property
     def quaternion(self):
-        """Unit quaternion of the phone in the ground, scalar first, shape ``(4,)``."""
+        """Unit quaternion of the phone with respect to the ground, scalar first, shape ``(4,)``."""
         return quaternion_from_dcm(self.dcm)

@@ -22,11 +22,11 @@ STEP = 1e-4
 
 
 class QuaternionFigure(MovingFigure):
-    r"""Half angles, and what they are good for, in two views.
+    r"""Half angles and their uses, in two views.
 
-    In the view 'double' a frame :math:`A` turns in :math:`N` about an axis, and beside it :math:`q
-    = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the speed.
-    After one full turn it has come to :math:`-q`, after two it is back.
+    In the view 'double' a frame :math:`A` rotates in :math:`N` about an axis, and beside it
+    :math:`q = \cos\frac{\theta}{2} + \sin\frac{\theta}{2}\,\hat{e}` goes round a circle at half the
+    speed. After one full rotation it has become :math:`-q`, and after two it is back.
 
     In the view 'way' three frames go from the orientation of :math:`A` to that of :math:`B` in four
     seconds: :math:`C` by interpolating quaternions (slerp), :math:`D` by interpolating Euler angles
@@ -38,7 +38,7 @@ class QuaternionFigure(MovingFigure):
     more : bool
         Whether :math:`-q` is shown beside :math:`q`, and the views can be exchanged.
     axis : tuple of three floats
-        Direction of :math:`\hat{e}`, kept at unit length.
+        Direction of :math:`\hat{e}`, normalised.
     angle : float
         :math:`\theta` in radians, from 0 to :math:`4\pi`.
     first, second : tuples of three floats
@@ -47,7 +47,7 @@ class QuaternionFigure(MovingFigure):
     unit_vector : {'x', 'y', 'z'}
         The unit vector whose tip is followed.
     share : float
-        How much of the way has been gone, from 0 to 1.
+        The completed share of the way, from 0 to 1.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class QuaternionFigure(MovingFigure):
     )
     unit_vector = traitlets.Enum(("x", "y", "z"), "y").tag(sync=True, state=True)
     share = Numbers(0.3, largest=1.0).tag(sync=True, state=True)
-    more = traitlets.Bool(True).tag(sync=True, told=True)
+    more = traitlets.Bool(True).tag(sync=True, constant=True)
 
     @traitlets.validate("angle", "share")
     def _not_negative(self, proposal):
@@ -103,8 +103,7 @@ class QuaternionFigure(MovingFigure):
         return dcm_from_quaternion(self.quaternion)
 
     def ways(self, share):
-        r"""Return :math:`{}^C\mathbf{C}^N`, :math:`{}^D\mathbf{C}^N` and :math:`{}^E\mathbf{C}^N`
-        part of the way.
+        r"""Return the matrices of :math:`C`, :math:`D` and :math:`E` in :math:`N` part of the way.
 
         None stands for a way that does not exist: slerp between orientations half a turn apart, or
         blended entries to which several matrices are equally near.
@@ -124,15 +123,14 @@ class QuaternionFigure(MovingFigure):
         )
 
     def blend(self, share):
-        """Return the matrix whose entries lie part of the way between those of
-        the ends; its rows are too short.
-        """
+        """Return the matrix with interpolated entries of the two ends; its rows are too short."""
         first, second = self.ends
         return (1 - share) * first + share * second
 
     def speeds(self, share):
-        """Return the three angular speeds part of the way, radians per
-        second for a way of four seconds.
+        """Return the three angular speeds at a share of the way, in radians per second.
+
+        The whole way takes four seconds.
         """
         early, late = max(0, share - STEP), min(1, share + STEP)
         return tuple(

@@ -1,6 +1,4 @@
-"""The sheet of paper on which a picture is painted: the same words as
-the ``Sheet`` of ``js/shared.js``.
-"""
+"""The paper on which a picture is drawn, with the methods of the ``Sheet`` of ``js/shared.js``."""
 
 import numpy as np
 
@@ -8,10 +6,10 @@ from ..drawing import Drawing
 
 
 class Sheet(Drawing):
-    """A drawing in layers: what has the higher one lies above, within a layer what comes later.
+    """A drawing in layers: higher layers are above, and so are later marks in a layer.
 
-    In the page ``faded`` marks step back behind a number that is
-    touched; on paper nothing is touched.
+    In the page, ``faded`` marks are dimmed while the reader touches a number; paper has no such
+    state.
     """
 
     def __init__(self, alt, **attributes):
@@ -19,7 +17,7 @@ class Sheet(Drawing):
         self.layer, self.faded, self._layers = 0, False, []
 
     def paint(self, picture, *state):
-        """Paint what a picture describes, and return the sheet."""
+        """Draw a picture of a state, and return the sheet."""
         picture(self, *state)
         order = sorted(range(len(self.marks)), key=self._layers.__getitem__)
         self.marks = [self.marks[k] for k in order]
@@ -38,5 +36,5 @@ class Sheet(Drawing):
         return super().line(points, colour, "thick" if kind == "tube slim" else kind)
 
     def placed(self, right, down):
-        """The point of N that is seen at a place of the sheet."""
+        """Return the point of N that is seen at a place of the sheet."""
         return list(np.array((right, -down, 0)) / self.scale @ self.view)

@@ -1,4 +1,4 @@
-"""A simple orientation: one turn about a unit vector that two frames share."""
+"""A simple orientation: one rotation about a unit vector that two frames share."""
 
 import math
 
@@ -11,8 +11,7 @@ from .state import Numbers
 
 
 class SimpleFigure(MovingFigure):
-    r"""A frame :math:`A`, turned in :math:`N` through an angle about :math:`x`, :math:`y` or
-    :math:`z`.
+    r"""A frame :math:`A`, rotated in :math:`N` about :math:`x`, :math:`y` or :math:`z`.
 
     Three views move together: the triads in space, the same down the shared unit vector, and
     :math:`{}^A\mathbf{C}^N`. A number that is touched lights up the shadow that it measures.

@@ -1,4 +1,4 @@
-"""What the attributes of a moving figure accept: numbers of one shape, checked, never repaired."""
+"""Trait types of interactive figures: numbers of one shape, checked but never repaired."""
 
 import math
 
@@ -50,7 +50,7 @@ class Numbers(traitlets.TraitType):
 
 
 class Direction(Numbers):
-    """A vector that is not zero, of ``size`` components, kept at unit length."""
+    """A nonzero vector of ``size`` components, normalised."""
 
     def __init__(self, default, size=3, **more):
         super().__init__(_unit(default), (size,), **more)
@@ -66,7 +66,7 @@ COUNTS = {0: "no", 1: "one", 3: "three", 4: "four", 20: "twenty"}
 
 
 class Turns(traitlets.TraitType):
-    """A few turns, each an axis and an angle in radians."""
+    """A few rotations, each an axis and an angle in radians."""
 
     def __init__(self, default, fewest=1, most=4, **more):
         super().__init__(default, **more)
@@ -120,13 +120,13 @@ class Sequence(traitlets.TraitType):
 
 def _unit(vector):
     length = math.hypot(*vector)
-    # A unit vector stays the same to the last digit, however often it is converted there and back.
+    # A unit vector stays the same to the last digit, however often it is converted back and forth.
     return vector if abs(length - 1) < 1e-15 else tuple(entry / length for entry in vector)
 
 
 def _entries(numbers):
     return (
-        [one for entry in numbers for one in _entries(entry)]
+        [number for entry in numbers for number in _entries(entry)]
         if isinstance(numbers, tuple)
         else [numbers]
     )

@@ -1,4 +1,4 @@
-"""A chain of simple turns, frame by frame, with the product of their matrices."""
+"""A chain of simple rotations, frame by frame, with the product of their matrices."""
 
 import math
 
@@ -13,8 +13,7 @@ from .state import Numbers, Turns
 
 
 class SuccessiveFigure(MovingFigure):
-    r"""A chain of up to four simple turns from :math:`N` to :math:`A`, :math:`B`, :math:`C` and
-    :math:`D`.
+    r"""A chain of up to four simple rotations from :math:`N` to :math:`D`.
 
     Beside the frames stand the matrices of the turns and their product. With body fixed turns the
     newest stands on the left,
@@ -57,7 +56,7 @@ class SuccessiveFigure(MovingFigure):
     fixed = traitlets.Enum(("body", "space"), "body").tag(sync=True, state=True)
     compare = traitlets.Enum(COMPARISONS, "nothing").tag(sync=True, state=True)
     share = Numbers(1.0, largest=1.0).tag(sync=True, state=True)
-    more = traitlets.Bool(True).tag(sync=True, told=True)
+    more = traitlets.Bool(True).tag(sync=True, constant=True)
 
     @property
     def room(self):
@@ -87,9 +86,7 @@ class SuccessiveFigure(MovingFigure):
 
     @property
     def dcms(self):
-        """Direction cosine matrices of N and of every further frame with
-        respect to N, shape ``(n + 1, 3, 3)``.
-        """
+        """Matrices of N and of all further frames with respect to N, shape ``(n + 1, 3, 3)``."""
         # Import it only here, because the figure itself does not need it.
         import numpy as np
 
@@ -102,7 +99,7 @@ class SuccessiveFigure(MovingFigure):
 
     @property
     def other(self):
-        """Direction cosine matrix of E with respect to N, or None where nothing is compared."""
+        """Direction cosine matrix of E with respect to N, or None if there is no second chain."""
         return (
             None
             if self.compare == "nothing"
@@ -111,9 +108,7 @@ class SuccessiveFigure(MovingFigure):
 
     @property
     def angle_between(self):
-        """Angle of the turn from the end of the chain to E, radians, or
-        None where nothing is compared.
-        """
+        """Angle from the end of the chain to E in radians, or None if there is no second chain."""
         return (
             None if self.other is None else float(axis_angle_from_dcm(self.other @ self.dcm.T)[1])
         )

@@ -1,6 +1,4 @@
-"""The formulas that readers take away from the page: one script for each
-language, loaded when it is asked for.
-"""
+"""Formulas that readers can copy from the page: one script for each language, loaded on demand."""
 
 import base64
 import gzip
@@ -11,31 +9,32 @@ from functools import cache
 from orientation_workbench.formulas import CHOICES, FORMULAS
 from orientation_workbench.languages import CONVENTIONS, LANGUAGES, formula_in
 
-#: The kinds of numbers for which a convention matters to a formula.
+# The kinds of numbers for which a convention matters to a formula.
 MATTERS = {"matrix": {"matrix"}, "scalar": {"quaternion"}, "unit": {"angle", "angles"}}
 
 
 def texts_in(language):
-    """All texts of a language: for each formula the names of what is
-    chosen, and a text for each choice.
-    """
-    found = {}
+    """Return all texts of a language: for each formula its choices, and a text for each of them."""
+    formulas = {}
     for name, (takes, gives) in FORMULAS.items():
         conventions = [key for key in CONVENTIONS if MATTERS[key] & {*takes.values(), gives}]
-        what, choices = CHOICES.get(name, (None, (None,)))
+        choice_name, choices = CHOICES.get(name, (None, (None,)))
         texts = {}
         for choice, *values in itertools.product(
             choices, *(CONVENTIONS[key] for key in conventions)
         ):
-            words = " ".join([*([choice] if what else []), *values])
+            words = " ".join([*([choice] if choice_name else []), *values])
             texts[words] = formula_in(language, name, choice, **dict(zip(conventions, values)))
-        found[name] = {"keys": [*([what] if what else []), *conventions], "texts": texts}
-    return found
+        formulas[name] = {
+            "keys": [*([choice_name] if choice_name else []), *conventions],
+            "texts": texts,
+        }
+    return formulas
 
 
 @cache
 def scripts():
-    """The scripts by the names of their files."""
+    """Return the scripts by file name."""
     files = {}
     for language in LANGUAGES:
         packed = gzip.compress(

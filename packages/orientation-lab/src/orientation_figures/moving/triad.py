@@ -1,4 +1,4 @@
-"""A triad turned in a frame about an axis, with every description of its orientation beside it."""
+"""A triad rotated in a frame about an axis, with every description of its orientation beside it."""
 
 import math
 
@@ -62,7 +62,7 @@ class TriadFigure(MovingFigure):
     axis = Direction((1, 2, 2)).tag(sync=True, state=True)
     angle = Numbers(math.radians(50), largest=math.pi).tag(sync=True, state=True)
     sequence = Sequence("zxy").tag(sync=True, state=True)
-    more = traitlets.Bool(True).tag(sync=True, told=True)
+    more = traitlets.Bool(True).tag(sync=True, constant=True)
 
     @property
     def room(self):

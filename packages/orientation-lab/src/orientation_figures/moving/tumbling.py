@@ -1,6 +1,4 @@
-"""The integration of a body that tumbles without torque, in
-three descriptions of its orientation.
-"""
+"""The torque-free integration of a tumbling body, in three descriptions of its orientation."""
 
 from functools import lru_cache
 
@@ -14,23 +12,23 @@ from orientation.quaternions import dcm_from_quaternion, multiply_quaternions
 from orientation.rotation_vector import dcm_from_rotation_vector
 
 SPIN = 4.0  # rad/s
-FINER = 10  # the reference takes so many steps for one
+FINER = 10  # steps of the reference for one step of a description
 LARGEST = 1e4  # numbers beyond this end a run
 
 
-#: The points of a step at which the fourth-order exponential step evaluates the rate.
+# The points of a step at which the fourth-order exponential step evaluates the rate.
 GAUSS = 0.5 - 3**0.5 / 6, 0.5 + 3**0.5 / 6
 
 
-# Keep the results, because an unchanged figure draws the same run again and again.
+# Cache the results, because an unchanged figure draws the same run again and again.
 @lru_cache(maxsize=8)
 def run(moments, axis, disturbance, method, step, restored, count):
-    """Return the arrays of so many steps, as :meth:`MotionFigure.run` gives them.
+    """Return the arrays of so many steps, as in :meth:`MotionFigure.run`.
 
-    The angular velocity is found once, in steps ten times finer, and every description is given the
-    same: what they differ in is their own.
+    The angular velocity is computed once, in steps ten times finer, and is the same for every
+    description, so that they differ only by their own errors.
     """
-    start = np.where([axis == other for other in "xyz"], SPIN, disturbance)
+    start = np.where([axis == letter for letter in "xyz"], SPIN, disturbance)
     omegas, reference = _reference(start, moments, step / FINER, FINER * count)
     rows = [(np.eye(3), np.eye(4)[0], np.zeros(3))]
     for k in range(count):
@@ -52,7 +50,7 @@ def run(moments, axis, disturbance, method, step, restored, count):
 
 
 def angular_acceleration(omega, moments):
-    """Return the change of the angular velocity along the principal axes, without torque."""
+    """Return the torque-free angular acceleration along the principal axes."""
     (x, y, z), (a, b, c) = omega, moments
     return (
         -(y * (c * z) - z * (b * y)) / a,
@@ -78,12 +76,11 @@ def _turned_on(omega, moments, step):
 
 
 def _reference(start, moments, step, count):
-    """Return the angular velocities and unit quaternions of so many
-    Runge-Kutta steps from the identity.
+    """Return the angular velocities and unit quaternions of so many Runge-Kutta steps.
 
-    The rate is linear in the quaternion: once the angular velocity is known, each step is a 4 by 4
-    matrix, and those of all steps are found together, which is ten times as fast as one after the
-    other.
+    The integration starts from the identity. The rate is linear in the quaternion: once the angular
+    velocity is known, each step is a 4 by 4 matrix, and those of all steps are computed together,
+    which is ten times as fast as one after the other.
     """
     omegas, stages = [start.tolist()], []
     for _ in range(count):
@@ -114,8 +111,9 @@ def _rates(state, omega):
 
 
 def _step(state, step, method, moments, omegas):
-    """Return matrix, quaternion and angles one step later; ``omegas`` are
-    those of the finer steps from here.
+    """Return matrix, quaternion and angles one step later.
+
+    ``omegas`` are those of the finer steps from here.
     """
 
     def beyond(length, slopes):
@@ -143,7 +141,7 @@ def _step(state, step, method, moments, omegas):
 
 def _turn(step, moments, omegas):
     """Return the rotation vector of a step of the fourth order (Magnus)."""
-    one, other = (
+    at_first, at_second = (
         np.array(
             _turned_on(
                 omegas[int(FINER * point)], moments, step * (point - int(FINER * point) / FINER)
@@ -151,15 +149,16 @@ def _turn(step, moments, omegas):
         )
         for point in GAUSS
     )
-    return step / 2 * (one + other) + 3**0.5 / 12 * step**2 * np.cross(one, other)
+    return step / 2 * (at_first + at_second) + 3**0.5 / 12 * step**2 * np.cross(at_first, at_second)
 
 
-# The words for the numbers of a run.
+# Functions of the numbers of a run.
 
 
 def matrices(run, description, which):
-    """Return the direction cosine matrices of a description; that of a
-    quaternion is |q|^2 times orthogonal.
+    """Return the direction cosine matrices of a description.
+
+    That of a quaternion is orthogonal up to the factor |q|^2.
     """
     values = run[description][which]
     if description == "matrix":
@@ -171,9 +170,7 @@ def matrices(run, description, which):
 
 
 def fault_of(dcms):
-    """Return the largest entry by which each matrix times its
-    transpose differs from the identity.
-    """
+    """Return the largest entry of each matrix times its transpose, minus the identity."""
     return abs(dcms @ dcms.swapaxes(-1, -2) - np.eye(3)).max(axis=(-2, -1))
 
 
@@ -192,6 +189,6 @@ def momentum(run, moments):
 
 
 def flips(run, moments, axis):
-    """Return how often the axis has turned over against the angular momentum."""
+    """Return how often the axis has flipped with respect to the angular momentum."""
     row = dcm_from_quaternion(run["reference"])[:, "xyz".index(axis)]
     return int((np.diff(np.sign(row @ momentum(run, moments))) != 0).sum())

@@ -12,8 +12,8 @@ from .state import Numbers
 
 UNKNOWN = "not known"
 NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way"), UNKNOWN)
-#: Typical cases, most with the numbers of a public thread: the numbers of both programs, and the
-#: facts known about each.
+# Typical cases, most with the numbers of a public thread: the numbers of both programs, and the
+# known facts about each.
 EXAMPLES = {
     "A quaternion, scalar last for scalar first": (
         "0.9205 0.3602 -0.0702 0.1343\n0.7011 -0.2150 0.5873 0.3421",
@@ -68,16 +68,12 @@ EXAMPLES = {
 
 
 def _as_the_page_has_it(data):
-    """Plain data with lists in the place of tuples, so that it is the same
-    after its way to a page and back.
-    """
+    """Return plain data with lists instead of tuples, as they are after a round trip to a page."""
     return json.loads(json.dumps(data))
 
 
 class Known(traitlets.TraitType):
-    """What is known of one side's numbers: a dictionary with a program, a kind,
-    and for Euler angles a sequence.
-    """
+    """The known facts on one side's numbers: a program, a kind, and for Euler angles a sequence."""
 
     def validate(self, obj, value):
         if not isinstance(value, dict) or set(value) - set(NOTHING_KNOWN):
@@ -98,15 +94,15 @@ class Known(traitlets.TraitType):
 
 
 class WorkbenchFigure(MovingFigure):
-    """What two programs give for the same poses, and what they mean differently by it.
+    """The numbers of two programs for the same poses, and how the conventions differ.
 
     Attributes
     ----------
     first, second : str
-        What each program gave, as :func:`orientation_workbench.explain` reads it.
+        The numbers of each program, as :func:`orientation_workbench.explain` reads them.
     first_is, second_is : dict
-        What is known of each: ``program``, ``kind``, ``sequence``, ``order`` of a quaternion, and
-        ``way``, which the numbers lead; each ``'not known'`` at first.
+        The known facts about each: ``program``, ``kind``, ``sequence``, ``order`` of a quaternion,
+        and ``way``, the direction of the transformation; each ``'not known'`` at first.
     noise : float
         Degrees by which the two may differ besides rounding.
 
@@ -129,8 +125,8 @@ class WorkbenchFigure(MovingFigure):
     second_is = Known(NOTHING_KNOWN).tag(sync=True, state=True)
     noise = Numbers(0.0, (), 30.0, smallest=0.0).tag(sync=True, state=True)
     table = traitlets.Dict(_as_the_page_has_it(whole_table()), read_only=True).tag(
-        sync=True, told=True
+        sync=True, constant=True
     )
     examples = traitlets.Dict(_as_the_page_has_it(EXAMPLES), read_only=True).tag(
-        sync=True, told=True
+        sync=True, constant=True
     )

@@ -1,8 +1,8 @@
-"""The stills of the essay *Rotations*: what each of its stops shows where nothing can move.
+"""The stills of the essay *Rotations*, which show each of its stops where nothing can move.
 
-The page of the essay holds one figure, which stays while the text goes past. Its scenes are made by
-``js/scene.js``, which the page runs; ``scenes.json`` holds one of each stop, written down by
-``python -m tools.rotations``, and :mod:`orientation_figures.rotations.painter` paints it.
+The page of the essay has one figure, which stays while the text scrolls past. Its scenes are made
+by ``js/scene.js``, which the page runs. ``scenes.json`` contains one scene of each stop, written by
+``python -m tools.rotations``, and :mod:`orientation_figures.rotations.painter` draws it.
 """
 
 import json
@@ -12,7 +12,7 @@ from pathlib import Path
 from ..style import LIGHT, STYLE
 
 FOLDER = Path(__file__).parent
-#: The tones of paper for the parts of the figure that have the script's colours in the page.
+# The paper's tones for the parts of the figure that the script colours in the page.
 _OWN = {
     "graphite": "#474e57", "metal": "#a3abb4", "glass": "#5f86b8", "paper": "#ffffff",
     "lamp": "#d93025",
@@ -26,19 +26,19 @@ _DARK = {
     "ground": "#24292f",
     "shade": "#15181c",
 }
-#: How much black or white each tone has, in per cent, darkest
-#: first; the third is the colour itself.
+# The share of black or white in each tone in per cent, darkest first; the fourth is the colour
+# itself.
 _TONES = ((45, "#000"), (28, "#000"), (13, "#000"), (0, "#fff"), (14, "#fff"), (30, "#fff"))
 
 
 @cache
 def scenes():
-    """What is written down: how the eye stands, and the ``stills`` of all stops in their order."""
+    """Return the stored data: the camera, and the ``stills`` of all stops in order."""
     return json.loads((FOLDER / "scenes.json").read_text("utf8"))
 
 
 def style():
-    """The style sheet of the stills."""
+    """Return the style sheet of the stills."""
     own = ".orientation-figure.painted"
 
     def colours(table):
@@ -46,8 +46,10 @@ def style():
 
     tones = "".join(
         f"{own} .tone-{k}{{fill:{fill};stroke:none}}"
-        for k, (part, other) in enumerate(_TONES)
-        for fill in [f"color-mix(in srgb,currentColor,{other} {part}%)" if part else "currentColor"]
+        for k, (part, mixed_with) in enumerate(_TONES)
+        for fill in [
+            f"color-mix(in srgb,currentColor,{mixed_with} {part}%)" if part else "currentColor"
+        ]
     )
     names = "".join(f"{own} .{name}{{color:var(--{name})}}" for name in _OWN)
     flat = f"{own} :is(.ground,.shade,.muted,.star,.paper){{fill:currentColor}}"
@@ -56,13 +58,13 @@ def style():
 
 
 def _light(name):
-    """The colour of a class of the stills, such as ``B tone-3``, on a light page."""
+    """Return the colour of a class of the stills, such as ``B tone-3``, on a light page."""
     colour, _, tone = name.partition(" tone-")
-    part, other = _TONES[int(tone)]
+    part, mixed_with = _TONES[int(tone)]
     if colour in ("ground", "shade", "muted", "star", "paper"):
         part = 0
     known = (LIGHT | _OWN)[colour]
-    towards = 0 if other == "#000" else 255
+    towards = 0 if mixed_with == "#000" else 255
     mixed = (
         round(int(known[k : k + 2], 16) * (1 - part / 100) + towards * part / 100)
         for k in (1, 3, 5)
@@ -81,9 +83,7 @@ class Stop:
         self.still = scenes()["stills"][known.index(name)]
 
     def svg(self, colours=None):
-        """The SVG element; ``colours`` as in
-        :func:`orientation_figures.rotations.painter.picture`.
-        """
+        """Return the SVG element, with ``colours`` as in :func:`.painter.picture`."""
         from .painter import picture
 
         return picture(self.still, scenes(), colours)
@@ -102,8 +102,9 @@ class Stop:
 
 
 class Gimbal(Stop):
-    """The gimbal itself, which on the page of the essay stays and moves, and
-    elsewhere stands as one stop has it.
+    """The gimbal itself, which stays and moves on the page of the essay.
+
+    Elsewhere it is shown at one stop.
     """
 
     def _repr_html_(self):

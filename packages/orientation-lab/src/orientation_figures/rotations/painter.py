@@ -1,8 +1,8 @@
-"""Paint a scene of the essay on paper: flat faces, the farthest first.
+"""Draw a scene of the essay on paper: flat faces, the farthest first.
 
-A scene is what ``js/scene.js`` makes of a state: shapes with their places and colours. The page
-paints it with light and gloss; here every face has one of a few tones of its colour, so that it
-reads in light and in dark and on paper.
+A scene is the result of ``js/scene.js`` for a state: shapes with their places and colours. The page
+renders it with light and gloss; here every face has one of a few tones of its colour, so that it is
+legible in light, in dark and on paper.
 """
 
 from html import escape
@@ -12,17 +12,17 @@ import numpy as np
 from ..drawing import typeset
 
 TONES = 6
-#: Parts that are no thicker than this are drawn as lines.
+# Parts that are no thicker than this are drawn as lines.
 THIN = 0.032
-#: Fainter parts are drawn as lines, too, because nobody can see faces in them.
+# Fainter parts are drawn as lines, too, because nobody can see faces in them.
 FAINT = 0.5
-#: An edge that is cut off by less than this looks sharp on paper.
+# An edge with a smaller bevel looks sharp on paper.
 FINEST_BEVEL = 0.045
 TURN = 2 * np.pi
-#: A smaller difference is rounding, which differs between processors, so everything this close to
-#: edge-on is painted alike.
+# A smaller difference is rounding, which differs between processors, so everything this close to
+# edge-on is drawn alike.
 SMALL = 1e-9
-#: The fractions of a pixel in which corners are counted.
+# The resolution of corners, in fractions of a pixel.
 FINE = 2
 
 
@@ -76,11 +76,12 @@ def _box(x, y, z, bevel):
             face[:, u] = np.array((-1, 1, 1, -1)) * (half[u] - bevel)
             face[:, v] = side * np.array((-1, -1, 1, 1)) * (half[v] - bevel)
             faces.append(face)
-            for other in (-1, 1) if bevel else ():  # the edges along this axis
+            # The edges along this axis.
+            for sign in (-1, 1) if bevel else ():
                 edge = np.zeros((4, 3))
                 edge[:, axis] = np.array((-1, 1, 1, -1)) * (half[axis] - bevel)
                 edge[:, u] = side * (half[u] - np.array((0, 0, bevel, bevel)))
-                edge[:, v] = other * (half[v] - np.array((bevel, bevel, 0, 0)))
+                edge[:, v] = sign * (half[v] - np.array((bevel, bevel, 0, 0)))
                 faces.append(_outwards(edge))
     for signs in np.ndindex(2, 2, 2) if bevel else ():
         corner = (2 * np.array(signs) - 1) * (half - bevel * (1 - np.eye(3)))
@@ -102,10 +103,10 @@ SHAPES = {"arc": _arc, "rod": _rod, "ball": _ball, "box": _box, "ribbon": _ribbo
 
 
 class Paper:
-    """The square sheet that a scene is painted on, ``size`` pixels wide.
+    """The square sheet on which a scene is drawn, ``size`` pixels wide.
 
-    ``world`` says how the eye stands: ``distance``, ``target``, ``half``, ``ground``
-    and ``light`` of ``scenes.json``.
+    ``world`` describes the camera: ``distance``, ``target``, ``half``, ``ground`` and ``light`` of
+    ``scenes.json``.
     """
 
     def __init__(self, view, world):
@@ -115,9 +116,7 @@ class Paper:
         self.eye = self.target + world["distance"] * self.view[2]
 
     def place(self, points):
-        """Where points are seen, in pixels right and down from the middle, and
-        how far towards the eye they lie.
-        """
+        """Return the places of points in pixels right and down from the middle, and their depth."""
         x, y, z = np.moveaxis((np.asarray(points) - self.target) @ self.view.T, -1, 0)
         near = (
             self.world["distance"] / (self.world["distance"] - z) * self.half / self.world["half"]
@@ -125,13 +124,13 @@ class Paper:
         return np.stack((near * x, -near * y), axis=-1), z
 
     def faces(self, item):
-        """The faces of a shape that are seen: depth, class and pixels of each."""
+        """Iterate over the visible faces of a shape: depth, class and pixels of each."""
         shape, of, rows, origin, size, colour, alpha, _ = item
         thick = {"rod": size[0], "arc": of[1] if shape == "arc" else 0}.get(shape, 1)
         if shape == "tube" or thick < THIN or (shape in ("rod", "arc") and alpha < FAINT):
             yield from self.thread(item)
             return
-        # On the largest one the corners would show.
+        # On the largest shape the corners of the usual number of sides would show.
         local = _rod(*of, sides=40) if colour == "ground" else SHAPES[shape](*of)
         both = shape == "ribbon"
         for face in local:
@@ -151,7 +150,7 @@ class Paper:
             tone = int(np.clip(np.floor((light - 0.36) / 0.82 * TONES + SMALL), 0, TONES - 1))
             pixels, depth = self.place(points)
             # A large flat part is sorted by its farthest point, since the ground is behind
-            # everything that stands on it.
+            # everything that is on it.
             yield (
                 (-50 if colour == "ground" else depth.mean()),
                 f"{colour} tone-{tone}",
@@ -160,8 +159,9 @@ class Paper:
             )
 
     def thread(self, item):
-        """A thin thing is one band that faces the eye, in a few pieces,
-        since others may lie between them.
+        """Draw a thin shape as a band that faces the camera.
+
+        It consists of a few pieces, since other shapes may lie between them.
         """
         shape, of, rows, origin, size, colour, alpha, _ = item
         if shape == "tube":
@@ -190,7 +190,7 @@ class Paper:
             yield depth[piece].mean(), f"{colour} tone-3", band, alpha
 
     def shadow(self, item):
-        """The outline of a shape's faces where the light throws them on the ground."""
+        """Iterate over the outlines of the shadows of a shape's faces on the ground."""
         shape, of, rows, origin, size, *_ = item
         if shape == "ball" or min(size[:2]) < 0.06 or (shape == "arc" and of[1] < THIN):
             # It is too small for anyone to miss.
@@ -207,15 +207,15 @@ class Paper:
 
 
 def picture(still, world, colours=None):
-    """The SVG element of one stop, with the words that say what is seen.
+    """Return the SVG element of one stop, with its text description.
 
-    ``colours`` gives the colour of a class, for programs that do
-    not know the style sheet of a page.
+    ``colours`` gives the colour of a class, for programs that do not know the style sheet of a
+    page.
     """
     paper = Paper(still["view"], world)
-    found = [face for item in still["items"] for face in paper.faces(item)]
-    found += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
-    found.sort(key=lambda face: round(face[0], 9))
+    faces = [face for item in still["items"] for face in paper.faces(item)]
+    faces += [face for item in still["items"] if item[7] for face in paper.shadow(item)]
+    faces.sort(key=lambda face: round(face[0], 9))
     marks, kind, data = [], None, []
 
     def end():
@@ -227,7 +227,7 @@ def picture(still, world, colours=None):
             marks.append(f'<path class="{name}"{faint} d="{"".join(data)}"/>')
         data.clear()
 
-    for _, name, pixels, alpha in found:
+    for _, name, pixels, alpha in faces:
         if (name, alpha) != kind or alpha < 0.97:
             end()
             kind = (name, alpha)
@@ -254,8 +254,9 @@ def picture(still, world, colours=None):
     )
     marks.insert(0, f"<defs>{letters}</defs>" if letters else "")
     half, inner = FINE * paper.half, ""
-    if colours:  # what of the sheet is drawn on, for a picture that is cut out of it
-        corners = FINE * np.concatenate([face[2] for face in found])
+    # A picture that is cut out of the sheet has the bounds of what is drawn.
+    if colours:
+        corners = FINE * np.concatenate([face[2] for face in faces])
         left, top, right, bottom = *np.floor(corners.min(axis=0)), *np.ceil(corners.max(axis=0))
         inner = f' data-box="{left:.0f} {top:.0f} {right - left:.0f} {bottom - top:.0f}"'
     return (
@@ -266,7 +267,7 @@ def picture(still, world, colours=None):
 
 
 def words(still):
-    """What a stop shows, for those who do not see it: first what is there, then what it becomes."""
+    """Return a stop's text description: the parts of the figure, then what becomes of them."""
     return (
         still["before"]
         if still["before"] == still["after"]
@@ -275,5 +276,5 @@ def words(still):
 
 
 def _pairs(points):
-    """Numbers as short as a path may have them: a minus parts two of them as well as a blank."""
+    """Return numbers as short as a path may have them; a minus sign separates two of them, too."""
     return " ".join(map(str, points.ravel())).replace(" -", "-")

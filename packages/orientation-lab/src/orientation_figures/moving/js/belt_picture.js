@@ -8,8 +8,8 @@ export const WALL = [0.9, 0.06, 0.9];
 export const PLATE = [0.62, 0.09, 0.44];
 
 export function fullTurns(angle) {
-  const found = [1, 2].filter((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-8);
-  return found.length ? found[0] : 0;
+  const numbers = [1, 2].filter((turns) => Math.abs(angle - 2 * Math.PI * turns) < 1e-8);
+  return numbers.length ? numbers[0] : 0;
 }
 
 export function quaternionAt(angle, passed, part) {

@@ -45,7 +45,7 @@ export function picture(sheet, edges, dcms, path) {
     sheet.line(ends, on ? 'accent' : 'muted', on ? 'thick' : 'guide');
   }
   sheet.layer = 1;
-  const near = enumerate(names).flatMap(([k, one]) => names.slice(k + 1).map((other) => length(subtract(spots[one], spots[other]))));
+  const near = enumerate(names).flatMap(([k, name]) => names.slice(k + 1).map((later) => length(subtract(spots[name], spots[later]))));
   const reach = Math.min(REACH, 0.44 * Math.min(...near) / SIZE);
   for (const name of names) {
     const place = sheet.placed(...spots[name]);

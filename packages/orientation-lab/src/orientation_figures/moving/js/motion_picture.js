@@ -20,8 +20,8 @@ export const COVER = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]];
 export const LONGEST_EDGE = 1.4;
 
 export function bodyOf(moments) {
-  const found = ['racket', 'book'].filter((name) => length(subtract(MOMENTS[name], moments)) === 0);
-  return found.length ? found[0] : 'block';
+  const names = ['racket', 'book'].filter((name) => length(subtract(MOMENTS[name], moments)) === 0);
+  return names.length ? names[0] : 'block';
 }
 
 export function edgesOf(moments) {

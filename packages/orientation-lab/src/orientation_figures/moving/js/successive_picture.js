@@ -42,8 +42,8 @@ export function picture(sheet, turns, kind, share, compare, lit = false) {
   }
   const letters = [...LETTERS].slice(0, turns.length + 1);
   if (compared) {
-    const [other, otherKind] = secondChain(turns, kind, compare);
-    const otherNow = partly(other, share);
+    const [otherTurns, otherKind] = secondChain(turns, kind, compare);
+    const otherNow = partly(otherTurns, share);
     const otherFrames = chain(otherNow, otherKind);
     if (last) {
       const [between, angle] = axisAngleFromDcm(multiply(otherFrames.at(-1), transpose(end)));

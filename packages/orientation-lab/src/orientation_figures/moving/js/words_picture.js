@@ -150,8 +150,8 @@ export class Words {
   circle(normal, { radius = 1, origin = [0, 0, 0], colour = 'muted', kind = 'guide', half = '' } = {}) {
     const axis = unit(normal);
     const sizes = axis.map((entry) => Math.abs(entry));
-    const level = cross(axis, this.view[2]), other = IDENTITY[sizes.indexOf(Math.min(...sizes))];
-    const across = scale(radius, unit(half && length(level) > 1e-6 ? level : cross(axis, other)));
+    const level = cross(axis, this.view[2]), farthestAxis = IDENTITY[sizes.indexOf(Math.min(...sizes))];
+    const across = scale(radius, unit(half && length(level) > 1e-6 ? level : cross(axis, farthestAxis)));
     const u = this.onSheet(across), v = this.onSheet(cross(axis, across));
     const middle = this.onSheet(origin), depth = this.depthOf([origin]);
     for (const [k, layer] of enumerate(layers(kind))) {
@@ -182,7 +182,7 @@ export class Words {
     const along = Math.abs(facing) < 0.9999 ? unit(subtract(far, near)) : [1, 0];
     const bulge = scale(pixels * Math.abs(facing), along), side = scale(pixels, [-along[1], along[0]]);
     const front = halfRound(side, bulge).map((point) => add(far, point));
-    const back = halfRound(scale(-1, side), scale(-1, bulge)).map((one) => add(near, one));
+    const back = halfRound(scale(-1, side), scale(-1, bulge)).map((point) => add(near, point));
     this.path('MCCLCCZ', [...front, ...back], `fill-${fill} ${colour}`, depth);
     for (const [place, seen] of [[near, facing < 0], [far, facing > 0]]) {
       const shown = seen ? 1 : 0;

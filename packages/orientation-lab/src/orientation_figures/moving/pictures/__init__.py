@@ -1,3 +1,4 @@
-"""What the moving figures show, one module for each kind: painted on paper as it
-stands, and in the page translated.
+"""The pictures of the interactive figures, one module for each kind.
+
+Python draws them on paper, and they are translated for the page.
 """

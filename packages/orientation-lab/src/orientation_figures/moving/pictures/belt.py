@@ -15,9 +15,9 @@ PLATE = (0.62, 0.09, 0.44)
 
 
 def full_turns(angle):
-    """Return after how many full turns the plate stands, 1 or 2; else 0."""
-    found = [turns for turns in [1, 2] if abs(angle - 2 * math.pi * turns) < 1e-8]
-    return found[0] if len(found) else 0
+    """Return the number of full rotations of the plate if it is 1 or 2, else 0."""
+    numbers = [turns for turns in [1, 2] if abs(angle - 2 * math.pi * turns) < 1e-8]
+    return numbers[0] if len(numbers) else 0
 
 
 def quaternion_at(angle, passed, part):
@@ -28,14 +28,14 @@ def quaternion_at(angle, passed, part):
     share = min(1, max(0, 1.5 * part - 0.25))
     turns = full_turns(angle)
     if turns == 2:
-        # Circles through 1 on the sphere of quaternions, from a great one down to a point.
+        # Circles through 1 on the sphere of quaternions, from a great circle down to a point.
         tilt, way = passed * math.pi / 2, 2 * math.pi * share
         size = math.cos(tilt)
         return [
             1 - size * size * (1 - math.cos(way)), 0, size * math.sin(way),
             size * math.sin(tilt) * (1 - math.cos(way))
         ]  # fmt: skip
-    # Half circles from 1 to -1, from one way round to the other.
+    # Half circles from 1 to -1, from one side to the other.
     tilt, half = passed * math.pi if turns == 1 else 0, angle * share / 2
     return [math.cos(half), 0, math.cos(tilt) * math.sin(half), math.sin(tilt) * math.sin(half)]
 

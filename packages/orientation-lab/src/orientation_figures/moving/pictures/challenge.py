@@ -10,7 +10,7 @@ BOX = (1.1, 0.8, 0.35)
 
 
 def picture(sheet, dcm, ghost=None):
-    """The box, and where another one stands that shows the goal or the way there."""
+    """Draw the box, and a ghost that shows the goal or the way there."""
     if ghost is not None:
         sheet.faded = True
         sheet.box(ghost, BOX, colour="E")

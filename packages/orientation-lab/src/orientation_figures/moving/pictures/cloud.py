@@ -19,7 +19,7 @@ def between(k, step):
 
 
 def normals(k):
-    """Three standard normal numbers, the same in every language (Box and Muller)."""
+    """Return three standard normal numbers, the same in every language (Box and Muller)."""
     first = math.sqrt(-2 * math.log((k + 0.5) / COUNT))
     second = math.sqrt(-2 * math.log(1 - between(k, STEPS[1])))
     turn = 2 * math.pi * between(k, STEPS[0])
@@ -31,7 +31,7 @@ def normals(k):
 
 
 def orientations(large, small, body):
-    """Direction cosine matrices with errors about z of the ground, or of the body."""
+    """Return direction cosine matrices with errors about z of the ground, or of the body."""
     errors = [
         dcm_from_rotation_vector([small * x, small * y, large * z])
         for x, y, z in [normals(k) for k in range(COUNT)]

@@ -1,4 +1,4 @@
-"""What several pictures have in common."""
+"""Functions that several pictures share."""
 
 import math
 
@@ -8,7 +8,7 @@ from ...vectors import dot, length, multiply, scale, subtract
 
 
 def around(sheet, axis, angle, start, *, colour="muted", head=False, kind=""):
-    """The way of the tip of ``start`` when it turns about the axis."""
+    """Return the path of the tip of ``start`` as it rotates about the axis."""
     foot = scale(dot(start, axis), axis)
     arm = subtract(start, foot)
     if length(arm) > 1e-6:
@@ -18,20 +18,18 @@ def around(sheet, axis, angle, start, *, colour="muted", head=False, kind=""):
 
 
 def chain(turns, kind="body", start=simple_dcm("z", 0.0)):
-    """The direction cosine matrices of the first frame and of
-    every further one with respect to N.
-    """
+    """Return the matrices of the first frame and of all further ones relative to N."""
     frames = [start]
     for axis, angle in turns:
         turn = simple_dcm(axis, angle)
-        # A turn about the frame's own unit vector multiplies from the
-        # left, one about N's from the right.
+        # A rotation about the frame's own unit vector multiplies from the left, one about N's from
+        # the right.
         frames.append(multiply(turn, frames[-1]) if kind == "body" else multiply(frames[-1], turn))
     return frames
 
 
 def partly(turns, share):
-    """The turns of a chain that has come part of the way: each begins and ends at rest."""
+    """Return the rotations of a chain after a share of them; each begins and ends at rest."""
     done = share * len(turns)
     whole = min(math.floor(done + 1e-9), len(turns))
     rest = max(0, done - whole)

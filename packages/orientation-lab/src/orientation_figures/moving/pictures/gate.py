@@ -1,6 +1,6 @@
 """The picture of a walk past a car: the error of the heading over time."""
 
-#: The edges of the plot in seconds and in degrees. The car stands between two of the seconds.
+# The edges of the plot in seconds and in degrees. The car is between two of the seconds.
 FIRST = 8
 LAST = 45
 LARGEST = 60

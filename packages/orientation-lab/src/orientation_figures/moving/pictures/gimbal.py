@@ -17,9 +17,7 @@ SYMBOLS = (r"$\psi$", r"$\theta$", r"$\varphi$")
 
 
 def device(angles, sequence):
-    """Return the frames as rows along A, the indices of the axes in the
-    sequence, and the axes themselves.
-    """
+    """Return the frames as rows along A, the indices of the sequence's axes, and these axes."""
     B, b, c = [simple_dcm(axis, angle) for axis, angle in zip(sequence, angles)]
     C = multiply(b, B)
     D = multiply(c, C)
@@ -28,8 +26,10 @@ def device(angles, sequence):
 
 
 def picture(sheet, gimbal, close=False, lit=None):
-    """Near gimbal lock (``close``) the first and the third axis stand out;
-    ``lit`` is the number that is touched.
+    """Draw the gimbal.
+
+    Near gimbal lock (``close``) the first and the third axis are emphasised. ``lit`` is the number
+    that the reader touches.
     """
     B, C, D = gimbal["B"], gimbal["C"], gimbal["D"]
     at, axes = gimbal["at"], gimbal["axes"]
@@ -37,8 +37,8 @@ def picture(sheet, gimbal, close=False, lit=None):
     def near(direction):
         return -1 if dot(direction, sheet.view[2]) < 0 else 1
 
-    # Shells about one centre, from the camera outwards. The near half of each covers everything
-    # inside it.
+    # The parts are shells about one centre, from the camera outwards. The near half of each covers
+    # everything inside it.
     down = scale(-1, axes[0])
     sheet.layer = 6 * near(down)
     sheet.cylinder(scale(1.3, down), scale(1.86, down), 0.13, "A")
@@ -74,8 +74,7 @@ def picture(sheet, gimbal, close=False, lit=None):
             sheet.layer = 7 * near(arm)
             begin = (INNER if k == 2 else OUTER) + 0.1
             sheet.line([scale(begin, arm), scale(END, arm)], colour, "thick" if same else "guide")
-        # At lock the names of the two axes stand side by side, even if the axes point opposite
-        # ways.
+        # At lock the names of the two axes are side by side, even if the axes point opposite ways.
         end = scale(-END if same and dot(axis, axes[0]) < 0 else END, axis)
         sheet.layer = 7 * near(end)
         sheet.turn(axis, 4.4, rests[k], radius=0.16, origin=scale(0.9, end), colour=colour)

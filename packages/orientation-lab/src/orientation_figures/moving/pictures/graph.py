@@ -14,8 +14,9 @@ CORNERS = ((-19, 18), (-19, -18), (19, 18), (19, -18))
 
 
 def places(edges):
-    """Return where each frame is drawn, pixels to the right and down: its
-    depth in the tree, and its line.
+    """Return where each frame is drawn, in pixels to the right and down.
+
+    The rows are the depths in the tree, and every leaf has a column.
     """
     children, depth, line, leaves = {"N": []}, {"N": 0}, {}, []
     names = ["N", *[edge[0] for edge in edges]]
@@ -44,7 +45,7 @@ def places(edges):
 
 
 def picture(sheet, edges, dcms, path):
-    """Of each frame its matrix, along N; the path that is marked is a list of frames."""
+    """Draw the frames with their matrices along N; the marked ``path`` is a list of frames."""
     spots = places(edges)
     names = ["N", *[edge[0] for edge in edges]]
     for edge in edges:
@@ -53,11 +54,11 @@ def picture(sheet, edges, dcms, path):
         ends = [sheet.placed(*spots[reference]), sheet.placed(*spots[frame])]
         sheet.line(ends, "accent" if on else "muted", "thick" if on else "guide")
     sheet.layer = 1
-    # The arrows grow shorter where many frames crowd.
+    # Shorten the arrows where many frames crowd.
     near = [
-        length(subtract(spots[one], spots[other]))
-        for k, one in enumerate(names)
-        for other in names[k + 1 :]
+        length(subtract(spots[name], spots[later]))
+        for k, name in enumerate(names)
+        for later in names[k + 1 :]
     ]
     reach = min(REACH, 0.44 * min(near) / SIZE)
     for name in names:

@@ -1,16 +1,16 @@
-"""The pictures of a body that tumbles: the body itself, and the plots of how the drift grows."""
+"""The pictures of a tumbling body: the body itself, and the plots of the growth of the drift."""
 
 import math
 
 from ...vectors import AXES, IDENTITY, add, cross, dot, length, scale, subtract, times, transpose
 
-#: Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The
-#: racket's are those that Brody (1985) measured, rounded; its a_x runs along its handle and a_z out
-#: of its face. The book's a_x runs along its long edges.
+# Principal moments of inertia about a_x, a_y and a_z in g m^2; only their ratios matter. The
+# racket's are those that Brody (1985) measured, rounded; its a_x runs along its handle and a_z out
+# of its face. The book's a_x runs along its long edges.
 MOMENTS = {"racket": (1.2, 16.0, 17.0), "book": (6.9, 13.3, 19.7)}
 SECONDS = 20.0
 SAMPLE = 0.1  # seconds between two points of a curve
-ROUNDING = 1e-15  # what is below it is the rounding of one processor, and is drawn here
+ROUNDING = 1e-15  # smaller values are the rounding of one processor, and are drawn here
 SIZE = 118
 # The largest length of an arrow.
 LONGEST = 1.25
@@ -41,20 +41,21 @@ STRINGS = [
 ]
 THROAT = ((0.065, 0.206, 0), (-0.24, 0, 0), (0.065, -0.206, 0))
 HANDLE = ((-0.24, 0, 0), (-0.85, 0, 0))
-# The widest cut through the middle of a block.
+# The widest section through the middle of a block.
 COVER = ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))
 LONGEST_EDGE = 1.4
 
 
 def body_of(moments):
-    """Return what has these moments of inertia."""
-    found = [name for name in ["racket", "book"] if length(subtract(MOMENTS[name], moments)) == 0]
-    return found[0] if len(found) else "block"
+    """Return the name of the body that has these moments of inertia."""
+    names = [name for name in ["racket", "book"] if length(subtract(MOMENTS[name], moments)) == 0]
+    return names[0] if len(names) else "block"
 
 
 def edges_of(moments):
-    """Return the edges of a uniform block: about each axis the moment is
-    that of the two other edges squared.
+    """Return the edges of a uniform block.
+
+    The moment about each axis is proportional to the sum of the squares of the two other edges.
     """
     edges = [math.sqrt(max(sum(moments) / 2 - moment, 0)) for moment in moments]
     return scale(LONGEST_EDGE / max(edges), edges)
@@ -74,8 +75,9 @@ def outlines_of(moments):
 
 
 def placed(points, dcm):
-    """Components along N of points along A: the rows of the matrix are
-    A's unit vectors, skewed or not.
+    """Return components along N of points along A.
+
+    The rows of the matrix are A's unit vectors, orthogonal or not.
     """
     columns = transpose(dcm)
     return [times(columns, point) for point in points]
@@ -119,7 +121,8 @@ def block(sheet, dcm, edges):
     for k, fill in enumerate([26, 26, 8]):
         u, v = half[(k + 1) % 3], half[(k + 2) % 3]
         for side in [-1, 1]:
-            # Cross products of the edges: the faces of a skewed box do not look along the rows.
+            # Use cross products of the edges, because the faces of a skewed box are not normal to
+            # the rows.
             if side * dot(cross(u, v), sheet.view[2]) > 0:
                 corners = [add(u, v), subtract(v, u), scale(-1, add(u, v)), subtract(u, v)]
                 faces = [add(scale(side, half[k]), corner) for corner in corners]
@@ -136,7 +139,7 @@ def down(part, value):
 
 
 def axes(sheet):
-    """The axes of the plots, without their curves."""
+    """Draw the axes of the plots, without their curves."""
     origin = [0, 0, 0]
     for part, title, marks in [
         [
@@ -204,7 +207,7 @@ def drawing(figure, Sheet):
 
 
 def plot(figure, Sheet):
-    """Return the ``Drawing`` of how the drift has grown up to ``time``."""
+    """Return the ``Drawing`` of the growth of the drift up to ``time``."""
     import numpy as np
 
     from orientation.euler_angles import body_fixed_from_dcm, gimbal_lock_margin

@@ -10,7 +10,7 @@ SMALL = 1e-9
 
 
 def off(row):
-    """Return whether a row is not of length 1."""
+    """Return whether a row has a length other than 1."""
     return abs(dot(row, row) - 1) > SMALL
 
 
@@ -20,7 +20,7 @@ def mirrored(rows):
 
 
 def picture(sheet, rows, nearest):
-    """``nearest`` is the nearest triad, or None where several are equally near."""
+    """Draw the rows, and ``nearest``, the nearest triad, or None if several are equally near."""
     sheet.triad("N", IDENTITY, length=REACH)
     if nearest is not None:
         sheet.layer = -1
@@ -38,7 +38,7 @@ def picture(sheet, rows, nearest):
             sheet.line([row, unit(row)], "B", "thick")
             sheet.ring(unit(row), "B", 5)
     for i, j in [[0, 1], [1, 2], [2, 0]]:
-        # The corner between two rows: a square, or what it has become.
+        # The corner between two rows: a square if they are orthogonal.
         u, v = scale(0.2, unit(rows[i])), scale(0.2, unit(rows[j]))
         fails = abs(dot(rows[i], rows[j])) > SMALL
         sheet.line([u, add(u, v), v], "B" if fails else "muted", "thick" if fails else "")
@@ -56,12 +56,12 @@ def drawing(figure, Sheet):
     # Several matrices are equally near.
     except ValueError:
         nearest = None
-    said = ", ".join(
+    arrows = ", ".join(
         f"a {name} at ({', '.join(f'{entry:.2f}' for entry in row)})"
         for name, row in zip("xyz", rows)
     )
     sheet = Sheet(
-        f"In the frame N three arrows that should be the unit vectors of a triad A: {said}. "
+        f"In the frame N three arrows that should be the unit vectors of a triad A: {arrows}. "
         f"{figure.check() or 'They are a direction cosine matrix'}. "
         + (
             "Dotted arrows show the nearest triad."

@@ -1,6 +1,4 @@
-"""The picture of the quaternion and its double, and of three
-ways from one orientation to another.
-"""
+"""The pictures of the quaternion and its double, and of three ways between orientations."""
 
 import math
 
@@ -37,8 +35,9 @@ TOPS = (30, 60, 90, 120, 180, 360, 720)
 
 
 def double(sheet, axis, angle, dcm, more):
-    """A frame that turns in N, and beside it the circle of half the angle
-    with q, and -q if there is ``more``.
+    """Draw a frame that rotates in N, and beside it the circle of half the angle.
+
+    The circle shows q, and also -q if ``more`` is true.
     """
     knob, sizes = scale(KNOB, axis), [abs(entry) for entry in axis]
     far = IDENTITY[sizes.index(min(sizes))]
@@ -49,7 +48,7 @@ def double(sheet, axis, angle, dcm, more):
     sheet.arrow(axis, colour="accent")
     sheet.dot(knob, "accent", 5)
     sheet.label(knob, r"$\hat{e}$", "accent", [17, 2])
-    # The angle, on its second turn outside the first.
+    # The angle of the second rotation is drawn outside the first.
     rest = angle - 2 * math.pi
     second = rest > 1e-9
     if second:
@@ -88,7 +87,7 @@ def round_to(sheet, radius, angle):
 
 
 def angle_between(before, after):
-    """Return the angle of the turn between two orientations, NaN where one of them is missing."""
+    """Return the angle between two orientations, or NaN if one of them is missing."""
     return (
         math.nan
         if before is None or after is None
@@ -97,7 +96,7 @@ def angle_between(before, after):
 
 
 def ways(sheet, ends, tracks, speeds, now, raw, k, share):
-    """The tip of a unit vector, the ``k``-th, on its three ways; what is None is not there.
+    """Draw the tip of the ``k``-th unit vector on its three ways, without those that are None.
 
     ``tracks`` are the orientations at even times and ``speeds`` those between them; ``now`` are the
     three orientations, and ``raw`` is the row of the blended entries.
@@ -130,10 +129,10 @@ def ways(sheet, ends, tracks, speeds, now, raw, k, share):
 
 
 def plotted(speeds):
-    """Return the top of the scale, the pieces of each way's curve below it, and
-    the fastest speed if it is cut off.
+    """Return the top of the scale, the pieces of each way's curve below it, and a clipped maximum.
 
-    Speeds come in radians per second, and all else is in degrees.
+    The last is the fastest speed if it is cut off. Speeds are in radians per second, and all
+    results are in degrees.
     """
     fast = degrees(max([0, *[speed for track in speeds for speed in track if speed >= 0]]))
     tops = [top for top in TOPS if top >= fast]

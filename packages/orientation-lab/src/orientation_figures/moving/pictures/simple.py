@@ -14,7 +14,7 @@ VANE = (
 
 
 def picture(sheet, k, angle, dcm):
-    """``k`` is the index of the shared unit vector."""
+    """Draw the rotation; ``k`` is the index of the shared unit vector."""
     axis, pointer = IDENTITY[k], dcm[(k + 1) % 3]
     # The vane, upright on the shared unit vector; looking down that, it is seen edge on.
     sheet.area([add(scale(along, pointer), scale(up, axis)) for along, up in VANE], "A", 26)

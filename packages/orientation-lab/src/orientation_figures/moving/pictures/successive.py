@@ -21,7 +21,7 @@ COMPARISONS = (
 
 
 def second_chain(turns, kind, compare):
-    """Return the turns of the chain that is compared, and their kind."""
+    """Return the rotations of the second chain, and their kind."""
     k = COMPARISONS.index(compare)
     if k == 4:
         return [turns, "space" if kind == "body" else "body"]
@@ -29,13 +29,15 @@ def second_chain(turns, kind, compare):
 
 
 def axis_of(frames, turns, kind, k):
-    """Return the direction that a turn of the chain is about, along N."""
+    """Return the direction of the axis of a rotation of the chain, along N."""
     return (frames[k] if kind == "body" else IDENTITY)[AXES.index(turns[k][0])]
 
 
 def picture(sheet, turns, kind, share, compare, lit=False):
-    """Where a number is touched (``lit``) the frames on the way step back,
-    as they do beside a second chain.
+    """Draw the chain.
+
+    If the reader touches a number (``lit``), the intermediate frames are faded, as beside a second
+    chain.
     """
     now = partly(turns, share)
     frames = chain(now, kind)
@@ -55,13 +57,13 @@ def picture(sheet, turns, kind, share, compare, lit=False):
         sheet.triad(LETTERS[last], end)
     letters = list(LETTERS)[: len(turns) + 1]
     if compared:
-        other, other_kind = second_chain(turns, kind, compare)
-        other_now = partly(other, share)
+        other_turns, other_kind = second_chain(turns, kind, compare)
+        other_now = partly(other_turns, share)
         other_frames = chain(other_now, other_kind)
         if last:
             between, angle = axis_angle_from_dcm(multiply(other_frames[-1], transpose(end)))
-            # The axis between two orientations has the same components in both: along
-            # N it is found through either.
+            # The axis between two orientations has the same components in both, so along N it can
+            # be found through either.
             if angle > 0.02:
                 for row in end:
                     around(sheet, times(transpose(end), between), angle, row)
@@ -72,7 +74,7 @@ def picture(sheet, turns, kind, share, compare, lit=False):
 
 
 def strip(sheet, frames, turns, kind, colours, down, radius):
-    """Draw the frames side by side in their order, with the unit vector that each turn is about."""
+    """Draw the frames side by side in order, with the unit vector of each rotation's axis."""
     width, reach = 340 / len(colours), radius / SIZE
 
     def at(x, y=0):
@@ -89,7 +91,7 @@ def strip(sheet, frames, turns, kind, colours, down, radius):
             short = max(0, (end - start - 26) / 2)
             sheet.arrow(at(end - short, 4), start=at(start + short, 4), colour="muted")
             letter, axis = "N" if kind == "space" else colours[k - 1], turns[k - 1][0]
-            # The frames on the way of the second chain have no names.
+            # The intermediate frames of the second chain have no names.
             name = axis if letter == "muted" else rf"\hat{{{letter.lower()}}}_{axis}"
             sheet.label(at((start + end) / 2, -8), f"${name}$", "ink", [0, 0], 15)
 

@@ -1,4 +1,4 @@
-"""The picture of a triad turned in a frame about an axis."""
+"""The picture of a triad rotated in a frame about an axis."""
 
 import math
 

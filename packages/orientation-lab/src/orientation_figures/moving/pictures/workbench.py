@@ -1,4 +1,4 @@
-"""The picture of the workbench: the last pose of each side, as its numbers are read."""
+"""The picture of the workbench: the last pose of each side, as its numbers are interpreted."""
 
 from ...vectors import IDENTITY, scale
 
@@ -8,7 +8,7 @@ SIZE = 100
 
 
 def picture(sheet, dcms):
-    """Of A and B the matrices, or None where the numbers can't be read."""
+    """Draw the matrices of A and B, or None where the numbers cannot be read."""
     for k, letter in enumerate(["A", "B"]):
         origin = scale((2 * k - 1) * APART / SIZE, sheet.view[0])
         sheet.triad("N", IDENTITY, origin=origin, length=REACH)
@@ -28,7 +28,7 @@ def drawing(figure, Sheet):
         for side in (figure.first_is, figure.second_is)
     ]
     programs = [side.pop("program", None) for side in known]
-    found = explain(
+    explanation = explain(
         figure.first,
         figure.second,
         first_declared=known[0],
@@ -37,16 +37,16 @@ def drawing(figure, Sheet):
         second_program=programs[1],
         noise=np.radians(figure.noise),
     )
-    said = " ".join(str(found).splitlines())
+    findings = " ".join(str(explanation).splitlines())
     sheet = Sheet(
         "Two pairs of triads side by side, each the triad of the frame N and from the same origin "
         "another: on the left that of A, as the first program's numbers are read, on the right "
         "that of B, as the second's. "
-        f"{said}",
+        f"{findings}",
         scale=SIZE,
     )
     dcms = [None, None]
-    for side, text in enumerate((figure.first, figure.second) if found.chains else ()):
+    for side, text in enumerate((figure.first, figure.second) if explanation.chains else ()):
         numbers = read_poses(text, ("first", "second")[side], known[side].get("kind")).numbers
-        dcms[side] = dcms_from_numbers(found.chains[0][side], numbers[-1:])[0]
+        dcms[side] = dcms_from_numbers(explanation.chains[0][side], numbers[-1:])[0]
     return sheet.paint(picture, dcms)
