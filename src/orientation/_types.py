@@ -1,8 +1,8 @@
-"""What functions take and give, for readers' editors and type checkers.
+"""Types of arguments and results, for readers' editors and type checkers.
 
-SymPy has no types of its own. What it makes is told here, as in the functions themselves, by what
-its objects have and no others: free symbols. Annotations are not evaluated, so neither SymPy nor
-NumPy is loaded for the sake of a name.
+SymPy has no types of its own. Its objects are recognised here, as in the functions themselves, by
+an attribute that no others have: free symbols. Annotations are not evaluated, so neither SymPy nor
+NumPy is loaded only for a name.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class Functions(Protocol[Component]):
 
 
 class NumberFunctions(Functions[Number], Protocol[Number]):
-    """Those that a formula for numbers may use besides."""
+    """The functions that only a formula for numbers may use."""
 
     def atan2(self, sine: Number, cosine: Number, /) -> Number: ...
     def largest(self, *sizes: Number) -> Number: ...
@@ -108,7 +108,7 @@ class NumberFunctions(Functions[Number], Protocol[Number]):
     ) -> Sequence[Number]: ...
 
 
-#: As many components as the shapes beside a formula say. No type can express that number.
+# The number of components depends on the shapes of the arguments. No type can express that number.
 Components: TypeAlias = Any  # type: ignore[explicit-any]
 
 
@@ -121,7 +121,7 @@ class Formula(Protocol):
 
 
 class NumberFormula(Protocol):
-    """The same, of numbers."""
+    """The same for numbers."""
 
     def __call__(
         self, f: NumberFunctions[Number], /, *components: Components
@@ -129,7 +129,7 @@ class NumberFormula(Protocol):
 
 
 class Conversion(Protocol):
-    """A function that gives one description of an orientation for another."""
+    """A function that converts one description of an orientation to another."""
 
     def __call__(self, value: Components, /, *further: Components) -> Components: ...
 

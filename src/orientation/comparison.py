@@ -1,8 +1,8 @@
-"""Deciding whether two orientations are the same, and naming the mix-up when they are not.
+"""Decide whether two orientations are the same, and name the mix-up if they are not.
 
 Everything is decided by numbers, at random values of the symbols: an algebraic simplification can
-take seconds, or not come back at all. Like the conversions, this works on components, so symbols
-need no NumPy.
+take seconds, or never finish. Like the conversions, this works on components, so symbols need no
+NumPy.
 """
 
 from __future__ import annotations
@@ -45,8 +45,9 @@ Match: TypeAlias = Callable[[Sequence[complex], Sequence[complex]], bool]
 
 
 def _read(value: Values, name: str) -> Sequence[Column]:
-    """Components of a matrix or a quaternion: SymPy expressions,
-    floats, or the columns of a batch.
+    """Return the components of a matrix or quaternion.
+
+    They are SymPy expressions, floats, or the columns of a batch.
     """
     if not is_symbolic(value):
         for item in ((3, 3), (4,)):
@@ -69,14 +70,14 @@ def _read(value: Values, name: str) -> Sequence[Column]:
 def _read_both(
     first: Values, second: Values, name: str, name_of_second: str
 ) -> tuple[Sequence[Column], Sequence[Column]]:
-    one, other = _read(first, name), _read(second, name_of_second)
-    if len(one) != len(other):
+    first_components, second_components = _read(first, name), _read(second, name_of_second)
+    if len(first_components) != len(second_components):
         kinds = {9: "a direction cosine matrix", 4: "a quaternion"}
         raise ValueError(
-            f"{name} is {kinds[len(one)]} and {name_of_second} is {kinds[len(other)]}; convert "
-            "one of them"
+            f"{name} is {kinds[len(first_components)]} and {name_of_second} is "
+            f"{kinds[len(second_components)]}; convert one of them"
         )
-    return one, other
+    return first_components, second_components
 
 
 def _is_one(entries: Sequence[Column]) -> TypeGuard[Sequence[Entry]]:
@@ -86,7 +87,7 @@ def _is_one(entries: Sequence[Column]) -> TypeGuard[Sequence[Entry]]:
 def _match(
     first: Sequence[complex], second: Sequence[complex], tolerance: float = TOLERANCE
 ) -> bool:
-    """Whether numbers are equal; quaternions: up to their signs."""
+    """Whether numbers are equal; quaternions may differ by sign."""
     if len(first) == 4:
         sign = 1 if sum((a * b.conjugate()).real for a, b in zip(first, second)) >= 0 else -1
         second = [sign * entry for entry in second]
@@ -96,14 +97,16 @@ def _match(
 def _columns_match(
     first: Sequence[complex | Array], second: Sequence[complex | Array], tolerance: float
 ) -> bool:
-    """The same of the columns of a batch."""
+    """Whether the columns of two batches are equal; quaternions may differ by sign."""
     import numpy
 
-    ones, others = (list(map(numpy.asarray, entries)) for entries in (first, second))
-    if len(ones) == 4:
-        sign = numpy.where(sum((a * b.conjugate()).real for a, b in zip(ones, others)) >= 0, 1, -1)
-        others = [sign * entry for entry in others]
-    return all((abs(a - b) <= tolerance).all() for a, b in zip(ones, others))
+    firsts, seconds = (list(map(numpy.asarray, entries)) for entries in (first, second))
+    if len(firsts) == 4:
+        sign = numpy.where(
+            sum((a * b.conjugate()).real for a, b in zip(firsts, seconds)) >= 0, 1, -1
+        )
+        seconds = [sign * entry for entry in seconds]
+    return all((abs(a - b) <= tolerance).all() for a, b in zip(firsts, seconds))
 
 
 def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE) -> bool:
@@ -137,23 +140,23 @@ def same_orientation(first: Values, second: Values, tolerance: float = TOLERANCE
     >>> same_orientation(simple_dcm('z', a) * simple_dcm('z', b), simple_dcm('z', a + b))
     True
     """
-    one, other = _read_both(first, second, "first", "second")
-    if _is_one(one) and _is_one(other):
+    first_components, second_components = _read_both(first, second, "first", "second")
+    if _is_one(first_components) and _is_one(second_components):
         return all(
-            _match(first, second, tolerance) for first, second in at_random_points(one, other)
+            _match(first, second, tolerance)
+            for first, second in at_random_points(first_components, second_components)
         )
-    shapes = [getattr(entries[0], "shape", ()) for entries in (one, other)]
+    shapes = [getattr(entries[0], "shape", ()) for entries in (first_components, second_components)]
     if () not in shapes and shapes[0] != shapes[1]:
         raise ValueError(f"cannot compare batches of shapes {shapes[0]} and {shapes[1]}")
     return all(
-        _columns_match(first, second, tolerance) for first, second in at_random_points(one, other)
+        _columns_match(first, second, tolerance)
+        for first, second in at_random_points(first_components, second_components)
     )
 
 
 class Diagnosis(NamedTuple):
-    """What :func:`diagnose` found: whether the answer is right,
-    and every mix-up that explains it.
-    """
+    """Result of :func:`diagnose`: whether the answer is right, and all mix-ups that explain it."""
 
     same: bool
     causes: tuple[str, ...]
@@ -255,9 +258,7 @@ def diagnose(
 
 
 def _fault(values: Iterable[Sequence[complex]], tolerance: float) -> str | None:
-    """What is wrong with numbers that should be an orientation at
-    every point; None if nothing is.
-    """
+    """Return the fault of numbers that should be an orientation at every point, or None."""
     for entries in values:
         try:
             if len(entries) == 9:
@@ -282,7 +283,7 @@ def _transpositions(truths: Answers) -> Iterator[Mixup]:
 def _substitutions(
     expected: Sequence[Entry], names: Names, points: Sequence[Point]
 ) -> Iterator[Mixup]:
-    """Mix-ups of the angles' signs, places and units in a symbolic answer."""
+    """Iterate over mix-ups of the angles' signs, order and units in a symbolic answer."""
     own = list(unknowns(expected))
 
     def with_changes(change: Callable[[Point], Point]) -> Iterable[Sequence[complex]]:
@@ -316,7 +317,7 @@ def _turns(
     sequence: str | None,
     match: Match,
 ) -> Turned:
-    """Values of the three angles at each point, and the sequence: as given, or else recognised."""
+    """Return the three angles at each point and the sequence, as given or else recognised."""
     if angles is None or sequence is None:
         return (
             _recognise(truths, list(unknowns(expected)), points, match)
@@ -337,7 +338,7 @@ def _body_fixed(values: Iterable[Sequence[float]], sequence: str) -> Iterator[Se
 def _sequence_mixups(
     values: Sequence[Sequence[float]] | None, sequence: str | None, given: bool, symbols: bool
 ) -> Iterator[Mixup]:
-    """Mix-ups of a body fixed sequence of turns."""
+    """Iterate over mix-ups of a sequence of body fixed rotations."""
     if values is None or sequence is None:
         return
     back = [angles[::-1] for angles in values]
@@ -349,9 +350,12 @@ def _sequence_mixups(
         # Two rotations are part of several sequences.
         return
     yield REVERSED, _body_fixed(back, sequence)
-    for other in SEQUENCES:
-        if other != sequence:
-            yield f"it is the sequence {other}, not {sequence}", _body_fixed(values, other)
+    for alternative in SEQUENCES:
+        if alternative != sequence:
+            yield (
+                f"it is the sequence {alternative}, not {sequence}",
+                _body_fixed(values, alternative),
+            )
     if not symbols:
         for which, signs in (("first", (-1, 1, 1)), ("second", (1, -1, 1)), ("third", (1, 1, -1))):
             yield (
@@ -373,7 +377,7 @@ def _sequence_mixups(
 def _recognise(
     truths: Answers, names: Sequence[str], points: Sequence[Point], match: Match
 ) -> Turned:
-    """Find the sequence and the signed angles that make the expected matrix out of its symbols."""
+    """Find the sequence and the signed angles that make the expected matrix from its symbols."""
     if not 1 < len(names) <= 3:
         return None, None
     table = [[point[name] for name in names] + [0.0] * (3 - len(names)) for point in points]

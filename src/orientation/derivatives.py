@@ -1,18 +1,18 @@
 """Derivatives of conversions, and with them covariances, from the one formula of each.
 
-A formula takes scalar components and gives scalar components. Handed numbers that carry their
-slopes (dual numbers), it gives the slopes of the result with it: for one item and for batches, and
-for symbols SymPy differentiates it.
+A formula takes scalar components and returns scalar components. Given numbers with their slopes
+(dual numbers), it also returns the slopes of the result, for one item and for batches; for symbols,
+SymPy differentiates it.
 
-An orientation has three ways to change, and a direction cosine matrix nine entries. So a matrix
-counts here as the small turn :math:`\\boldsymbol\\delta` that changes it,
+An orientation has three ways to change, but a direction cosine matrix has nine entries. So a matrix
+is represented here by the small rotation :math:`\\boldsymbol\\delta` that changes it,
 
 .. math::
 
    {}^A\\mathbf{C}^N(\\boldsymbol\\delta)
    = \\exp(-[\\boldsymbol\\delta]_\\times)\\,{}^A\\mathbf{C}^N ,
 
-with components along :math:`A`, as everywhere in this package, or along :math:`N` if asked.
+with components along :math:`A`, as everywhere in this package, or along :math:`N` on request.
 """
 
 from __future__ import annotations
@@ -145,8 +145,10 @@ class DualFunctions:
         where = self.plain.where
         if not isinstance(yes, Dual) and not isinstance(no, Dual):
             return where(condition, yes, no)
-        (value, slopes), (other, others) = parts(yes), parts(no)
-        return Dual(where(condition, value, other), where(condition, slopes, others))
+        (value, slopes), (alternative, alternative_slopes) = parts(yes), parts(no)
+        return Dual(
+            where(condition, value, alternative), where(condition, slopes, alternative_slopes)
+        )
 
     def pick(self, scores: Sequence[Dual], rows: Sequence[Sequence[Dual]]) -> Sequence[Dual]:
         import numpy
@@ -162,7 +164,7 @@ class DualFunctions:
 
 
 class _Numbers(Variable):
-    """Numbers by which a conversion is differentiated."""
+    """Numbers with respect to which a conversion is differentiated."""
 
     def __init__(self, given: Values, along: Along) -> None:
         self.given, self.along = given, along
@@ -198,14 +200,16 @@ class _Numbers(Variable):
         with numpy.errstate(divide="ignore", invalid="ignore"):
             # No type can express that a formula works with anything that has these operations.
             result = map(parts, formula(DualFunctions(), *components))  # type: ignore[arg-type]
-            ones = numpy.ones((count, len(columns[0])))
-            values, slopes = zip(*((value * ones[0], by * ones) for value, by in result))
+            unit_slopes = numpy.ones((count, len(columns[0])))
+            values, slopes = zip(
+                *((value * unit_slopes[0], by * unit_slopes) for value, by in result)
+            )
             if shape == (3, 3):
                 demand(DCM_GUARD, values, batch)
                 slopes = tuple(self._turns(values, slopes))
                 shape = (3,)
-        found = numpy.stack(slopes, axis=-1)
-        steep = ~(numpy.abs(found) < STEEP).all(axis=(0, -1))
+        derivative = numpy.stack(slopes, axis=-1)
+        steep = ~(numpy.abs(derivative) < STEEP).all(axis=(0, -1))
         if steep.any():
             worst = int(numpy.argmax(steep))
             where = (
@@ -215,10 +219,10 @@ class _Numbers(Variable):
                 f"the conversion has no derivative at {arguments[0][0]}{where}: a small change in "
                 "the input makes a large one in the result, as for Euler angles at gimbal lock"
             )
-        return found.reshape(count, *batch, *shape)
+        return derivative.reshape(count, *batch, *shape)
 
     def _with_slopes(self, rows: Array, item: tuple[int, ...]) -> list[Dual]:
-        """The components of items: each its own variable, those of a matrix by three turns."""
+        """Return the components of items as variables, three small rotations for a matrix."""
         import numpy
 
         slopes = numpy.eye(rows.shape[1])[:, None]
@@ -229,7 +233,7 @@ class _Numbers(Variable):
         return [Dual(column, slopes[..., k]) for k, column in enumerate(rows.T)]
 
     def _turns(self, values: Sequence[Array], slopes: Sequence[Array]) -> list[Array]:
-        """The small turns that change a matrix at these slopes of its entries."""
+        """Return the small rotations that change a matrix at these slopes of its entries."""
         import numpy
 
         matrix = numpy.stack(values, axis=-1).reshape(-1, 3, 3)
@@ -356,8 +360,8 @@ def propagate_covariance(
 
     derivative = jacobian(conversion, value, *further, along=along)
     count = derivative.shape[-1]
-    given = number_array(covariance, (count, count), "covariance")
-    result: Array = derivative @ given @ derivative.swapaxes(-1, -2)
+    input_covariance = number_array(covariance, (count, count), "covariance")
+    result: Array = derivative @ input_covariance @ derivative.swapaxes(-1, -2)
     largest = float(numpy.sqrt(numpy.max(numpy.diagonal(result, axis1=-2, axis2=-1), initial=0)))
     if largest > LARGE:
         warnings.warn(

@@ -150,7 +150,7 @@ def _as_they_are(f: Functions[Component], *entries: Component) -> Sequence[Compo
 def demand_dcm(
     entries: Sequence[complex], where: str = "", name: str = "dcm", tolerance: float = TOLERANCE
 ) -> None:
-    """Raise the error of :func:`check_dcm` for nine numbers, with the caller's words for them."""
+    """Raise the error of :func:`check_dcm` for nine numbers, under the caller's name for them."""
     imaginary = max(abs(entry.imag) for entry in entries)
     if imaginary > tolerance:
         raise ValueError(
@@ -173,8 +173,9 @@ def dcm_excess(
     zy: Number,
     zz: Number,
 ) -> Number:
-    """Largest departure of the rows from being orthonormal, and of
-    the third from the cross product.
+    """Return the largest departure from orthonormal rows.
+
+    The third row is also compared with the cross product of the first two.
     """
     return f.largest(
         abs(xx * xx + xy * xy + xz * xz - 1),
@@ -187,9 +188,7 @@ def dcm_excess(
 
 
 def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None:
-    """Raise the error that says what is wrong with nine numbers,
-    which are no direction cosine matrix.
-    """
+    """Raise the error that explains why nine numbers are not a direction cosine matrix."""
     rows = {"x": entries[:3], "y": entries[3:6], "z": entries[6:]}
     names = list(rows)
     # This order gives the same rounding in every Python and in the page. Since Python 3.12 sum()
@@ -239,7 +238,7 @@ DCM_GUARD = Guard(dcm_excess, explain_dcm, 9)
 
 
 class NearestDCM(NamedTuple):
-    """Result of :func:`nearest_dcm`: the matrix, and how far it is from the one that was given."""
+    """Result of :func:`nearest_dcm`: the matrix, and its distance from the given one."""
 
     dcm: Array
     distance: numpy.float64 | Array
@@ -304,8 +303,10 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
 
 
 def nearest_by_scales(array: Array) -> tuple[Array, Array, Array]:
-    """The nearest direction cosine matrix, the singular values, and how far they are from allowing
-    others that are equally near.
+    """Return the nearest direction cosine matrix, the singular values and their gap.
+
+    The gap is the distance of the singular values from those that allow other, equally near
+    matrices.
     """
     import numpy
 

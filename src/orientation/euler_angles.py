@@ -24,8 +24,8 @@ if TYPE_CHECKING:
         Values,
     )
 
-#: The positions of the three axes of a sequence, where the third is the axis that a proper sequence
-#: leaves out; and 1 if they follow each other as x, y, z do, or else -1.
+# The positions of the three axes of a sequence, where the third is the axis that a proper sequence
+# leaves out; and 1 if they follow each other as x, y, z do, or else -1.
 Layout: TypeAlias = tuple[int, int, int, int]
 
 #: Sequences whose first and last axes are the same.

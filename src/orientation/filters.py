@@ -1,5 +1,6 @@
-"""A filter that follows an orientation: gyroscope in, directions in, orientation and its
-uncertainty out; and a smoother that goes back over what it has followed.
+"""A filter that estimates an orientation and its uncertainty from a gyroscope and directions.
+
+A smoother then improves the earlier estimates with the later measurements.
 """
 
 from __future__ import annotations
@@ -228,8 +229,7 @@ class MultiplicativeKalmanFilter:
     def observe_dcm(
         self, observed: Values, covariance: Values, gate: float = float("inf")
     ) -> Innovation:
-        r"""Correct the estimate with a whole orientation that was measured, as star cameras and
-        computer vision give it.
+        r"""Correct the estimate with a measured orientation, as from a star camera.
 
         Parameters
         ----------

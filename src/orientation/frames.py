@@ -28,7 +28,7 @@ Angle: TypeAlias = "float | Array | sympy.Expr"
 
 
 class _AxisTurn(NamedTuple):
-    """One factor of a product: a simple turn."""
+    """One factor of a product: a simple rotation."""
 
     axis: str
     angle: Angle
@@ -40,7 +40,7 @@ class _AxisTurn(NamedTuple):
         return is_symbolic(self.angle)
 
     def batch(self) -> tuple[int, ...]:
-        """Shape of the batch that this turn is, () for a single one."""
+        """The shape of the batch of this rotation, () for a single one."""
         return getattr(self.angle, "shape", ())
 
     def back(self) -> _AxisTurn:
@@ -71,7 +71,7 @@ class _MatrixTurn(NamedTuple):
         return is_symbolic(self.matrix)
 
     def batch(self) -> tuple[int, ...]:
-        """Shape of the batch that this turn is, () for a single one."""
+        """The shape of the batch of this rotation, () for a single one."""
         return self.matrix.shape[:-2]
 
     def back(self) -> _MatrixTurn:
@@ -135,7 +135,7 @@ class Frames:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of all frames, in the order in which they came."""
+        """The names of all frames, in the order of their definition."""
         return tuple(self._leaving)
 
     def orient_axis(self, frame: str, reference: str, axis: Axis | Values, angle: Values) -> Frames:
@@ -209,7 +209,7 @@ class Frames:
         """
         dcm_from_space_fixed(angles, sequence)  # refuses what is not valid, before it is stored
         own = _own(angles, (3,), "angles", is_symbolic(angles))
-        # Rotations about axes that stay are body fixed rotations in reverse order.
+        # Rotations about fixed axes are body fixed rotations in reverse order.
         turns = zip(sequence[::-1], own[::-1])
         return self._with(frame, reference, *(_AxisTurn(axis, angle) for axis, angle in turns))
 
@@ -254,7 +254,7 @@ class Frames:
         return functools.reduce(Frames._and, substituted, Frames())
 
     def _and(self, edge: _Edge) -> Frames:
-        """Frames with one edge more, which connects two that no path connects."""
+        """Return frames with one more edge, between two frames that no path connects."""
         new = Frames()
         new._edges = (*self._edges, edge)
         new._leaving = dict(self._leaving)
@@ -281,9 +281,7 @@ class Frames:
         )
 
     def _walk(self, target: str, source: str) -> tuple[_Edge, ...] | None:
-        """Edges from the source to the target, each turned the way it is
-        walked; None if there are none.
-        """
+        """Return the edges from the source to the target, each in that direction, or None."""
         reached: dict[str, tuple[_Edge, ...]] = {source: ()}
         waiting = [source]
         for name in waiting:
@@ -312,8 +310,7 @@ class Frames:
         )
 
     def dcm(self, target: str, source: str) -> Array | Matrix:
-        r"""Direction cosine matrix of ``target`` with respect to
-        ``source``, over the path between them.
+        r"""Direction cosine matrix of ``target`` with respect to ``source``, over their path.
 
         ``frames.dcm('D', 'A')`` is :math:`{}^D\mathbf{C}^A`, as ``D.dcm(A)`` is in SymPy.
         Successive turns about one axis are joined to one turn before anything is multiplied.
@@ -373,7 +370,7 @@ class Frames:
     __hash__ = None  # type: ignore[assignment]
 
     def _zero(self) -> Angle:
-        """The angle of a frame in itself: of the kind that these frames hold."""
+        """Return the angle of a frame relative to itself, of the kind that these frames contain."""
         if not any(turn.is_symbolic() for edge in self._edges for turn in edge.turns):
             return 0.0
         import sympy
@@ -448,8 +445,9 @@ def _orient(frame: ReferenceFrame, reference: ReferenceFrame, edge: _Edge) -> No
 
 
 def _own(value: Values, item: tuple[int, ...], name: str, symbolic: bool) -> Sequence[Angle]:
-    """The frames' own copy of the components that they were given: SymPy
-    expressions, or columns of a float array.
+    """Return the frames' own copy of the given components.
+
+    They are SymPy expressions, or the columns of a float array.
     """
     if symbolic:
         return symbol_components(value, item, name)

@@ -1,7 +1,7 @@
-"""From an angular velocity to the orientations it leads through, by exponential steps.
+"""Integrate an angular velocity to orientations, by exponential steps.
 
-Every step is a turn, so what comes out is a direction cosine matrix however long the steps are;
-only whether it is the right one depends on them.
+Every step is a rotation, so the result is a direction cosine matrix for steps of any length. Only
+its accuracy depends on them.
 """
 
 from __future__ import annotations
@@ -81,15 +81,15 @@ def turns_from_angular_velocity(
     starts, steps = times[:-1], numpy.diff(times)[:, None]
 
     def at(share: float) -> Array:
-        found = number_array(
+        rates = number_array(
             angular_velocity(starts + share * steps[:, 0]), (3,), "angular_velocity(times)"
         )
-        if found.shape not in ((3,), (len(starts), 3)):
+        if rates.shape not in ((3,), (len(starts), 3)):
             raise ValueError(
                 f"angular_velocity(times) must have shape ({len(starts)}, 3) for {len(starts)} "
-                f"times, not {found.shape}"
+                f"times, not {rates.shape}"
             )
-        return numpy.broadcast_to(found, (len(starts), 3))
+        return numpy.broadcast_to(rates, (len(starts), 3))
 
     if order < 4:
         return steps * at((order - 1) / 2)

@@ -1,4 +1,4 @@
-"""How far orientations are apart, what is in their middle, and orientations chosen at random."""
+"""Distances between orientations, their mean, and random orientations."""
 
 from __future__ import annotations
 
@@ -16,11 +16,10 @@ if TYPE_CHECKING:
     from ._types import Array, Number, NumberFunctions, Scalars, Values
 
 METRICS = ("entries", "angle")
-#: Start the search for the mean by angle from this many orientations if they are spread too far for
-#: one start to be sure.
+# Start the search for the mean by angle from this many orientations if they are spread too far for
+# one start to suffice.
 STARTS = 100
-#: Accept the mean after this many steps. A few are enough unless orientations lie half a turn
-#: apart.
+# Accept the mean after this many steps. A few are enough unless orientations are half a turn apart.
 MOST_STEPS = 200
 
 
@@ -181,13 +180,13 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
             return guess
         begun = [(guess, angles)]
     except ValueError:
-        pass  # no one place to begin
+        pass  # no single place to begin
     # Start from random orientations too: between orientations that are half a turn apart, rounding
     # would choose the way.
     starts = [*dcms[:: -(-len(dcms) // STARTS)], *random_orientations(16, 0)]
-    found = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
-    least = min(cost for cost, _ in found)
-    best = [guess for cost, guess in found if cost <= least + 1e-9]
+    candidates = [(weights @ angles**2, guess) for guess, angles in [*begun, *map(settled, starts)]]
+    least = min(cost for cost, _ in candidates)
+    best = [guess for cost, guess in candidates if cost <= least + 1e-9]
     apart = max(angle_between(best[0], guess) for guess in best)
     if apart > 1e-6:
         raise ValueError(

@@ -1,6 +1,4 @@
-"""What mix-ups of conventions are called, for :func:`~orientation.diagnose` and for what compares
-programs.
-"""
+"""The names of mix-ups, for :func:`~orientation.diagnose` and comparisons of programs."""
 
 TRANSPOSE = "the transpose, the orientation the other way round"
 CONJUGATE = "the conjugate, the orientation the other way round"
@@ -9,7 +7,7 @@ REVERSED = "the angles are in reverse order"
 
 
 def wrong_sign(*turns: str) -> str:
-    """What it is called that the angles of some turns, as ``'first'``, have the other sign.
+    """Return the name of the mix-up in which the angles of some rotations have the wrong sign.
 
     Examples
     --------

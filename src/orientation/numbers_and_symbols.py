@@ -1,12 +1,12 @@
 """One formula for symbols, numbers and batches.
 
 Every conversion of this package is written once, as a formula that takes scalar components and
-returns scalar components. This file finds out what it was given (SymPy expressions, plain numbers,
-or arrays that hold a batch), hands the components to the formula with the matching ``sin``, ``cos``
-and friends, and shapes the results.
+returns scalar components. This module determines the kind of the arguments (SymPy expressions,
+plain numbers, or arrays of a batch), passes the components to the formula with the matching
+``sin``, ``cos`` and so on, and shapes the results.
 
-SymPy objects are recognised without importing SymPy. One orientation in numbers is computed with
-Python's own floats, which is faster than with arrays, and needs NumPy for the result only.
+SymPy objects are recognised without importing SymPy. A single orientation in numbers is computed
+with Python's own floats, which is faster than with arrays and needs NumPy only for the result.
 """
 
 from __future__ import annotations
@@ -41,9 +41,9 @@ Given = TypeVar("Given")
 #: One number, or numbers in tuples of any depth.
 Nested: TypeAlias = "float | tuple[Nested, ...]"
 
-#: The largest deviation from orthogonality, or from unit length, that counts as rounding.
+# The largest deviation from orthogonality, or from unit length, that counts as rounding.
 TOLERANCE = 1e-9
-#: The same for numbers of a narrower type, in units in their last place.
+# The same for numbers of a narrower type, in units in their last place.
 ROUNDINGS = 32
 
 #: Number of items of a batch to work on together. Their components then stay in the cache, and the
@@ -52,24 +52,24 @@ BLOCK = 4096
 
 
 class SymbolsNotPossible(TypeError):
-    """A conversion that must compare sizes to choose its branch was given symbols."""
+    """Symbols were passed to a conversion that must compare sizes to choose its branch."""
 
 
 class WrongShape(ValueError):
-    """Something has a shape that a function cannot take."""
+    """An argument has a shape that a function cannot use."""
 
 
 class Guard(NamedTuple):
-    """What a formula asks of numbers before it is applied to them.
+    """The condition that numbers must satisfy before a formula is applied to them.
 
     Attributes
     ----------
     excess : callable
         ``excess(functions, *components)`` is at most :data:`TOLERANCE` for valid input.
     explain : callable
-        ``explain(components, where)`` raises the error that says what is wrong.
+        ``explain(components, where)`` raises the error that explains the fault.
     size : int, optional
-        How many components it looks at, from the first: all, if not given.
+        The number of components that it inspects, from the first; by default all.
     """
 
     excess: Excess
@@ -78,7 +78,7 @@ class Guard(NamedTuple):
 
 
 def is_symbolic(value: object) -> TypeGuard[Symbols]:
-    """Tell whether a value is a SymPy object, or a sequence or object array that holds one."""
+    """Return whether a value is a SymPy object, or a sequence or object array that contains one."""
     if isinstance(value, (list, tuple)):
         return any(is_symbolic(entry) for entry in value)
     if isinstance(value, float):
@@ -89,7 +89,7 @@ def is_symbolic(value: object) -> TypeGuard[Symbols]:
 
 
 class Variable:
-    """A value that stands for itself in a conversion which is to be differentiated by it."""
+    """A placeholder for the value with respect to which a conversion is differentiated."""
 
     def slopes_of(
         self,
@@ -98,14 +98,14 @@ class Variable:
         arguments: Sequence[Argument],
         guard: Guard | None,
     ) -> Array:
-        """The derivatives of what the formula gives, of shape ``(count, ..., *shape)``."""
+        """Return the derivatives of the formula's results, of shape ``(count, ..., *shape)``."""
         raise NotImplementedError
 
 
 def evaluate(
     formula: Formula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
 ) -> Array | Matrix:
-    """Apply a formula to its arguments, whatever kind they are of.
+    """Apply a formula to its arguments, of whatever kind.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def evaluate(
     shape : tuple
         Shape of one result.
     arguments : tuples ``(name, value, shape)``
-        What the caller was given, and the shape of one item of it.
+        The caller's arguments, with the shape of one item of each.
     guard : Guard, optional
     """
     result = _evaluate_at_a_glance(formula, shape, arguments, guard)
@@ -139,9 +139,7 @@ def evaluate_numbers(
 def evaluate_numbers(
     formula: NumberFormula, shape: tuple[int, ...], *arguments: Argument, guard: Guard | None = None
 ) -> Scalars:
-    """Apply a formula that needs numbers, to choose its branch by their sizes; as
-    :func:`evaluate`.
-    """
+    """Apply a formula for numbers, which chooses its branch by size; see :func:`evaluate`."""
     result = _evaluate_at_a_glance(formula, shape, arguments, guard)
     if result is not None:
         return result
@@ -154,7 +152,7 @@ def _evaluate_at_a_glance(
     arguments: Sequence[Argument],
     guard: Guard | None,
 ) -> Scalars | None:
-    """The result where a look is enough to be sure what was given; else None."""
+    """Return the result if a quick check of the arguments suffices, else None."""
     components: list[float] = []
     for _, value, item in arguments:
         entries = _at_a_glance(value, item)
@@ -171,9 +169,7 @@ def _evaluate_at_a_glance(
 
 
 def _at_a_glance(value: object, item: tuple[int, ...]) -> Sequence[float] | None:
-    """The floats of one item in a row, where a look is enough to be
-    sure that they are right; else None.
-    """
+    """Return the floats of one item if a quick check shows that they are valid, else None."""
     entries: Sequence[float] | None = None
     if type(value) is float or type(value) is int:
         entries = None if item else [value]
@@ -204,7 +200,7 @@ _PLAIN = {float, int}
 
 
 def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | None:
-    """The floats of one item of the given shape as a list; None for a batch, or another shape."""
+    """Return the floats of one item of the given shape as a list; None for any other shape."""
     entries = _at_a_glance(value, item)
     if entries is not None:
         return list(map(float, entries))
@@ -220,7 +216,7 @@ def one_item(value: object, item: tuple[int, ...], name: str) -> list[float] | N
 
 
 def as_list(value: Nested) -> list[float]:
-    """The numbers of tuples in one list."""
+    """Return the numbers of nested tuples in one list."""
     return (
         [entry for part in value for entry in as_list(part)]
         if isinstance(value, tuple)
@@ -238,7 +234,7 @@ def _evaluate_what_is_read(
         if isinstance(value, Variable):
             return value.slopes_of(formula, shape, arguments, guard)
     single = [one_item(value, item, name) for name, value, item in arguments]
-    given = [entries for entries in single if entries is not None]
+    items = [entries for entries in single if entries is not None]
     kind = _narrow_type(arguments, guard) if guard else None
     tolerance = TOLERANCE
     if kind:
@@ -246,8 +242,8 @@ def _evaluate_what_is_read(
 
         tolerance = ROUNDINGS * float(finfo(kind).eps)
     result: Scalars
-    if len(given) == len(single):
-        entries = [entry for entries in given for entry in entries]
+    if len(items) == len(single):
+        entries = [entry for entries in items for entry in entries]
         result = _evaluate_item(formula, shape, entries, guard, tolerance)
     else:
         read = [(name, number_array(value, item, name), item) for name, value, item in arguments]
@@ -257,9 +253,9 @@ def _evaluate_what_is_read(
 
 
 def _narrow_type(arguments: Sequence[Argument], guard: Guard) -> str | None:
-    """The narrowest type, of NumPy or another library, in which something comes that is guarded.
+    """Return the narrowest type, of NumPy or another library, of the guarded arguments.
 
-    What is not guarded is taken as exact, however few digits it has.
+    Other arguments are taken as exact, however few digits they have.
     """
     names: list[str] = []
     size = 0
@@ -318,7 +314,7 @@ def _evaluate_item(
 
 
 def columns_of(arguments: Sequence[Argument]) -> tuple[tuple[int, ...], list[Array]]:
-    """The shape of the batch that some arrays make together, and of each array its items as rows.
+    """Return the shape of the common batch of some arrays, and the items of each as rows.
 
     Raises
     ------
@@ -351,7 +347,7 @@ def columns_of(arguments: Sequence[Argument]) -> tuple[tuple[int, ...], list[Arr
 
 
 def _is_batch(value: object, item: tuple[int, ...]) -> TypeGuard[Array]:
-    """Tell whether a look is enough to be sure that these are the floats of several items."""
+    """Return whether a quick check shows that these are the floats of several items."""
     return (
         _is_array(value)
         and value.dtype.char == "d"
@@ -397,7 +393,7 @@ def demand(
     start: int = 0,
     tolerance: float = TOLERANCE,
 ) -> None:
-    """Raise the error of the worst item of a batch, if its columns are not what a formula needs."""
+    """Raise the error of the worst item of a batch if its columns are not valid for a formula."""
     import numpy
 
     # The error below reports this.
@@ -411,7 +407,7 @@ def demand(
 
 
 def number_array(value: object, item: tuple[int, ...], name: str) -> Array:
-    """Return a float array of shape ``(..., *item)``, or raise an error that explains.
+    """Return a float array of shape ``(..., *item)``, or raise an error that explains the fault.
 
     SymPy matrices of plain numbers are numbers here; a symbol among them raises
     :class:`SymbolsNotPossible`.
@@ -460,18 +456,19 @@ def _demand_finite_array(value: object, name: str) -> None:
 
 
 def number_tuples(value: object, shape: tuple[int, ...], name: str) -> Nested:
-    """Return a float, or nested tuples of floats of exactly this shape,
-    or raise an error that explains.
+    """Return a float or nested tuples of floats of exactly this shape, or raise an error.
 
-    What :func:`number_array` takes, without batches, and without NumPy;
-    True and False are no numbers here.
+    It accepts the same values as :func:`number_array`, but no batches, and does not need NumPy.
+    True and False are not numbers here.
     """
     result = _tuples(value, name, value)
-    found = _shape(result)
-    if found is None:
+    shape_found = _shape(result)
+    if shape_found is None:
         raise _not_numbers(name, value)
-    if found != shape:
-        raise WrongShape(f"{name} has shape {found}, where {shape or 'one number'} was expected")
+    if shape_found != shape:
+        raise WrongShape(
+            f"{name} has shape {shape_found}, where {shape or 'one number'} was expected"
+        )
     _demand_finite(result, name)
     return result
 
@@ -534,7 +531,7 @@ def _not_finite(name: str, index: tuple[int, ...], value: float) -> ValueError:
 
 
 def _floats(value: object, name: str) -> object:
-    """Nested lists of floats from SymPy objects without symbols."""
+    """Return nested lists of floats from SymPy objects without symbols."""
     if isinstance(value, list):
         return [_floats(entry, name) for entry in value]
     try:
@@ -547,7 +544,7 @@ def _floats(value: object, name: str) -> object:
 
 
 def _listed(value: object) -> object:
-    """Nested lists of the entries, whatever holds them; a column or a row becomes one list."""
+    """Return nested lists of the entries of any container; a column or a row becomes one list."""
     if hasattr(value, "tolist"):
         shape = getattr(value, "shape", ())
         rows = value.tolist()

@@ -1,8 +1,8 @@
 """Orientation from observed directions: two vectors, or many with weights.
 
 A direction that is known in a frame :math:`N` (up, north, a star) is measured along a body
-:math:`B`. Two directions that are not parallel fix :math:`{}^B\\mathbf{C}^N`; more than two are
-fitted.
+:math:`B`. Two directions that are not parallel determine :math:`{}^B\\mathbf{C}^N`; more than two
+are fitted.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def _triad(pair: Array, name: str) -> Array:
 
 
 def unit_directions(directions: Array, name: str) -> Array:
-    """Directions of any length, each divided by it."""
+    """Return directions of any length at unit length."""
     import numpy
 
     length = numpy.linalg.norm(directions, axis=-1, keepdims=True)
@@ -156,7 +156,8 @@ def dcm_from_directions(
     fitted, scales, gap = nearest_by_scales((weights * observed).swapaxes(-1, -2) @ reference)
     # How far the worst-determined of the three rotations would have to be wrong before another
     # orientation fits as well, as a fraction of what these weights allow. Beside a star tracker, a
-    # magnetometer counts for a millionth, but it still fixes the rotation about the star.
+    # magnetometer has a millionth of the weight, but it still determines the rotation about the
+    # star.
     allowed = weights.sum() - weights.max()
     margin = gap / max(allowed, sys.float_info.min)
     if not numpy.all((margin > PARALLEL) & (gap > ROUNDING * scales[..., 0])):

@@ -52,7 +52,7 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
 
 
 def demand_unit_length(entries: Sequence[complex], name: str, tolerance: float) -> None:
-    """Raise the error of a quaternion that is not of unit length, for four numbers."""
+    """Raise the error of four numbers that are not a unit quaternion."""
     real = [entry.real for entry in entries]
     if not _length_excess(NUMBERS, *real) <= tolerance:
         _explain_length(real, "", name)
@@ -118,7 +118,7 @@ def dcm_components_from_quaternion(
     """Formula of :func:`dcm_from_quaternion`, shared with the Rodrigues parameters."""
     ss, xx, yy, zz = scalar**2, x**2, y**2, z**2
     first, second = ss + xx, ss - xx
-    # Doubling is exact. Each of these products stands in two entries.
+    # Doubling is exact. Each of these products is part of two entries.
     x2, y2, s2 = 2 * x, 2 * y, 2 * scalar
     xy, xz, yz, sx, sy, sz = x2 * y, x2 * z, y2 * z, s2 * x, s2 * y, s2 * z
     return (

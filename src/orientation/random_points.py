@@ -1,6 +1,4 @@
-"""Expressions tried at random values of their symbols: numbers decide what
-algebra decides slowly, or not at all.
-"""
+"""Evaluate expressions at random values of their symbols, which is faster than algebra."""
 
 from __future__ import annotations
 
@@ -32,14 +30,14 @@ def _is_expression(entry: Column) -> TypeIs[Expression]:
 
 
 def unknowns(components: Iterable[Column]) -> Names:
-    """Symbols and functions of time in the components, grouped by name."""
+    """Return the symbols and functions of time in the components, grouped by name."""
     names: Names = {}
     for expression in filter(_is_expression, components):
         import sympy
         from sympy.core.function import AppliedUndef
 
         functions = expression.atoms(AppliedUndef)
-        # The time inside theta(t) is not an unknown of its own unless it also stands outside.
+        # The time inside theta(t) is not an unknown of its own unless it also occurs outside.
         rest = expression.xreplace({function: sympy.Dummy() for function in functions})
         for atom in functions | (rest.free_symbols & expression.free_symbols):
             names.setdefault(atom.name, set()).add(atom)
@@ -47,7 +45,7 @@ def unknowns(components: Iterable[Column]) -> Names:
 
 
 def points_for(names: Iterable[str]) -> list[Point]:
-    """Values for every name: a dictionary for each point, the same ones on every call."""
+    """Return values for every name: a dictionary for each point, the same ones on every call."""
     if not names:
         return [{}]
     source = random.Random(20)
@@ -65,7 +63,7 @@ def put_in(
     components: Sequence[Column], names: Names, point: Point
 ) -> Sequence[complex | Array]: ...
 def put_in(components: Sequence[Column], names: Names, point: Point) -> Sequence[complex | Array]:
-    """Numbers for the components, with the values of one point for their symbols."""
+    """Return the components as numbers, with the values of one point for their symbols."""
     values: dict[Expression, Expression] = {}
     if names:
         import sympy
@@ -86,9 +84,7 @@ def at_random_points(
 def at_random_points(
     *components: Sequence[Column],
 ) -> Iterator[tuple[Sequence[complex | Array], ...]]:
-    """For each random choice of the symbols' values, a tuple of the
-    lists of components as numbers.
-    """
+    """Iterate over the random points; each gives a tuple of lists of components as numbers."""
     names = unknowns([entry for entries in components for entry in entries])
     for point in points_for(names):
         yield tuple(put_in(entries, names, point) for entries in components)

@@ -160,8 +160,7 @@ def dcm_from_modified_rodrigues(vector: Values) -> Array | Matrix:
     def formula(
         f: Functions[Component], x: Component, y: Component, z: Component
     ) -> Sequence[Component]:
-        # Beyond this length, whose square overflows, every digit of the matrix is that of no
-        # rotation.
+        # Beyond this length, whose square overflows, no digit of the matrix would be right.
         ordinary = f.norm(x, y, z) < 1e150
         x, y, z = f.where(ordinary, x, 0), f.where(ordinary, y, 0), f.where(ordinary, z, 0)
         square = x**2 + y**2 + z**2
