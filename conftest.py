@@ -1,4 +1,4 @@
-"""What the tests share: which of them run, the built site, a server for it, and a browser."""
+"""Shared by the tests: the choice of tests, the built site, a server for it, and a browser."""
 
 import gc
 import os
@@ -25,7 +25,7 @@ except ModuleNotFoundError as missing:
         "all tests; after that, `.venv/bin/python -m pytest` runs those that you name."
     )
 
-# Tests that take long, each by itself, and share nothing with the others of their file.
+# Tests that are slow and share nothing with the others of their file.
 APART = (
     "tests/pages/test_site.py::test_page_in_",
     "tests/pages/test_live.py::test_results_equal_the_stored_ones[",
@@ -37,17 +37,16 @@ APART = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers(config):
-    """One process more than there are cores: while one waits for a page, another works."""
+    """Use one process more than there are cores, because tests often wait for a page."""
     return (os.cpu_count() or 1) + 1
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """Share the tests out among processes by file: the cells of a notebook share a
-    kernel, and many tests a fixture.
+    """Distribute the tests by file, because tests often share a kernel or a fixture.
 
-    Those that stand apart come one by one, after the larger files, so that
-    no process is left without work.
+    The tests of ``APART`` are distributed individually, after the larger files, so that no process
+    is idle.
     """
 
     class ByFile(LoadFileScheduling):
@@ -58,8 +57,8 @@ def pytest_xdist_make_scheduler(config, log):
 
 
 def pytest_configure(config):
-    # What is installed must be what stands in pyproject.toml: entry points are
-    # read from the installed metadata.
+    # The installed package must agree with pyproject.toml, because entry points are read from the
+    # installed metadata.
     if not any(
         entry.value == "orientation_course"
         for entry in metadata.entry_points(group="coursework.plugins")
@@ -89,8 +88,9 @@ def pytest_addoption(parser):
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection():
-    """What is collected stays to the end: whoever looks for memory to be freed need not look at it,
-    which would take a third of the time of collecting.
+    """Disable the garbage collector while collecting, which saves a third of the time.
+
+    Collected tests stay in memory to the end, so there is nothing to free.
     """
     gc.disable()
     try:
@@ -100,7 +100,7 @@ def pytest_collection():
         gc.enable()
 
 
-@pytest.hookimpl(tryfirst=True)  # before those that are marked as long are left out
+@pytest.hookimpl(tryfirst=True)  # before the tests that are marked as long are left out
 def pytest_collection_modifyitems(config, items):
     cases = defaultdict(list)
     for item in items:
@@ -110,9 +110,9 @@ def pytest_collection_modifyitems(config, items):
                 name = f"{name.partition('::')[0]} {marker.kwargs['of']}"
             cases[name, marker.args[0]].append(item)
             break  # the closest
-    for (_, number), found in cases.items():
-        chosen = spread(found, number)
-        for item in found:
+    for (_, number), cases_of_test in cases.items():
+        chosen = spread(cases_of_test, number)
+        for item in cases_of_test:
             if item not in chosen:
                 item.add_marker(pytest.mark.further)
     if not config.getoption("every_case"):
@@ -141,19 +141,19 @@ def site():
 
 @pytest.fixture(scope="session")
 def browser():
-    """Headless Chromium; skipped with a reason where there is none."""
+    """Headless Chromium; tests are skipped with a reason if there is none."""
     from playwright.sync_api import sync_playwright
 
-    found = find()
-    if found is None:
+    path_of_browser = find()
+    if path_of_browser is None:
         reason = MISSING
         pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
     with sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=found, args=list(FLAGS))
+        chromium = playwright.chromium.launch(executable_path=path_of_browser, args=list(FLAGS))
         open_context = chromium.new_context
 
-        # Conditions that a test waits for are programs, which the pages' own policy forbids: only
-        # tests that look at what the policy does (``bypass_csp=False``) have it enforced.
+        # A test's wait conditions are programs, which the pages' own policy forbids. Only tests of
+        # the policy itself (``bypass_csp=False``) enforce it.
         def open_patient_context(**options):
             context = open_context(**{"bypass_csp": True, **options})
             context.set_default_timeout(PATIENCE)

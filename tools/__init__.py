@@ -1,3 +1,1 @@
-"""What this book's authors run: to begin a chapter or a question, to check
-chapters, to compare with other machines.
-"""
+"""Tools of the authors: begin or check a chapter, begin a question, compare with other machines."""

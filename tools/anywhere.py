@@ -69,9 +69,7 @@ BROWSERS = "WebAssembly"
 
 
 def numbers_here(only):
-    """What this process finds: the moves of cells, the failed doctests, and
-    a digest of all that is released.
-    """
+    """Return the numbers of this process: moves of cells, failed doctests, digests of releases."""
     return {
         "kernel": kernel_in_use(),
         "cells": moves_of_cells(only),
@@ -81,9 +79,7 @@ def numbers_here(only):
 
 
 def kernel_in_use():
-    """The kernel that NumPy's OpenBLAS has chosen, by its own word; empty
-    where NumPy has another library.
-    """
+    """Return the kernel that NumPy's OpenBLAS reports, or nothing if NumPy uses another library."""
     import numpy  # loads it
 
     for file in Path(numpy.__file__).parent.with_name("numpy.libs").glob("*openblas*"):
@@ -99,15 +95,17 @@ def notebooks(only):
 
 
 def moves_of_cells(only):
-    # Each runs in a process of its own, which forks kernels.
+    # Each notebook runs in a process of its own, which forks kernels.
     with ProcessPoolExecutor(os.cpu_count()) as pool:
-        return [told for found in pool.map(moves_in, notebooks(only)) for told in found]
+        return [
+            move
+            for moves_of_notebook in pool.map(moves_in, notebooks(only))
+            for move in moves_of_notebook
+        ]
 
 
 def moves_in(path):
-    """Run a notebook; give each move as its place, its words, and
-    which share it is of what is allowed.
-    """
+    """Run a notebook; return each move as its place, its description, and its relative size."""
     stored, now = (nbformat.read(path, as_version=4) for _ in range(2))
     NotebookClient(
         now,
@@ -119,10 +117,10 @@ def moves_in(path):
     ).execute()
     cells = [pair for pair in zip(stored.cells, now.cells) if pair[0].cell_type == "code"]
     return [
-        told
+        move
         for number, (before, after) in enumerate(cells)
         if before.execution_count is not None
-        for told in in_words(
+        for move in in_words(
             place_of(path, number), moves_of_outputs(before.outputs, after.outputs)
         )
     ]
@@ -132,12 +130,12 @@ def place_of(path, number):
     return f"{path.relative_to(REPOSITORY).with_suffix('')}, cell {number}"
 
 
-def in_words(place, found):
-    if found is None:
+def in_words(place, number_moves):
+    if number_moves is None:
         return [(place, "other outputs than stored", math.inf)]
     # Releases are compared byte by byte.
     exact = place.startswith(STORED)
-    return [(place, str(move), math.inf if exact else move.share) for move in found]
+    return [(place, str(move), math.inf if exact else move.share) for move in number_moves]
 
 
 def failed_doctests():
@@ -163,14 +161,12 @@ def failed_doctests():
 
 
 def digests_of_releases(only):
-    """What is released of each notebook and sealed of each variant,
-    before the slow hash that seals it.
-    """
+    """Return digests of the release of each notebook and each variant, before the slow hash."""
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         return {
             name: digest
-            for found in pool.map(digests_of, sources(only))
-            for name, digest in found.items()
+            for digests in pool.map(digests_of, sources(only))
+            for name, digest in digests.items()
         }
 
 
@@ -181,9 +177,9 @@ def sources(only):
 
 # --- in the Python of browsers ------------------------------------------------------------------
 
-#: Run each notebook as the page runs it, with the program by which the build finds out what each
-#: cell needs. Then seal the sources that need no NumPy. The library that reads notebooks is missing
-#: there, so use JSON.
+# Run each notebook as the page runs it, with the program by which the build determines the needs of
+# each cell. Then seal the sources that need no NumPy. The library that reads notebooks is missing
+# there, so use JSON.
 IN_A_BROWSER = """
 import glob, io, json, shutil, sys, types, zipfile
 for wheel in glob.glob("/wheels/*.whl"):
@@ -221,9 +217,7 @@ json.dump({"cells": told, "released": released}, open("/wheels/told.json", "w"))
 
 
 def numbers_in_a_browser(only):
-    """The moves of those cells that need SymPy only, and the digests
-    of the sources that need no more.
-    """
+    """Return the moves of the cells, and the digests of the sources, that need only SymPy."""
     kinds, stored = kinds_of_cells(), {}
     for path in notebooks(only):
         name = str(path.relative_to(REPOSITORY).with_suffix(""))
@@ -253,29 +247,29 @@ def numbers_in_a_browser(only):
         subprocess.run(
             [NODE, COMPILER[0], PYODIDE / "pyodide.mjs", folder / "program.py", folder], check=True
         )
-        told = json.loads((folder / "told.json").read_text("utf8"))
+        results = json.loads((folder / "told.json").read_text("utf8"))
     moved = [
-        found
+        move
         for name, cells in stored.items()
-        for number, (cell, kind, one) in enumerate(
-            zip(cells, kinds[name], told["cells"][name], strict=True)
+        for number, (cell, kind, report) in enumerate(
+            zip(cells, kinds[name], results["cells"][name], strict=True)
         )
         if not kind["needs"] and cell.execution_count is not None
-        for found in moves_in_a_browser(f"{name}, cell {number}", cell, one)
+        for move in moves_in_a_browser(f"{name}, cell {number}", cell, report)
     ]
-    return {"kernel": "", "cells": moved, "doctests": [], "released": told["released"]}
+    return {"kernel": "", "cells": moved, "doctests": [], "released": results["released"]}
 
 
-def moves_in_a_browser(place, cell, told):
-    before, after = stored_outputs(cell), outputs_of_messages(told["messages"])
-    if told["outcome"]["status"] != "ok" or [form for form, _ in before] != [
+def moves_in_a_browser(place, cell, report):
+    before, after = stored_outputs(cell), outputs_of_messages(report["messages"])
+    if report["outcome"]["status"] != "ok" or [form for form, _ in before] != [
         form for form, _ in after
     ]:
-        return [(place, str(told["outcome"])[-300:], math.inf)]
+        return [(place, str(report["outcome"])[-300:], math.inf)]
     return [
-        found
+        move
         for (_, text), (_, now) in zip(before, after)
-        for found in in_words(place, moves(text, now))
+        for move in in_words(place, moves(text, now))
     ]
 
 
@@ -283,9 +277,7 @@ def moves_in_a_browser(place, cell, told):
 
 
 def machines():
-    """Each machine that this processor can be, with what is to be said to its
-    libraries; and those it cannot be.
-    """
+    """Return the machines that this processor can emulate, with their environment, and the rest."""
     import numpy._core._multiarray_umath as umath
 
     has = {name for name, there in umath.__cpu_features__.items() if there}
@@ -336,24 +328,24 @@ def main():
     )
     print("| --- | ---: | --- | ---: | ---: |")
     for name, environment in [*possible.items(), (BROWSERS, None)]:
-        found = (
+        results = (
             numbers_in_a_browser(options.only)
             if environment is None
             else numbers_of(environment, options.only)
         )
-        wanted = (environment or {}).get("OPENBLAS_CORETYPE")
-        if wanted and found["kernel"] not in ("", wanted, CALLED.get(wanted)):
-            faults.append(f"{name}: OpenBLAS has chosen {found['kernel']}")
-        first = first or found["released"]
-        others = [what for what, known in found["released"].items() if first.get(what) != known]
-        print(row(name, found["cells"], found["doctests"], others), flush=True)
+        requested = (environment or {}).get("OPENBLAS_CORETYPE")
+        if requested and results["kernel"] not in ("", requested, CALLED.get(requested)):
+            faults.append(f"{name}: OpenBLAS has chosen {results['kernel']}")
+        first = first or results["released"]
+        others = [name for name, known in results["released"].items() if first.get(name) != known]
+        print(row(name, results["cells"], results["doctests"], others), flush=True)
         faults += [
-            f"{name}: {place}: {words}" for place, words, share in found["cells"] if share > 1
+            f"{name}: {place}: {words}" for place, words, share in results["cells"] if share > 1
         ]
-        faults += [f"{name}: {line}" for line in found["doctests"]]
+        faults += [f"{name}: {line}" for line in results["doctests"]]
         faults += [
-            f"{name}: the release of {what} differs from the one on this machine as it is"
-            for what in others
+            f"{name}: the release of {notebook} differs from the one on this machine as it is"
+            for notebook in others
         ]
     for name, why in impossible.items():
         print(f"| {name} | not tried: {why} | | | |")
@@ -364,9 +356,9 @@ def row(name, moved, doctests, released):
     places = defaultdict(list)
     for place, words, _ in moved:
         places[place].append(words)
-    largest = max(moved, key=lambda told: told[2], default=("", "", 0))
-    told = f"{largest[0]}: {largest[1]}" if moved else ""
-    return f"| {name} | {len(places)} | {told} | {len(doctests)} | {len(released)} |"
+    largest = max(moved, key=lambda move: move[2], default=("", "", 0))
+    largest_move = f"{largest[0]}: {largest[1]}" if moved else ""
+    return f"| {name} | {len(places)} | {largest_move} | {len(doctests)} | {len(released)} |"
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
-"""What every chapter must have, and where one lacks it, by file, line and
-cell: ``python -m tools.chapters``.
+"""Check that every chapter has all its parts: ``python -m tools.chapters``.
+
+It reports each missing part by file, line and cell.
 """
 
 import re
@@ -18,12 +19,12 @@ CHAPTERS_SOURCE = SOURCES / "chapters.ipynb"
 
 
 def source_of(name):
-    """The notebook with solutions from which the exercises of a chapter are made."""
+    """Return the notebook with solutions from which the exercises of a chapter are made."""
     return SOURCES / f"{name}.ipynb"
 
 
 class Line(NamedTuple):
-    """A line of a notebook's source; ``str`` of it is its place."""
+    """A line of a notebook's source; its ``str`` is its place."""
 
     path: Path
     cell: int
@@ -35,7 +36,7 @@ class Line(NamedTuple):
 
 
 def lines(path):
-    """All lines of a notebook."""
+    """Return all lines of a notebook."""
     notebook = nbformat.read(path, as_version=4)
     return [
         Line(path, position, number, text)
@@ -44,8 +45,8 @@ def lines(path):
     ]
 
 
-def found(all_lines, pattern):
-    """Where a pattern is found, by what its first group holds."""
+def lines_matching(all_lines, pattern):
+    """Return the lines that match a pattern, by the content of its first group."""
     matches = ((line, re.search(pattern, line.text)) for line in all_lines)
     return {match[1]: line for line, match in matches if match}
 
@@ -53,8 +54,8 @@ def found(all_lines, pattern):
 def faults():
     """Return a sentence for each part that a chapter lacks, beginning with the place."""
     solutions, asked = [line for path in SOLUTIONS for line in lines(path)], lines(CHAPTERS_SOURCE)
-    solved = found(solutions, r"{solution-start} (\S+)")
-    sealed = found(asked, r"question\(['\"](chapters/[^'\"]+)")
+    solved = lines_matching(solutions, r"{solution-start} (\S+)")
+    sealed = lines_matching(asked, r"question\(['\"](chapters/[^'\"]+)")
     listed = {
         match[1]: number
         for number, text in enumerate(CONTENTS.read_text("utf8").splitlines(), 1)
@@ -83,12 +84,12 @@ def faults():
         if not text or text[0].text != f"(chapter-{name})=":
             yield f"{path}:1 (cell 1): a chapter begins with its label, `(chapter-{name})=`"
         for part, where in (("objectives", text[:1]), ("summary", text[-1:])):
-            if not found(text, rf"^(:class: {part})\s*$"):
+            if not lines_matching(text, rf"^(:class: {part})\s*$"):
                 yield (
                     f"{where[0] if where else path}: no {part}; it is an `{{admonition}}` with "
                     f"`:class: {part}`"
                 )
-        exercises = found(text, r"^:label: (exercise-\S+)")
+        exercises = lines_matching(text, r"^:label: (exercise-\S+)")
         if not exercises:
             yield (
                 f"{text[-1] if text else path}: the chapter asks nothing; here belongs an "
@@ -100,7 +101,7 @@ def faults():
                     f"{line}: {label} has no `{{solution-start}} {label}` in "
                     f"{' or '.join(map(str, SOLUTIONS))}"
                 )
-        for question, line in found(text, r"check\(['\"](chapters/[^'\"]+)").items():
+        for question, line in lines_matching(text, r"check\(['\"](chapters/[^'\"]+)").items():
             if question not in sealed:
                 yield f"{line}: {question} is no question of {CHAPTERS_SOURCE}"
         if not source_of(name).is_file():

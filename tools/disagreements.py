@@ -1,8 +1,8 @@
-"""Score a tool on public disagreements, whose raw numbers are in ``appendix/disagreements.json``:
-``python -m tools.disagreements [COMMAND]``.
+"""Score a tool on public disagreements: ``python -m tools.disagreements [COMMAND]``.
 
-The command is called with the numbers of both sides as its last two arguments and prints JSON with
-a ``verdict`` (``same``, ``named``, ``undecided`` or ``unrelated``) and ``faults``, a list of words.
+Their raw numbers are in ``appendix/disagreements.json``. The command is called with the numbers of
+both sides as its last two arguments and prints JSON with a ``verdict`` (``same``, ``named``,
+``undecided`` or ``unrelated``) and ``faults``, a list of words.
 """
 
 import json
@@ -29,7 +29,7 @@ def judged(case, verdict, faults):
 
 
 def main(command=OURS):
-    """Print a line for each case, and how many were right."""
+    """Print a line for each case, and the number of right answers."""
     score = Counter()
     for case in json.loads(CASES.read_text("utf8"))["cases"]:
         words = [*shlex.split(command), case["first"], case["second"]]
@@ -39,8 +39,10 @@ def main(command=OURS):
         score[worth] += 1
         print(f"{worth:12} {case['address']}")
         if worth != "right":
-            said = "; ".join(faults) or answer.get("message", "")
-            print(f"{'':12} found there: {case['found']}\n{'':12} {answer['verdict']}: {said}")
+            explanation = "; ".join(faults) or answer.get("message", "")
+            print(
+                f"{'':12} found there: {case['found']}\n{'':12} {answer['verdict']}: {explanation}"
+            )
     print(", ".join(f"{count} {worth}" for worth, count in score.most_common()))
 
 

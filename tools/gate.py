@@ -1,6 +1,7 @@
-"""Compute what the figure of the gate shows, with the filter that chapter 19 prints.
+"""Compute the data of the figure of the gate, with the filter that chapter 19 prints.
 
-``python -m tools.gate`` writes it to ``gate.json`` beside the figure: a minute or two.
+``python -m tools.gate`` writes them to ``gate.json`` beside the figure, which takes a minute or
+two.
 """
 
 import json
@@ -15,13 +16,13 @@ TABLE = (
     ROOT / "packages" / "orientation-lab" / "src" / "orientation_figures" / "moving" / "gate.json"
 )
 STEELS = (0, 2, 4, 6, 8, 10, 12)  # microtesla
-#: Shares of an honest filter's looks that a gate rejects; 0 is no gate.
+# Shares of measurements that the gate of a correctly tuned filter rejects; 0 is no gate.
 REJECTED = (0, 0.001, 0.01, 0.1, 0.5, 0.9)
 CURVES = 5
 
 
 def chapter():
-    """The functions of the chapter's cell, without what it prints."""
+    """Return the functions of the chapter's cell, without its output."""
     book = json.loads((ROOT / "chapters" / "orientation-filters.ipynb").read_text("utf8"))
     sources = ("".join(cell["source"]) for cell in book["cells"])
     [cell] = [source for source in sources if "def follow(" in source]
@@ -31,7 +32,7 @@ def chapter():
 
 
 def table(count=100):
-    """For each steel and each gate five curves, and the middle and worst end of all walks."""
+    """Return five curves for each steel and gate, and the median and worst errors of all walks."""
     names, rows = chapter(), []
     for steel in STEELS:
         walk, row = walks(count, 1, steel=steel), []

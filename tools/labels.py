@@ -1,7 +1,6 @@
-"""Write down how the labels of drawings are set, so that a page draws them without Matplotlib.
+"""Typeset the labels of drawings and store them, so that a page draws them without Matplotlib.
 
-Run it with ``python -m tools.labels`` when a drawing has a new
-label: it runs the notebooks that draw.
+Run ``python -m tools.labels`` when a drawing has a new label. It runs the notebooks with drawings.
 """
 
 import json
@@ -24,19 +23,25 @@ TELL = "print(__import__('json').dumps(sorted(_texts)))"
 
 
 def texts_of(path):
-    """The texts that the drawings of a notebook hold, found by running it."""
+    """Return the texts in the drawings of a notebook, by running it."""
     cells = [
         cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"
     ]
-    told = run_alone([RECORD, *cells, TELL], "everything")
+    reports = run_alone([RECORD, *cells, TELL], "everything")
     return json.loads(
-        "".join(message["text"] for message in told[-1]["messages"] if message["type"] == "stream")
+        "".join(
+            message["text"] for message in reports[-1]["messages"] if message["type"] == "stream"
+        )
     )
 
 
 def main():
     with ThreadPoolExecutor(max_workers=2) as pool:
-        texts = {text for found in pool.map(texts_of, all_notebooks(REPOSITORY)) for text in found}
+        texts = {
+            text
+            for texts_of_notebook in pool.map(texts_of, all_notebooks(REPOSITORY))
+            for text in texts_of_notebook
+        }
     LABELS.write_text(json.dumps(labels_to_keep(texts), separators=(",", ":")) + "\n", "utf8")
     print(f"{len(texts)} labels, {LABELS.stat().st_size:,} bytes")
 

@@ -1,21 +1,20 @@
-"""Find the small changes of the code that no test notices.
+"""Find small changes of the code that no test notices.
 
-mutmut lists the possible changes. The tests are collected once, and run once to see which lines
-each of them reaches. For every change we fork that process, put the changed function in place of
-the right one, and run the tests that reach the changed statement, until one fails. Tests that
-noticed something there before go first, then the quick ones. A change survives if all of them pass,
-and is printed: either a test is missing, or the change changes nothing. ``mutants.txt`` lists the
-changes of the second kind, each with its reason. We skip those, and report each entry there that no
-change matches any more.
+mutmut lists the possible changes. The tests are collected once, and run once to record which lines
+each of them reaches. For every change we fork that process, replace the function by the changed
+one, and run the tests that reach the changed statement, until one fails. Tests that have noticed
+changes there before go first, then the quick ones. A change survives if all of them pass, and is
+printed: either a test is missing, or the change has no effect. ``mutants.txt`` lists the changes of
+the second kind, each with its reason. We skip those, and report each entry there that no change
+matches any more.
 
     python -m tools.mutants orientation [MODULE...] [--jobs 2]
     python -m tools.mutants coursework.checking [MODULE...]
 
-Strings with spaces, or in pieces, are left as they are: no test asks for exact wording. So are the
-types that only a type checker reads; the case of the letters in a codec's name; the codec of a
-file, which is the machine's own wherever the tests run; and the border itself of a comparison with
-a tolerance, or with a number that is not whole: what has been rounded lies on it, or beside it, by
-chance.
+Some changes are not made. Strings with spaces, or in pieces, are left alone because no test checks
+exact wording. So are types, which only a type checker reads; the case of letters in a codec's name;
+the codec of a file, which is the machine's default wherever the tests run; and the exact bound of a
+comparison with a tolerance or a non-integer, on which a rounded number lies only by chance.
 """
 
 import __future__
@@ -85,8 +84,8 @@ class Mutant(NamedTuple):
         The lines that differ.
     """
 
-    def told(self):
-        """As it stands among those that are known."""
+    def entry(self):
+        """Return the entry of this change in the list of known ones."""
         owner = f"{self.owner}." if self.owner else ""
         return f"{self.module}.{owner}{self.function}\n{self.shown}"
 
@@ -161,7 +160,7 @@ def _source(function, owner):
 
 
 class _Runs(ast.NodeTransformer):
-    """Take out what is there for a type checker alone, and write codecs in one way."""
+    """Remove code that is only for a type checker, and normalise the names of codecs."""
 
     def visit_Call(self, node):
         self.generic_visit(node)
@@ -187,14 +186,14 @@ def _difference(before, after):
 
 
 def known():
-    """What is told of the changes that change nothing."""
+    """Return the entries of the changes that have no effect."""
     blocks = KNOWN.read_text("utf8").split("\n\n")
     return {"\n".join(line for line in b.splitlines() if line[:1] != "#") for b in blocks} - {""}
 
 
 def _statements(text):
-    """A function of a line that gives the lines of its statement: of one with a body, the head."""
-    found = {}
+    """Return a function from a line to the lines of its statement; of a compound one, the head."""
+    lines_of_statement = {}
 
     def look(node):
         for child in ast.iter_child_nodes(node):
@@ -204,17 +203,17 @@ def _statements(text):
             whole = not body or isinstance(node, (ast.FunctionDef, ast.ClassDef))
             end = node.end_lineno if whole else max(node.lineno, body[0].lineno - 1)
             for line in range(node.lineno, end + 1):
-                found.setdefault(line, range(node.lineno, end + 1))
+                lines_of_statement.setdefault(line, range(node.lineno, end + 1))
 
     look(ast.parse(text))
-    return lambda line: found.get(line, range(line, line + 1))
+    return lambda line: lines_of_statement.get(line, range(line, line + 1))
 
 
 class Run:
-    """A plug-in of pytest: what it does with the tests, once they are collected."""
+    """A pytest plug-in that tries the changes once the tests are collected."""
 
-    def __init__(self, folder, package, wanted, jobs):
-        self.folder, self.package, self.wanted, self.jobs = folder, package, wanted, jobs
+    def __init__(self, folder, package, modules, jobs):
+        self.folder, self.package, self.wanted, self.jobs = folder, package, modules, jobs
         self.in_child = False
         self.known, self.used, self.counts = known(), set(), Counter()
         self.noticed_by = defaultdict(Counter)  # tests, by function
@@ -244,10 +243,10 @@ class Run:
                 self._try(path, mutant, tests)
             while self.busy:
                 self._end_one()
-            for told in sorted(self.known - self.used):
-                if told.startswith(f"{self.package}.{path.stem}."):
+            for change in sorted(self.known - self.used):
+                if change.startswith(f"{self.package}.{path.stem}."):
                     self.counts["no longer made"] += 1
-                    say(f"NO LONGER MADE, in {KNOWN.name}\n{told}")
+                    say(f"NO LONGER MADE, in {KNOWN.name}\n{change}")
             spent = (time.monotonic() - begun) / 60
             counts = self.counts - before
             say(f"== {path.name}: {_told(counts)}; {counts.total() / spent:.0f} a minute")
@@ -255,17 +254,17 @@ class Run:
         return True
 
     def _reached_by_tests(self):
-        """Tests by line by file, seconds by test, and the tests that fail."""
+        """Return tests by line by file, seconds by test, and the tests that fail."""
         with tempfile.TemporaryDirectory() as folder:
-            told = Path(folder) / "told"
+            results_file = Path(folder) / "told"
             pid = os.fork()
             if not pid:
                 with _quiet():
-                    told.write_bytes(pickle.dumps(self._watched()))
+                    results_file.write_bytes(pickle.dumps(self._watched()))
                 os._exit(0)
             if os.waitpid(pid, 0)[1]:
                 raise SystemExit("The tests ended their own process.")
-            return pickle.loads(told.read_bytes())
+            return pickle.loads(results_file.read_bytes())
 
     def _watched(self):
         failed, seconds, items = set(), {}, list(self.items.values())
@@ -295,13 +294,13 @@ class Run:
 
     def _try(self, path, mutant, tests):
         place = f"{path}:{mutant.lines.start}"
-        if mutant.told() in self.known:
-            self.used.add(mutant.told())
+        if mutant.entry() in self.known:
+            self.used.add(mutant.entry())
             self.counts["explained"] += 1
             return None
         if not tests:
             self.counts["no test"] += 1
-            return say(f"NO TEST {place}\n{mutant.told()}")
+            return say(f"NO TEST {place}\n{mutant.entry()}")
         noticed_by = self.noticed_by[mutant.module, mutant.owner, mutant.function]
         order = sorted(tests, key=lambda test: (-noticed_by[test], self.seconds[test]))
         reading, writing = os.pipe()
@@ -335,12 +334,12 @@ class Run:
     def _end_one(self):
         pid, status = os.wait()
         reading, noticed_by, place, mutant = self.busy.pop(pid)
-        with os.fdopen(reading) as told:
-            tests = told.read().splitlines()
+        with os.fdopen(reading) as reading_end:
+            tests = reading_end.read().splitlines()
         code = os.waitstatus_to_exitcode(status)
         if code == PASSED:
             self.counts["survived"] += 1
-            say(f"SURVIVED {place}, {len(tests)} tests\n{mutant.told()}")
+            say(f"SURVIVED {place}, {len(tests)} tests\n{mutant.entry()}")
         elif code == NO_FUNCTION:
             self.counts["out of reach"] += 1
         else:
@@ -350,8 +349,10 @@ class Run:
 
 
 def put_in_place(mutant):
-    """Give a function the code of its mutant, wherever it has been imported to;
-    False if there is no such function."""
+    """Give a function the code of its mutant, wherever it has been imported.
+
+    Returns False if there is no such function.
+    """
     module = sys.modules[mutant.module]
     names = dict(vars(module))
     flags = __future__.annotations.compiler_flag
@@ -405,7 +406,7 @@ def main():
     left_out = [f"-pno:{name}" for name in ("cacheprovider", "times")]
     arguments = ["-q", "-s", "-n0", *left_out, "-m", "not long", *(options.tests or tests)]
     return pytest.main(arguments, plugins=[run]) or any(
-        run.counts[told] for told in ("survived", "no test", "no longer made")
+        run.counts[outcome] for outcome in ("survived", "no test", "no longer made")
     )
 
 

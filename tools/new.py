@@ -20,9 +20,7 @@ NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
 
 class Example(NamedTuple):
-    """An answer of one kind: its variable, the statements that make it, what it
-    is, and what the author says of it.
-    """
+    """An answer of one kind: its variable, its statements, what it is, and facts on it."""
 
     variable: str
     code: str
@@ -120,7 +118,7 @@ def code(text, **metadata):
 
 
 def question_cells(name, kind):
-    """The two cells of a question: the answer, and its check with what the author says of it."""
+    """Return the two cells of a question: the answer, and its check with the author's facts."""
     example = EXAMPLES[kind]
     symbols = "theta = sm.symbols('theta')\n" if "theta" in example.code else ""
     arguments = ", ".join(part for part in (f"kind={kind!r}", example.arguments) if part)
@@ -191,7 +189,7 @@ def chapter_cells(name, title):
 
 
 def exercise_cells(notebook, question, title, kind):
-    """A question of a notebook of exercises, with its text; its number is the next one there."""
+    """Return the cells of a question of an exercise notebook, with its text and its number."""
     number = 1 + sum(
         cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells
     )
@@ -209,7 +207,7 @@ def add_cells(path, cells):
 
 
 def add_line(path, after, line):
-    """Put ``line`` after the line ``after``, as far in as that one."""
+    """Put ``line`` after the line ``after``, with the same indentation."""
     lines = path.read_text("utf8").splitlines()
     places = [number for number, text in enumerate(lines) if text.strip() == after]
     if len(places) != 1:
@@ -223,7 +221,7 @@ def add_line(path, after, line):
 
 
 def new_chapter(name, title, after):
-    """Make a chapter and its exercises, and enter both wherever the book lists them."""
+    """Make a chapter and its exercises, and enter both in all lists of the book."""
     if not re.fullmatch(NAME, name) or not title.strip():
         sys.exit(
             f"Give a chapter a NAME in lower-case letters and hyphens and a TITLE, not {name!r} "
@@ -315,8 +313,8 @@ def main():
         "--kind", default="expression", help="kind of answer (default: %(default)s)"
     )
     question.set_defaults(make=new_question)
-    given = vars(parser.parse_args())
-    print(*given.pop("make")(**given), sep="\n")
+    options = vars(parser.parse_args())
+    print(*options.pop("make")(**options), sep="\n")
     print(f"Now replace each {TO_BE_WRITTEN}; `make check` lists them.")
 
 

@@ -1,5 +1,6 @@
-"""What the release of a notebook depends on, as short digests: it runs
-here and in the Python of browsers.
+"""The data that a notebook's release depends on, as short digests.
+
+It runs here and in the Python of browsers.
 """
 
 import contextlib
@@ -12,23 +13,24 @@ from coursework.authoring.source import read_source
 
 
 def digests_of(path):
-    """What is sealed of a notebook with solutions, before the slow hash: a digest
-    of each question in each variant.
+    """Return digests of what is sealed in a notebook with solutions, before the slow hash.
+
+    There is a digest of each question in each variant.
     """
     with contextlib.redirect_stdout(io.StringIO()):
         first = read_source(path)
-        found = {Path(path).stem: digest([figure.picture() for figure in first.figures.values()])}
+        digests = {Path(path).stem: digest([figure.picture() for figure in first.figures.values()])}
         for number in range(max((rule.count for rule in first.rules.values()), default=1)):
             source = read_source(path, number) if number else first
-            found |= {
-                f"{name}, variant {number}": digest(contents(one))
-                for name, one in source.questions.items()
+            digests |= {
+                f"{name}, variant {number}": digest(contents(question))
+                for name, question in source.questions.items()
             }
-    return found
+    return digests
 
 
 def contents(question):
-    """All that the seal of a question follows from."""
+    """Return all that the seal of a question depends on."""
     known = {
         text: [answer.as_json() for answer in entry.answers]
         for text, entry in question.entries.items()

@@ -1,6 +1,4 @@
-"""``python -m tools.rotations``: write down the scenes of the essay's stops,
-from the scripts that its page runs.
-"""
+"""``python -m tools.rotations``: store the scenes of the essay's stops, from the page's scripts."""
 
 import json
 import subprocess

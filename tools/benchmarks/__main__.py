@@ -1,7 +1,7 @@
-"""Two tables, all measured in this run: ``python -m tools.benchmarks``.
+"""Print two tables, all measured in this run: ``python -m tools.benchmarks``.
 
-The other modules here are programs of their own, each described at its head; most measure the built
-book. Checking and grading are measured in ``packages/coursework/benchmarks``.
+The other modules here are separate programs, each described at its beginning; most measure the
+built book. Checking and grading are measured in ``packages/coursework/benchmarks``.
 """
 
 import platform
@@ -30,24 +30,24 @@ def main():
     others = list(conversions.PEERS)
     print(f"| conversion | N | orientation | {' | '.join(others)} | to the fastest | why |")
     print(f"|---|---|---|{'---|' * len(others)}---|---|")
-    for what, size, seconds, errors in conversions.rows():
+    for task, size, seconds, errors in conversions.rows():
         cells = (
             f"{_in_words(seconds[name] / size)}, {errors[name]:.1f}" if name in seconds else ""
             for name in ("orientation", *others)
         )
         ratio = seconds["orientation"] / min(seconds[name] for name in seconds if name in others)
         why = next(why for most, why in REASONS.items() if size <= most) if ratio > ALLOWED else ""
-        print(f"| {what} | {size:,} | {' | '.join(cells)} | {ratio:.2g} | {why} |", flush=True)
+        print(f"| {task} | {size:,} | {' | '.join(cells)} | {ratio:.2g} | {why} |", flush=True)
     print("\nA lower limit for the time of any such library, at N = 1,000,000:")
-    for what, seconds in conversions.limits():
-        print(f"{what}: {_in_words(seconds / 1_000_000)} an item")
+    for task, seconds in conversions.limits():
+        print(f"{task}: {_in_words(seconds / 1_000_000)} an item")
     print("\nTime relative to the module (below 1 the others are faster):\n")
     print(f"| what | N | orientation | {' | '.join(f'{peer} takes' for peer in SYMBOLIC)} |")
     print(f"|---|---|---|{'---|' * len(SYMBOLIC)}")
-    for what, size, seconds in symbols.rows():
+    for task, size, seconds in symbols.rows():
         ours = seconds["orientation"]
         ratios = (f"{seconds[peer] / ours:.3g} x" if peer in seconds else "" for peer in SYMBOLIC)
-        print(f"| {what} | {size} | {_in_words(ours)} | {' | '.join(ratios)} |", flush=True)
+        print(f"| {task} | {size} | {_in_words(ours)} | {' | '.join(ratios)} |", flush=True)
 
 
 def _in_words(seconds):

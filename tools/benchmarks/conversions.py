@@ -1,10 +1,10 @@
-"""Conversions of numbers, against nine other libraries, with the errors of all of them.
+"""Compare conversions of numbers with nine other libraries, and the errors of all of them.
 
-Each library is given the same orientations as arrays in the form that it works with, made
-beforehand, and is called in the fastest way that it documents: without checks of its input where
-they can be left out. At N = 1 one item is converted, with the function for one item if there is
-one. Errors are the largest differences from our formulas in extended precision, in units of the
-last place of 1. Peers that are not installed are left out: ``peers.txt`` lists them.
+Each library gets the same orientations as arrays in its own form, made beforehand, and is called in
+the fastest way that it documents, without checks of its input where they can be omitted. At N = 1
+one item is converted, with the function for one item if there is one. Errors are the largest
+differences from our formulas in extended precision, in units of the last place of 1. Libraries that
+are not installed are left out: ``peers.txt`` lists them.
 """
 
 import math
@@ -51,46 +51,46 @@ class _Exact(Variable):
 
 
 def rows():
-    """Yield ``(what, N, seconds by contestant, errors by contestant)``."""
+    """Yield ``(task, N, seconds by contestant, errors by contestant)``."""
     for size, rounds in SIZES.items():
-        for what, (convert, given, contestants) in _conversions(size).items():
-            functions, errors = {"orientation": lambda: convert(*given)}, {}
-            exact = convert(*map(_Exact, given))
+        for task, (convert, arguments, contestants) in _conversions(size).items():
+            functions, errors = {"orientation": lambda: convert(*arguments)}, {}
+            exact = convert(*map(_Exact, arguments))
             for name, call in {"orientation": functions["orientation"], **contestants}.items():
                 # Leave out a library that is not installed or lacks the function.
                 with suppress(AttributeError):
-                    errors[name] = _error(call(), exact, what, name)
+                    errors[name] = _error(call(), exact, task, name)
                     functions[name] = call
-            yield what, size, seconds_per_call(functions, rounds), errors
+            yield task, size, seconds_per_call(functions, rounds), errors
 
 
 def limits():
-    """Yield ``(what, seconds for a million items)`` that no such library can be faster than."""
+    """Yield ``(task, seconds for a million items)``, a lower limit for any such library."""
     quaternions, angles = np.ones((1_000_000, 4)), np.linspace(0, 3, 1_000_000)
-    for what, function in {
+    for task, function in {
         "reading a quaternion and writing a matrix": lambda: np.repeat(quaternions, 3, axis=1),
         "sine and cosine of one angle, by NumPy": lambda: (np.sin(angles), np.cos(angles)),
     }.items():
-        yield what, seconds_per_call({"": function}, 3)[""]
+        yield task, seconds_per_call({"": function}, 3)[""]
 
 
-def _error(result, exact, what, name):
+def _error(result, exact, task, name):
     result = np.asarray(getattr(result, "ndarray", result))
     if result.dtype.kind == "V":  # of numpy-quaternion
         result = np.atleast_1d(result).view(float)
     result = result.reshape(exact.shape)
-    if what.endswith("to matrix") and name != "orientation":
+    if task.endswith("to matrix") and name != "orientation":
         result = result.swapaxes(-1, -2)
-    if what.endswith(("quaternion", "quaternions")):
+    if task.endswith(("quaternion", "quaternions")):
         result = np.roll(result, 1, axis=-1) if name == "SciPy" else result
         result = result * np.sign((result * exact).sum(axis=-1, keepdims=True))
-    if what.endswith("to rotation vector"):
-        # The other way round is the same orientation.
+    if task.endswith("to rotation vector"):
+        # The rotation in the opposite direction is the same orientation.
         length = np.linalg.norm(result, axis=-1, keepdims=True)
         result = np.where(length > np.pi, result * (1 - 2 * np.pi / length), result)
     error = float(abs(result - exact).max() / np.finfo(float).eps)
     if error > 1e9:
-        raise AssertionError(f"{what}: {name} does not return what orientation returns")
+        raise AssertionError(f"{task}: {name} does not return what orientation returns")
     return error
 
 
@@ -104,24 +104,24 @@ def _peers():
 
 
 def _conversions(size):
-    one = size == 1
-    angles = np.random.default_rng(1).uniform(-1.5, 1.5, 3 if one else (size, 3))
+    single_item = size == 1
+    angles = np.random.default_rng(1).uniform(-1.5, 1.5, 3 if single_item else (size, 3))
     dcm = orientation.dcm_from_body_fixed(angles, "zxy")
     matrix = np.ascontiguousarray(dcm.swapaxes(-1, -2))
     axis, angle = orientation.axis_angle_from_dcm(dcm)
     vector = axis * np.expand_dims(angle, -1)
     both = np.concatenate([axis, np.expand_dims(angle, -1)], axis=-1)
     quaternion = orientation.quaternion_from_dcm(dcm)
-    other = np.roll(quaternion, 1, axis=-1)
-    last, other_last = np.roll(quaternion, -1, axis=-1), np.roll(other, -1, axis=-1)
+    second = np.roll(quaternion, 1, axis=-1)
+    last, second_last = np.roll(quaternion, -1, axis=-1), np.roll(second, -1, axis=-1)
     scipy, numpy_q, quaternionic, rowan, pt3d, transforms3d, sm, ahrs, pyq = _peers()
     native, other_native, ours, others = (
-        getattr(library, function, np.asarray)(given)
+        getattr(library, function, np.asarray)(value)
         for library, function in ((numpy_q, "as_quat_array"), (quaternionic, "array"))
-        for given in (quaternion, other)
+        for value in (quaternion, second)
     )
     # A function for one item only raises AttributeError for more, as a missing one does.
-    single = SimpleNamespace(transforms3d=transforms3d, sm=sm, pyq=pyq) if one else None
+    single = SimpleNamespace(transforms3d=transforms3d, sm=sm, pyq=pyq) if single_item else None
     return {
         "Euler angles zxy to matrix": (
             lambda angles: orientation.dcm_from_body_fixed(angles, "zxy"),
@@ -133,7 +133,7 @@ def _conversions(size):
                 ),
                 "pytransform3d": lambda: (
                     pt3d.active_matrix_from_intrinsic_euler_zxy(angles)
-                    if one
+                    if single_item
                     else pt3d.active_matrices_from_intrinsic_euler_angles(2, 0, 1, angles)
                 ),
                 "transforms3d": lambda: single.transforms3d.euler.euler2mat(*angles, "rzxy"),
@@ -164,7 +164,7 @@ def _conversions(size):
                 ),
                 "pytransform3d": lambda: (
                     pt3d.matrix_from_axis_angle(both)
-                    if one
+                    if single_item
                     else pt3d.matrices_from_compact_axis_angles(axes=axis, angles=angle)
                 ),
                 "transforms3d": lambda: single.transforms3d.axangles.axangle2mat(
@@ -189,7 +189,7 @@ def _conversions(size):
                 ),
                 "pytransform3d": lambda: (
                     pt3d.matrix_from_compact_axis_angle(vector)
-                    if one
+                    if single_item
                     else pt3d.matrices_from_compact_axis_angles(vector)
                 ),
             },
@@ -204,7 +204,7 @@ def _conversions(size):
                 ),
                 "pytransform3d": lambda: (
                     pt3d.compact_axis_angle_from_matrix(matrix, check=False)
-                    if one
+                    if single_item
                     else pt3d.missing
                 ),
             },
@@ -219,7 +219,7 @@ def _conversions(size):
                 "rowan": lambda: rowan.to_matrix(quaternion, require_unit=False),
                 "pytransform3d": lambda: (
                     pt3d.matrix_from_quaternion(quaternion)
-                    if one
+                    if single_item
                     else pt3d.matrices_from_quaternions(quaternion, normalize_quaternions=False)
                 ),
                 "transforms3d": lambda: single.transforms3d.quaternions.quat2mat(quaternion),
@@ -242,7 +242,7 @@ def _conversions(size):
                 "rowan": lambda: rowan.from_matrix(matrix, require_orthogonal=False),
                 "pytransform3d": lambda: (
                     pt3d.quaternion_from_matrix(matrix)
-                    if one
+                    if single_item
                     else pt3d.quaternions_from_matrices(matrix)
                 ),
                 "transforms3d": lambda: single.transforms3d.quaternions.mat2quat(matrix),
@@ -252,23 +252,23 @@ def _conversions(size):
         ),
         "product of quaternions": (
             orientation.multiply_quaternions,
-            (quaternion, other),
+            (quaternion, second),
             {
                 "SciPy": lambda: (
-                    scipy.Rotation.from_quat(last) * scipy.Rotation.from_quat(other_last)
+                    scipy.Rotation.from_quat(last) * scipy.Rotation.from_quat(second_last)
                 ).as_quat(),
                 "numpy-quaternion": lambda: numpy_q.quaternion and native * other_native,
                 "quaternionic": lambda: quaternionic.array and ours * others,
-                "rowan": lambda: rowan.multiply(quaternion, other),
+                "rowan": lambda: rowan.multiply(quaternion, second),
                 "pytransform3d": lambda: (
-                    pt3d.concatenate_quaternions(quaternion, other)
-                    if one
-                    else pt3d.batch_concatenate_quaternions(quaternion, other)
+                    pt3d.concatenate_quaternions(quaternion, second)
+                    if single_item
+                    else pt3d.batch_concatenate_quaternions(quaternion, second)
                 ),
-                "transforms3d": lambda: single.transforms3d.quaternions.qmult(quaternion, other),
-                "spatialmath": lambda: single.sm.qqmul(quaternion, other),
+                "transforms3d": lambda: single.transforms3d.quaternions.qmult(quaternion, second),
+                "spatialmath": lambda: single.sm.qqmul(quaternion, second),
                 "pyquaternion": lambda: (
-                    (single.pyq.Quaternion(quaternion) * single.pyq.Quaternion(other)).elements
+                    (single.pyq.Quaternion(quaternion) * single.pyq.Quaternion(second)).elements
                 ),
             },
         ),

@@ -81,7 +81,7 @@ def script_seconds(session):
 
 
 def measure(browser, address, slowed):
-    """What one visit tells."""
+    """Measure one visit."""
     context = browser.new_context(**PHONE)
     page = context.new_page()
     page.add_init_script(WATCH)

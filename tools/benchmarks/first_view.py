@@ -1,17 +1,18 @@
-"""The first view of pages on a slow telephone, as Lighthouse tells it: ``python -m
-tools.benchmarks.first_view [page ...]``.
+"""Measure the first view of pages on a slow telephone with Lighthouse.
+
+``python -m tools.benchmarks.first_view [page ...]``
 
 Some pages that ``make book`` built are opened, from a server that compresses and from one that does
-not. Lighthouse, which comes from npm, works out from a page's requests and tasks how a slow
-telephone on a slow line would fare.
+not. Lighthouse, which comes from npm, computes from a page's requests and tasks how a slow
+telephone on a slow line would perform.
 
-A task is weighed by the time for which it had the processor, not by the time that passed: on a
-machine that does other things as well, Lighthouse would count those against the page. So its
-recording is first corrected, and then judged. Only the speed index still depends on the time that
-passed: the busier the machine, the worse it is.
+A task is weighted by its processor time, not by the time that passed: on a machine that does other
+things as well, Lighthouse would count those against the page. So its recording is corrected first
+and then judged. Only the speed index still depends on the time that passed: the busier the machine,
+the worse it is.
 
-Lighthouse takes a page as shown only when all of it has come. The last column but one says when the
-first view was seen in a browser on an equally slow line: the median of three.
+Lighthouse takes a page as shown only when all of it has arrived. The last column but one gives the
+time until the first view was seen in a browser on an equally slow line: the median of three.
 """
 
 import bisect
@@ -53,7 +54,7 @@ PACKED = {".html", ".css", ".js", ".svg", ".json", ".webmanifest"}
 
 
 class Compressing(Handler):
-    """A server of the site that compresses what servers compress."""
+    """A server of the site that compresses files as real servers do."""
 
     protocol_version = "HTTP/1.1"
 
@@ -86,18 +87,16 @@ def serve(handler):
 
 
 def program():
-    """Lighthouse's own program, fetched when it is not there yet."""
-    found = SCRATCH / "node_modules" / "lighthouse" / "cli" / "index.js"
-    if not found.is_file():
+    """Return Lighthouse's own program, and fetch it if necessary."""
+    path = SCRATCH / "node_modules" / "lighthouse" / "cli" / "index.js"
+    if not path.is_file():
         SCRATCH.mkdir(parents=True, exist_ok=True)
         npm("install", "--ignore-scripts", "--no-audit", "--no-fund", LIGHTHOUSE, cwd=SCRATCH)
-    return found
+    return path
 
 
 def by_processor_time(trace):
-    """Give each task of a trace the time for which it had the processor, and what
-    happened in it its share of that.
-    """
+    """Give each task of a trace its processor time, and scale the events in it accordingly."""
     threads = defaultdict(list)
     for event in trace["traceEvents"]:
         threads[event.get("pid"), event.get("tid")].append(event)
@@ -109,7 +108,7 @@ def by_processor_time(trace):
         ]
         starts, lengths, shares, end = [], [], [], 0
         for task in sorted(tasks, key=lambda task: (task["ts"], -task["dur"])):
-            if task["ts"] >= end:  # not one within another
+            if task["ts"] >= end:  # a task within another does not count
                 starts.append(task["ts"])
                 lengths.append(task["dur"])
                 shares.append(min(1, max(task["tdur"], 1) / task["dur"]))
@@ -130,7 +129,7 @@ def by_processor_time(trace):
 
 
 def judge(lighthouse, address):
-    """What Lighthouse says of the page at ``address``."""
+    """Return Lighthouse's report on the page at ``address``."""
     environment = os.environ | {"CHROME_PATH": shutil.which("chromium") or find()}
     with tempfile.TemporaryDirectory() as folder:
         command = [NODE, lighthouse, address, "--quiet"]
@@ -143,12 +142,12 @@ def judge(lighthouse, address):
         by_processor_time(trace)
         recorded.write_text(json.dumps(trace), "utf8")
         out = Path(folder, "out.json")
-        told = [f"-A={folder}", "--output=json", f"--output-path={out}"]
-        subprocess.run([*command, *told], check=True, env=environment, capture_output=True)
+        options = [f"-A={folder}", "--output=json", f"--output-path={out}"]
+        subprocess.run([*command, *options], check=True, env=environment, capture_output=True)
         return json.loads(out.read_text("utf8"))
 
 
-#: Lighthouse's slow line: the way there and back, and bytes a second.
+# Lighthouse's slow line: the round-trip time, and bytes a second.
 SLOW = {
     "offline": False,
     "latency": 150,
@@ -159,7 +158,7 @@ SEEN = "performance.getEntriesByName('first-contentful-paint')[0]?.startTime"
 
 
 def seen_on_a_slow_line(browser, address):
-    """Seconds until the first view of the page at ``address`` is seen, on a telephone's screen."""
+    """Measure the seconds until a telephone's screen shows the first view of ``address``."""
     context = browser.new_context(
         viewport={"width": 412, "height": 823}, device_scale_factor=1.75, is_mobile=True
     )
@@ -189,10 +188,10 @@ def main():
             address = f"{book}/{page}.html"
             with open_browser() as browser:
                 seen = statistics.median(seen_on_a_slow_line(browser, address) for _ in range(3))
-            found = judge(lighthouse, address)
-            scores = [f"{100 * found['categories'][name]['score']:.0f}" for name in CATEGORIES]
+            report = judge(lighthouse, address)
+            scores = [f"{100 * report['categories'][name]['score']:.0f}" for name in CATEGORIES]
             numbers = [
-                f"{found['audits'][name]['numericValue'] / divisor:.3g} {unit}".strip()
+                f"{report['audits'][name]['numericValue'] / divisor:.3g} {unit}".strip()
                 for name, (_, divisor, unit) in MEASURES.items()
             ]
             print(

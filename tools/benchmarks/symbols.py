@@ -1,8 +1,7 @@
-"""Symbolic matrices and their comparison, against SymPy's reference frames and ``simplify``; and
-the time to import each library beyond NumPy's, in a fresh interpreter each time.
+"""Compare symbolic matrices with SymPy's frames and ``simplify``, and the times of imports.
 
-SymPy remembers what it has computed. Its cache is emptied before every call, for all contestants,
-and emptying it does not count.
+SymPy caches what it has computed. Its cache is emptied before every call, for all contestants, and
+this is not timed. Imports are timed beyond NumPy's, each in a new interpreter.
 """
 
 import itertools
@@ -29,10 +28,10 @@ PACKAGES = {
 
 
 def rows():
-    """Yield ``(what, N, seconds by contestant)``."""
+    """Yield ``(task, N, seconds by contestant)``."""
     expected = orientation.dcm_from_body_fixed(ANGLES, "zxy")
     sums = expected.applyfunc(TR8)  # products of cosines and sines written as sums
-    for what, ours, theirs, rounds in (
+    for task, ours, theirs, rounds in (
         (
             "symbolic matrix of Euler angles zxy",
             lambda: orientation.dcm_from_body_fixed(ANGLES, "zxy"),
@@ -58,7 +57,7 @@ def rows():
             3,
         ),
     ):
-        yield what, 1, _seconds(ours, theirs, rounds)
+        yield task, 1, _seconds(ours, theirs, rounds)
 
     yield "import, beyond NumPy", 1, {name: _import(package) for name, package in PACKAGES.items()}
 

@@ -1,4 +1,4 @@
-"""Times that can be compared: contestants take turns in one run; the least time of each counts."""
+"""Comparable times: contestants alternate in one run, and the least time of each counts."""
 
 import time
 import timeit
@@ -7,10 +7,10 @@ SHORTEST_SAMPLE = 0.005
 
 
 def seconds_per_call(contestants, rounds):
-    """Least processor time of one call for each function of a dictionary.
+    """Return the least processor time of one call for each function of a dictionary.
 
-    Every round times every function once, starting with another one each time, so that whatever
-    else the machine does meets them all. It only ever adds to a time.
+    Every round times every function once, starting with another one each time, so that other
+    activity of the machine, which can only add to a time, affects all of them.
     """
     calls = {name: _calls_for_one_sample(function) for name, function in contestants.items()}
     least = dict.fromkeys(contestants, float("inf"))

@@ -1,5 +1,4 @@
-"""Run the newest version of each program on the convention card, and print each answer that
-differs from the stored one.
+"""Run the newest version of each program on the convention card, and print each changed answer.
 
 Each program converts two rotations, and runs every line of code that the converter writes for it.
 The programs are installed in ``_build/programs``, apart from the book, and each runs in a process
@@ -36,9 +35,7 @@ ROUNDING = 1e-5
 
 
 def installed(program):
-    """Command that asks one program, once what it takes is installed;
-    None if that cannot be had here.
-    """
+    """Return the command that asks one program, after installing it; None if that is impossible."""
     if program in BY_NODE:
         shutil.copy(HERE / "answers.mjs", PLACE)
         options = ["--silent", "--ignore-scripts", "--no-audit", "--no-fund", "--prefix", PLACE]
@@ -52,60 +49,65 @@ def installed(program):
         venv.create(python.parents[1], with_pip=True)
     package, others, _ = answers.PROGRAMS[program]
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--upgrade"]
-    wanted = [["numpy", *others], ["--no-deps", package]] if others else [["numpy", package]]
-    if all(subprocess.run([*pip, *names], capture_output=True).returncode == 0 for names in wanted):
+    installs = [["numpy", *others], ["--no-deps", package]] if others else [["numpy", package]]
+    if all(
+        subprocess.run([*pip, *names], capture_output=True).returncode == 0 for names in installs
+    ):
         return [python, HERE / "answers.py", program]
     return None
 
 
 def jobs_of(program):
-    """Every line that the converter can write for a program: orientations like any
-    other, a half turn, and no turn.
+    """Return every line that the converter can write for a program.
+
+    The orientations are ordinary ones, a half turn, and no rotation.
     """
     dcms = [*random_orientations(3, np.random.default_rng(7)), np.diag([1.0, -1, -1]), np.eye(3)]
     return [{"side": side, "dcm": dcm.tolist()} for side in sides(program) for dcm in dcms]
 
 
 def wrong_lines(program, jobs, lines, made):
-    """The lines of which the program does not make the orientation that they were written for."""
+    """Return the lines with which the program does not make the intended orientation."""
     for job, line, matrix in zip(jobs, lines, made, strict=True):
-        wanted = np.array(job["dcm"])
-        wanted = wanted.T if PROGRAMS[program]["matrix"] == "transposed" else wanted
-        if not np.allclose(np.reshape(matrix, (3, 3)), wanted, atol=ROUNDING):
+        expected = np.array(job["dcm"])
+        expected = expected.T if PROGRAMS[program]["matrix"] == "transposed" else expected
+        if not np.allclose(np.reshape(matrix, (3, 3)), expected, atol=ROUNDING):
             yield (
                 f"{line}: makes {np.round(matrix, 4).tolist()}, not "
-                f"{np.round(wanted, 4).ravel().tolist()}"
+                f"{np.round(expected, 4).ravel().tolist()}"
             )
 
 
 def ask(program):
-    """What a program answers now, as plain data, and the lines that it reads
-    otherwise; or why nothing is known.
+    """Return a program's present answers as plain data and the lines that it reads differently.
+
+    If the answers are unknown, return the reason instead.
     """
     if (command := installed(program)) is None:
         return "cannot be installed here", []
     jobs = jobs_of(program)
     lines = [answer["line"] for answer in converted(jobs)]
-    given = json.dumps({"orientations": ORIENTATIONS, "lines": lines})
+    questions = json.dumps({"orientations": ORIENTATIONS, "lines": lines})
     done = subprocess.run(
-        command, input=given, capture_output=True, text=True, cwd=PLACE, timeout=600
+        command, input=questions, capture_output=True, text=True, cwd=PLACE, timeout=600
     )
     if done.returncode:
         return f"did not answer: {done.stderr.strip()[-400:]}", []
-    found = json.loads(done.stdout.splitlines()[-1])
-    wrong = list(wrong_lines(program, jobs, lines, found.pop("made")))
-    found["lines"] = len(lines)
-    for answer in found["answers"]:
+    answers_now = json.loads(done.stdout.splitlines()[-1])
+    wrong = list(wrong_lines(program, jobs, lines, answers_now.pop("made")))
+    answers_now["lines"] = len(lines)
+    for answer in answers_now["answers"]:
         answer["numbers"] = [
             [round(number, 6) + 0.0 for number in numbers] for numbers in answer["numbers"]
         ]
-    return found, wrong
+    return answers_now, wrong
 
 
-def changes(stored, found):
-    """What a program answers otherwise than it did, a line each."""
+def changes(stored, current):
+    """Return the changed answers of a program, a line each."""
     then, now = (
-        {one["asked"]: one["numbers"] for one in each["answers"]} for each in (stored, found)
+        {answer["asked"]: answer["numbers"] for answer in each["answers"]}
+        for each in (stored, current)
     )
     for line in sorted(then.keys() | now.keys()):
         if line not in now or line not in then:
@@ -124,23 +126,23 @@ def main():
     PLACE.mkdir(parents=True, exist_ok=True)
     stored, failed = json.loads(STORED.read_text("utf8")) if STORED.exists() else {}, False
     for program in chosen.programs or (*answers.PROGRAMS, *BY_NODE):
-        found, wrong = ask(program)
-        if isinstance(found, str):
-            print(f"{program}: {found}", flush=True)
+        answers_now, wrong = ask(program)
+        if isinstance(answers_now, str):
+            print(f"{program}: {answers_now}", flush=True)
             continue
         before = stored.get(program, {"version": "nothing", "answers": []})
-        changed = [*changes(before, found), *wrong]
+        changed = [*changes(before, answers_now), *wrong]
         failed |= bool(changed)
-        version = found["version"]
+        version = answers_now["version"]
         came = "" if version == before["version"] else f" (stored: {before['version']})"
         verdict = "CHANGED" if changed else "answers as stored"
         print(
-            f"{program} {version}{came}, {found['lines']} lines run: {verdict}",
+            f"{program} {version}{came}, {answers_now['lines']} lines run: {verdict}",
             *changed,
             sep="\n    ",
             flush=True,
         )
-        stored[program] = found
+        stored[program] = answers_now
     if chosen.store:
         STORED.write_text(json.dumps(stored, indent=1, sort_keys=True) + "\n", "utf8")
     sys.exit(failed and not chosen.store)

@@ -1,11 +1,11 @@
-"""What one program answers, asked in an environment that has it: ``python
-answers.py PROGRAM < questions.json``.
+"""Print the answers of one program: ``python answers.py PROGRAM < questions.json``.
 
-Each of the ``orientations`` comes as an axis and an angle, and is made by the program itself from
-these, or, for a camera, by what it sees. The answers go to standard output as JSON: the version,
-and for each line that was asked the form of its numbers, as
-:data:`orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one orientation after
-another; ``made`` are the matrices that the program makes of the card's own ``lines``.
+Run this in an environment that has the program. Each of the ``orientations`` comes as an axis and
+an angle, and the program itself makes it from these, or, for a camera, from what it sees. The
+answers go to standard output as JSON: the version, and for each line that was run the form of its
+numbers, as :data:`orientation_workbench.mismatch.table.KINDS` calls it, and the numbers, one
+orientation after another. ``made`` are the matrices that the program makes of the card's own
+``lines``.
 """
 
 import json
@@ -35,9 +35,7 @@ WXYZ, XYZW, XYZ = quaternion("wxyz"), quaternion("xyzw"), angles("xyz")
 
 
 def axes_of_a_camera(axis, angle):
-    """Rows: where x, y and z of a camera point to after a turn, by
-    Rodrigues' formula for each of them.
-    """
+    """Return the axes x, y and z of a camera after a rotation, as rows, by Rodrigues' formula."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross).T
@@ -79,9 +77,9 @@ def eigen(axis, angle):
 
 def mujoco(axis, angle):
     module = import_module("mujoco")
-    given = " ".join(map(repr, map(float, (*axis, np.degrees(angle)))))
+    numbers = " ".join(map(repr, map(float, (*axis, np.degrees(angle)))))
     world = (
-        f"<mujoco><worldbody><body axisangle='{given}'><geom "
+        f"<mujoco><worldbody><body axisangle='{numbers}'><geom "
         "size='0.1'/></body></worldbody></mujoco>"
     )
     data = module.MjData(model := module.MjModel.from_xml_string(world))
@@ -104,8 +102,7 @@ CORNERS = np.array([(x, y, 5 + x * y + 0.3 * x) for x in (-1, 0.2, 1) for y in (
 def solve_pnp(axis, angle):
     cv2 = import_module("cv2")
     rows, place = axes_of_a_camera(axis, angle), np.array([0.3, -0.2, 0.1])
-    # A point to the right of the line of sight is seen on the right. No program has been asked
-    # about this yet.
+    # A point to the right of the line of sight is seen on the right. No program has been run yet.
     seen = CORNERS[:, :2] / CORNERS[:, 2:]
     _, vector, _ = cv2.solvePnP(CORNERS @ rows + place, seen, np.eye(3), None)
     yield "cv2.solvePnP(points, seen, K, None)[1]", VECTOR, vector
@@ -167,23 +164,26 @@ def nerfstudio(axis, angle):
 
 def kornia(axis, angle):
     torch, conversions = import_module("torch"), import_module("kornia.geometry.conversions")
-    given = torch.tensor(angle * axis)[None]
+    vector = torch.tensor(angle * axis)[None]
     yield (
         "axis_angle_to_rotation_matrix(v)",
         MATRIX,
-        conversions.axis_angle_to_rotation_matrix(given)[0].numpy(),
+        conversions.axis_angle_to_rotation_matrix(vector)[0].numpy(),
     )
-    turned = conversions.axis_angle_to_quaternion(given)
+    turned = conversions.axis_angle_to_quaternion(vector)
     yield "axis_angle_to_quaternion(v)", WXYZ, turned[0].numpy()
     yield (
         "euler_from_quaternion(w, x, y, z)",
         XYZ,
-        [float(one) for one in conversions.euler_from_quaternion(*turned[0])],
+        [
+            float(angle_in_radians)
+            for angle_in_radians in conversions.euler_from_quaternion(*turned[0])
+        ],
     )
 
 
 def blender(axis, angle):
-    # This is Blender itself, which includes the other.
+    # This is Blender itself, which includes the other package.
     import_module("bpy")
     turned = import_module("mathutils").Quaternion(axis.tolist(), float(angle))
     yield "Quaternion(axis, angle)", WXYZ, turned
@@ -223,18 +223,19 @@ def robot_with(origin):
 
 
 def urdf(axis, angle):
-    """The three angles of an element are made from the matrix, and the file's
-    reader makes its own matrix of them.
+    """Read an element whose three angles are made from the matrix.
+
+    The file's reader makes its own matrix from them.
     """
     x, y, z = axes_of_a_camera(axis, angle).T
-    given = (np.arctan2(z[1], z[2]), np.arcsin(-z[0]), np.arctan2(y[0], x[0]))
-    robot = robot_with(f'<origin rpy="{" ".join(map(repr, map(float, given)))}"/>')
-    yield '<origin rpy="..."/>', XYZ, given
+    angles_of_file = (np.arctan2(z[1], z[2]), np.arcsin(-z[0]), np.arctan2(y[0], x[0]))
+    robot = robot_with(f'<origin rpy="{" ".join(map(repr, map(float, angles_of_file)))}"/>')
+    yield '<origin rpy="..."/>', XYZ, angles_of_file
     yield "robot.get_transform('b', 'a')", MATRIX, robot.get_transform("b", "a")[:3, :3]
 
 
 def isaac_mathematics():
-    """The package starts a simulator; its mathematics needs none."""
+    """Return the mathematics of the package, without starting its simulator."""
     if "isaaclab_math" not in sys.modules:
         path = next(Path(get_paths()["purelib"]).glob("**/isaaclab/utils/math.py"))
         specification = spec_from_file_location("isaaclab_math", path)
@@ -248,7 +249,11 @@ def isaac_lab(axis, angle):
     turned = module.quat_from_angle_axis(torch.tensor([angle]), torch.tensor(axis)[None])
     yield "quat_from_angle_axis(angle, axis)", WXYZ, turned[0].numpy()
     yield "matrix_from_quat(q)", MATRIX, module.matrix_from_quat(turned)[0].numpy()
-    yield "euler_xyz_from_quat(q)", XYZ, [float(one) for one in module.euler_xyz_from_quat(turned)]
+    yield (
+        "euler_xyz_from_quat(q)",
+        XYZ,
+        [float(angle_in_radians) for angle_in_radians in module.euler_xyz_from_quat(turned)],
+    )
 
 
 class Factor(np.ndarray):
@@ -305,7 +310,7 @@ def names_of(program):
 
 
 def matrix_by(program, line, names):
-    """The matrix, row by row as the program has it, that a line of the card makes there."""
+    """Return the matrix of a line of the card, by rows, as the program makes it."""
     if program == "MuJoCo model":
         module = import_module("mujoco")
         compiler, body = re.fullmatch(r"(<compiler [^>]*>)? ?(<body [^>]*)/>", line).groups()
@@ -317,7 +322,7 @@ def matrix_by(program, line, names):
         return data.xmat[1]
     if program == "URDF":
         return robot_with(line).get_transform("b", "a")[:3, :3]
-    if program == "COLMAP" and "(" not in line:  # as it stands in images.txt
+    if program == "COLMAP" and "(" not in line:  # as in images.txt
         w, x, y, z = map(float, line.split())
         return names["pycolmap"].Rotation3d(np.array([x, y, z, w])).matrix()
     if program == "nerfstudio":
@@ -342,8 +347,8 @@ def matrix_by(program, line, names):
     return made
 
 
-#: For each program, by its name in the table of programs: its package on PyPI, what else that
-#: needs, and the function that asks it.
+# The package of each program on PyPI, by its name in the table of programs, its further
+# requirements, and the function that asks it.
 PROGRAMS = {
     "SciPy": ("scipy", (), scipy),
     "pytransform3d": ("pytransform3d", (), pytransform3d),
@@ -369,12 +374,13 @@ PROGRAMS = {
 
 
 def main():
-    program, given = sys.argv[1], json.load(sys.stdin)
+    program, questions = sys.argv[1], json.load(sys.stdin)
     (package, _, ask), asked, names = PROGRAMS[program], {}, names_of(program)
     made = [
-        np.array(matrix_by(program, line, names), float).ravel().tolist() for line in given["lines"]
+        np.array(matrix_by(program, line, names), float).ravel().tolist()
+        for line in questions["lines"]
     ]
-    for axis, angle in given["orientations"]:
+    for axis, angle in questions["orientations"]:
         for line, form, numbers in ask(np.array(axis, float), float(angle)):
             entry = asked.setdefault(line, {"asked": line, "form": form, "numbers": []})
             entry["numbers"].append(

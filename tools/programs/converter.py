@@ -1,6 +1,4 @@
-"""The converter of the page, asked from here: every form and sequence
-of a program, and its lines of code.
-"""
+"""The converter of the page, called from Python: all forms and sequences, and lines of code."""
 
 import itertools
 import json
@@ -33,7 +31,7 @@ console.log(JSON.stringify(jobs.map(({ source, side, dcm, text }) => attempt(() 
 
 
 def converted(jobs):
-    """What the page makes of each side with a matrix to write, or a text to read.
+    """Return the page's results for each side, with a matrix to write or a text to read.
 
     Parameters
     ----------
@@ -56,8 +54,9 @@ def converted(jobs):
 
 
 def sides(program):
-    """Every form and sequence that a program of the table takes; for
-    another program every reading as well.
+    """Return every form and sequence of a program in the table.
+
+    For another program, return every interpretation as well.
     """
     if program == OTHER:
         names = ("program", "form", "sequence", "matrix", "scalar", "unit")
@@ -68,13 +67,15 @@ def sides(program):
             ("first", "last"),
             ("radians", "degrees"),
         )
-        return [dict(zip(names, (OTHER, *one))) for one in readings]
-    found = []
+        return [dict(zip(names, (OTHER, *choices))) for choices in readings]
+    every_side = []
     for form in PROGRAMS[program]["lines"]:
         allowed = (
             PROGRAMS[program].get("sequences", {}).get(form, SEQUENCES)
             if "angles" in form
             else ["zyx"]
         )
-        found += [{"program": program, "form": form, "sequence": one} for one in allowed]
-    return found
+        every_side += [
+            {"program": program, "form": form, "sequence": sequence} for sequence in allowed
+        ]
+    return every_side
