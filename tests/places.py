@@ -1,4 +1,4 @@
-"""Where the book and its built site are, and what its tests wait for."""
+"""The paths of the book and its built site, and the tests' limits of waiting."""
 
 import os
 from pathlib import Path
@@ -7,28 +7,28 @@ import pytest
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 HTML = REPOSITORY / "_build" / "html"
-# Set where a missing browser must not pass unnoticed (.ci/run sets it).
+# Set where a missing browser must be an error (.ci/run sets it).
 BROWSER_REQUIRED = os.environ.get("BOOK_BROWSER_REQUIRED") == "1"
 PATIENCE = 180_000  # milliseconds, for a busy machine; nothing waits longer than it must
 
 
 def html_pages():
-    """The addresses of all pages of the built site, relative to its root.
+    """Return the addresses of all pages of the built site, relative to its root.
 
-    Notebooks in ``lite`` are none, nor are the figures for other people's pages, nor what a server
-    shows where there is no page.
+    Notebooks in ``lite``, embeddable figures and the server's error page are left out.
     """
-    found = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
-    if not found:
+    paths = [path.relative_to(HTML) for path in HTML.rglob("*.html")]
+    if not paths:
         raise FileNotFoundError(
             f"these tests look at the built book, which {HTML} does not hold: make book"
         )
-    return sorted(str(path) for path in found if path.parts[0] not in ("lite", "embed", "404.html"))
+    return sorted(str(path) for path in paths if path.parts[0] not in ("lite", "embed", "404.html"))
 
 
 def every_day(cases, *chosen):
-    """Cases for a test of which those that are chosen run; the others are much like them, and
-    only `--every-case` runs them.
+    """Return cases for a test of which only the chosen ones run by default.
+
+    The others are much like them; `--every-case` runs them all.
     """
     if lost := set(chosen) - set(cases):
         raise ValueError(f"not among the cases: {lost}")

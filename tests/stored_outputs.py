@@ -1,4 +1,4 @@
-"""How the outputs that a notebook stores are compared with those of another run."""
+"""Compare the outputs that a notebook stores with those of another run."""
 
 import nbval.plugin
 
@@ -9,8 +9,9 @@ format_difference = nbval.plugin.IPyNbCell.format_output_compare
 
 
 def compare_outputs(cell, test, ref, skip_compare=None):
-    """As nbval compares outputs, but for numbers that moved by as little as
-    :mod:`notebook_pages.moves` allows.
+    """Compare outputs as nbval does, except for numbers that moved by a small amount.
+
+    :mod:`notebook_pages.moves` gives the limit.
     """
     for now, stored in zip(test, ref):
         _undo_small_moves(now.get("data", {}), stored.get("data", {}), cell.sanitize)

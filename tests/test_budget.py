@@ -1,4 +1,4 @@
-"""The house stays small: each package keeps to its line in the table of CONTRIBUTING.md."""
+"""Each package stays within its line in the table of CONTRIBUTING.md."""
 
 import ast
 import re
@@ -18,7 +18,7 @@ ALLOWED = {
 
 
 def statements(text):
-    """The statements of a module; docstrings and comments are none."""
+    """Count the statements of a module, without docstrings and comments."""
     nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.stmt)]
     return sum(
         not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)) for node in nodes
@@ -26,11 +26,11 @@ def statements(text):
 
 
 def counted():
-    """What each folder of the table holds."""
+    """Return the content of each folder of the table."""
     named = subprocess.check_output(["git", "ls-files", "-z"], cwd=REPOSITORY, text=True).split(
         "\0"
     )
-    found = {folder: Counter() for folder in ALLOWED}
+    counts = {folder: Counter() for folder in ALLOWED}
     for name in filter(None, named):
         folder = next((folder for folder in ALLOWED if name.startswith(folder + "/")), None)
         if folder is None or not (REPOSITORY / name).is_file():
@@ -41,10 +41,10 @@ def counted():
                 ("test_", "conftest")
             )
             kind = "tests" if tests else "statements"
-            found[folder][kind] += statements((REPOSITORY / name).read_text("utf8"))
+            counts[folder][kind] += statements((REPOSITORY / name).read_text("utf8"))
         elif name.endswith((".js", ".mjs")):
-            found[folder]["lines"] += (REPOSITORY / name).read_text("utf8").count("\n")
-    return found
+            counts[folder]["lines"] += (REPOSITORY / name).read_text("utf8").count("\n")
+    return counts
 
 
 COUNTED = counted()

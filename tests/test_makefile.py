@@ -1,6 +1,4 @@
-"""The commands of the book, without what they run: what is set up,
-how often, and side by side or not.
-"""
+"""The commands of the Makefile, without the programs: what is set up, how often and when."""
 
 import os
 import re
@@ -12,7 +10,7 @@ import time
 import pytest
 from places import REPOSITORY
 
-#: Stands for Python: writes down when it began and ended.
+# A replacement of Python that records when it began and ended.
 RECORDER = """#!/bin/sh
 echo "begin $*" >> "$LOG"
 mkdir -p .venv/runtime
@@ -23,8 +21,9 @@ echo "end $*" >> "$LOG"
 
 @pytest.fixture
 def make(tmp_path):
-    """``make(*arguments)``: what the Makefile runs in a folder of its
-    own, each program as a line of text.
+    """``make(*arguments)``: run the Makefile in a folder of its own.
+
+    Returns each started program as a line of text.
     """
     for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
@@ -73,16 +72,20 @@ def test_nothing_is_installed_beside_something_else(make):
 def test_a_python_that_is_too_old_or_too_new_hears_it_in_one_sentence(tmp_path, version):
     for name in ("Makefile", "constraints.txt", "pyproject.toml"):
         shutil.copy(REPOSITORY / name, tmp_path)
-    other = tmp_path / "python"
-    other.write_text(
+    unsuitable = tmp_path / "python"
+    unsuitable.write_text(
         f"#!/bin/sh\nexec {sys.executable} -c "
         f"'import sys; sys.version_info = {version}; exec(sys.argv[1])' \"$2\"\n"
     )
-    other.chmod(0o755)
-    # Under make, which may be what runs these tests, it would name itself otherwise.
+    unsuitable.chmod(0o755)
+    # When make runs these tests, the inner make would use another name for itself.
     own = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
     done = subprocess.run(
-        ["make", "book", f"PYTHON={other}"], cwd=tmp_path, env=own, capture_output=True, text=True
+        ["make", "book", f"PYTHON={unsuitable}"],
+        cwd=tmp_path,
+        env=own,
+        capture_output=True,
+        text=True,
     )
     first, *others = done.stderr.splitlines()
     assert first.startswith("The book needs Python 3.11 to 3.15; this is ")
@@ -118,7 +121,7 @@ def test_a_check_builds_nothing(make):
 
 
 def test_every_command_is_among_those_that_are_listed():
-    """`make programs` and `make setup` were not."""
+    """`make programs` and `make setup` were once missing."""
     text = (REPOSITORY / "Makefile").read_text("utf8")
     (commands,) = re.findall(r"^\.PHONY: help (.*)$", text, re.M)
     assert set(re.findall(r'@echo "make ([a-z-]+)', text)) == set(commands.split())

@@ -1,4 +1,4 @@
-"""Every version that the set-up installs is exact, and the lists that name one package agree."""
+"""Every version that the set-up installs is exact, and lists that name the same package agree."""
 
 import json
 import re
@@ -20,9 +20,9 @@ CONSTRAINTS = pins.pins(pins.CONSTRAINTS.read_text("utf8"))
 
 def test_what_is_asked_for_is_pinned():
     for text in pins.asked_for():
-        wanted = Requirement(text)
-        version = CONSTRAINTS[canonicalize_name(wanted.name)]
-        assert wanted.specifier.contains(version), (
+        requirement = Requirement(text)
+        version = CONSTRAINTS[canonicalize_name(requirement.name)]
+        assert requirement.specifier.contains(version), (
             f"constraints.txt has {version}, pyproject.toml asks for {text}"
         )
 
@@ -88,10 +88,12 @@ def test_what_a_wheel_newly_needs_in_browsers_is_told():
 
 @pytest.mark.parametrize("python", ["3.11", "3.12", "3.13", "3.14", "3.15"])
 def test_one_set_of_pins_serves_every_python(python):
-    """For 3.15 four pins had no wheels, since 3.11 held them back."""
+    """For 3.15 four pins once had no wheels, since 3.11 held them back."""
     text = pins.CONSTRAINTS.read_text("utf8")
     pinned = pins.pins(text, python)
-    assert {canonicalize_name(Requirement(one).name) for one in pins.asked_for()} <= set(pinned)
+    assert {
+        canonicalize_name(Requirement(requirement).name) for requirement in pins.asked_for()
+    } <= set(pinned)
     newer = [Version(pinned[name]) for name in ("numpy", "scipy", "contourpy", "pyyaml")]
     if python == "3.15":
         assert newer >= [Version(text) for text in ("2.5", "1.18", "1.4", "6.0.4")]
@@ -99,22 +101,20 @@ def test_one_set_of_pins_serves_every_python(python):
 
 
 def newer_pythons():
-    """The Pythons of this machine that are newer than this one, and that
-    the pins serve; the newest last.
-    """
+    """Iterate over this machine's newer Pythons that the pins support, the newest last."""
     for minor in range(sys.version_info.minor + 1, 16):
-        found = shutil.which(f"python3.{minor}")
-        yield from [found] if found else []  # which may be a name without a Python behind it
+        program = shutil.which(f"python3.{minor}")
+        yield from [program] if program else []  # which may be a name without a working Python
         yield from sorted(Path.home().glob(f".pyenv/versions/3.{minor}.*/bin/python"))
 
 
 @pytest.mark.long
 def test_a_newer_python_needs_no_compiler(tmp_path):
-    """QuickJS had no wheel past 3.12: setting up ended in "No such file: gcc"."""
+    """QuickJS once had no wheel past 3.12: the set-up ended in "No such file: gcc"."""
     answering = [
-        one
-        for one in newer_pythons()
-        if subprocess.run([one, "-c", ""], capture_output=True).returncode == 0
+        program
+        for program in newer_pythons()
+        if subprocess.run([program, "-c", ""], capture_output=True).returncode == 0
     ]
     if not answering:
         pytest.skip("there is no newer Python here")
@@ -133,9 +133,7 @@ def test_a_newer_python_needs_no_compiler(tmp_path):
 
 
 def test_every_command_that_is_named_exists():
-    """`make renew-pins` was named where requests for newer versions are
-    switched off, and was not there.
-    """
+    """`make renew-pins` was once named where updates are switched off, and did not exist."""
     targets = set(re.findall(r"^([a-z-]+):", (REPOSITORY / "Makefile").read_text("utf8"), re.M))
     names = [
         "README.md",
@@ -151,7 +149,7 @@ def test_every_command_that_is_named_exists():
 
 
 def test_every_program_that_is_named_exists():
-    """`python -m benchmarks.grading` was named where it does not run."""
+    """`python -m benchmarks.grading` was once named where it does not run."""
     roots = [REPOSITORY, REPOSITORY / "src", *REPOSITORY.glob("packages/*/src")]
     documents = [*REPOSITORY.glob("*.md"), *REPOSITORY.glob("*/*.md"), REPOSITORY / "Makefile"]
     scripts = (REPOSITORY / "tools").rglob("*.py")

@@ -1,6 +1,4 @@
-"""The rooms of the house: imports run one way, and a course meets
-coursework through its plug-in only.
-"""
+"""The rooms of the repository: imports run one way, and courses use coursework by its plug-in."""
 
 import ast
 import json
@@ -27,8 +25,7 @@ MAY_IMPORT = {
     "orientation_course": ("coursework", "orientation", "orientation_figures"),
     "notebook_pages": (),
 }
-#: In grading, what follows a notebook on its way uses only what comes before it,
-#: and what stands beside the rooms.
+# In grading, each step of a notebook's way uses only earlier steps, and the shared modules.
 WAY = ("submissions", "execution", "judging", "reporting", "export")
 BESIDE = ("locks", "reading", "record", "store", "tables", "versions", "workers")
 PAGES = REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages"
@@ -41,7 +38,7 @@ def folder_of(room):
 
 
 def imported(path, sources):
-    """The absolute names that a module imports, those of relative imports made absolute."""
+    """Iterate over the absolute names that a module imports, including relative imports."""
     package = path.relative_to(sources).parent.parts
     for node in ast.walk(ast.parse(path.read_text("utf8"))):
         if isinstance(node, ast.Import):
@@ -49,19 +46,19 @@ def imported(path, sources):
         elif isinstance(node, ast.ImportFrom):
             start = package[: len(package) - node.level + 1] if node.level else ()
             module = ".".join([*start, *([node.module] if node.module else [])])
-            # What is named may be a module itself.
+            # The imported name may be a module itself.
             yield from (f"{module}.{name.name}" for name in node.names)
 
 
 def foreign(room, allowed):
-    """What the modules of a room import of ours that is neither in the room nor allowed."""
+    """Return a room's imports of our packages that are neither in the room nor allowed."""
     folder, sources = folder_of(room), folder_of(room.partition(".")[0]).parent
     return [
         f"{path.relative_to(sources)} imports {name}"
         for path in folder.rglob("*.py")
         for name in imported(path, sources)
         if name.partition(".")[0] in OURS
-        and not any(f"{name}.".startswith(f"{one}.") for one in (room, *allowed))
+        and not any(f"{name}.".startswith(f"{package}.") for package in (room, *allowed))
     ]
 
 
@@ -88,7 +85,7 @@ def test_grading_follows_a_notebook_on_its_way(room):
 
 
 def test_checking_has_no_circles():
-    """Also none that an import within a function hides."""
+    """This includes circles that an import within a function hides."""
     folder, sources = folder_of("coursework.checking"), folder_of("coursework").parent
     uses = {
         path.stem: {
@@ -105,16 +102,14 @@ def test_checking_has_no_circles():
 
 
 def test_every_package_is_registered():
-    """All folders of packages, but the one that makes the pages."""
+    """This covers all package folders but the one that makes the pages."""
     folders = {path.parent for path in REPOSITORY.glob("src/*/__init__.py")}
     folders |= {path.parent for path in REPOSITORY.glob("packages/*/src/*/__init__.py")}
     assert folders == {*PACKAGES.values(), PAGES}
 
 
 def test_checking_needs_no_course():
-    """Without any plug-in there are the kinds that no course owns, and a
-    check that says where it looked.
-    """
+    """Without plug-ins, there are the kinds that no course owns, and a check reports its search."""
     program = (
         "from importlib import metadata\nmetadata.entry_points = lambda **wanted: []\n"
         "import sys, coursework\nfrom coursework.checking.plugins import kinds\n"
@@ -170,7 +165,7 @@ def test_a_kind_of_question_has_one_owner(monkeypatch):
 
 
 def circles():
-    """The sets of modules that need each other, the imports within functions counted."""
+    """Return the sets of modules that need each other, including imports within functions."""
     needed = {}
     for folder in (*PACKAGES.values(), PAGES):
         modules = {
@@ -178,24 +173,23 @@ def circles():
             for path in folder.rglob("*.py")
         }
         for path, parts in modules.items():
-            # The number of the package's version, which stands in the package
-            # itself, is no use of its modules.
+            # The version of the package, which is in the package itself, is no use of its modules.
             names = {
                 name for name in imported(path, folder.parent) if not name.endswith(".__version__")
             }
             needed[".".join(parts).removesuffix(".__init__")] = names
     for module, names in needed.items():
-        # What is named is a module, or lies in one.
+        # The imported name is a module, or is in one.
         modules = {name if name in needed else name.rpartition(".")[0] for name in names}
         needed[module] = (modules & needed.keys()) - {module}
 
     def reached(module):
-        found, waiting = set(), [module]
+        reachable, waiting = set(), [module]
         while waiting:
-            new = needed[waiting.pop()] - found
-            found |= new
+            new = needed[waiting.pop()] - reachable
+            reachable |= new
             waiting += new
-        return found
+        return reachable
 
     all_reached = {module: reached(module) for module in needed}
     return {
@@ -214,10 +208,8 @@ def private(name):
 
 
 def test_no_private_name_crosses_a_room():
-    """A module that begins with an underscore is for its folder, a
-    name that does so for its module.
-    """
-    found = []
+    """A private module is for its folder, and a private name for its module."""
+    crossings = []
     for folder in (*PACKAGES.values(), PAGES):
         for path in folder.rglob("*.py"):
             for name in imported(path, folder.parent):
@@ -226,5 +218,7 @@ def test_no_private_name_crosses_a_room():
                     private(last) or any(map(private, module[:-1]))
                 ):
                     inside = module == list(path.relative_to(folder.parent).parent.parts)
-                    found += [] if inside else [f"{path.relative_to(folder.parent)} imports {name}"]
-    assert found == []
+                    crossings += (
+                        [] if inside else [f"{path.relative_to(folder.parent)} imports {name}"]
+                    )
+    assert crossings == []

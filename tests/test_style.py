@@ -1,4 +1,4 @@
-"""What tools say of the code: the linter, the formatter and the type checker find nothing."""
+"""The linter, the formatter and the type checker find nothing."""
 
 import inspect
 import subprocess
@@ -28,7 +28,7 @@ def test_tools_find_nothing(command):
 
 
 def public_functions():
-    """The functions and methods that others call, by their full names."""
+    """Iterate over the public functions and methods, by their full names."""
     for package in (orientation, coursework):
         for name in package.__all__:
             value = getattr(package, name)
@@ -41,7 +41,7 @@ def public_functions():
 
 
 @pytest.mark.parametrize(
-    "name, function", [pytest.param(*one, id=one[0]) for one in public_functions()]
+    "name, function", [pytest.param(*pair, id=pair[0]) for pair in public_functions()]
 )
 def test_public_functions_say_what_they_take_and_give(name, function):
     signature = inspect.signature(function)

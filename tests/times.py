@@ -1,7 +1,7 @@
-"""What each part of the suite costs: processor time by file, so that growth is seen.
+"""Report the processor time of each part of the suite, so that growth is noticed.
 
-Every run ends with its dearest parts. Processor time, unlike the clock's,
-changes little with what else runs.
+Every run ends with its most expensive parts. Processor time, unlike elapsed time, depends little on
+other programs.
 """
 
 import resource
@@ -15,13 +15,13 @@ def of_usage(usage):
     return usage.ru_utime + usage.ru_stime
 
 
-# What each process of Chromium was last seen to have spent. Nobody waits for these when a page is
-# closed, so the system adds them to nobody's account.
+# The last known processor time of each process of Chromium. Nobody waits for these when a page is
+# closed, so the system adds them to no other process.
 BROWSERS = {}
 
 
 def processor_seconds():
-    """The processor time of this process, of all that it started, and of all that those started."""
+    """Return the processor time of this process and all its descendants."""
     spent = of_usage(resource.getrusage(resource.RUSAGE_SELF)) + of_usage(
         resource.getrusage(resource.RUSAGE_CHILDREN)
     )
@@ -33,12 +33,12 @@ def processor_seconds():
             else:
                 spent += sum(times[:4])
         except psutil.Error:
-            continue  # it has ended, and is counted by the one who waited for it
+            continue  # it has ended, and is counted by the process that waited for it
     return spent + sum(BROWSERS.values())
 
 
 class Times:
-    """Gathers the times where the tests run, and tells them where they are reported."""
+    """Collect the times where the tests run, and show them where they are reported."""
 
     def __init__(self, config):
         self.config = config
@@ -46,7 +46,7 @@ class Times:
         self.part, self.start = None, 0
 
     def begin(self, part):
-        """Charge what was spent since the last change to the part that was running."""
+        """Attribute the time since the last change to the part that was running."""
         if part != self.part:
             now = processor_seconds()
             self.spent[self.part or "starting and collecting"] += max(0, now - self.start)
@@ -59,7 +59,7 @@ class Times:
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_teardown(self, item, nextitem):
         if nextitem is None:
-            self.begin(None)  # when the browser ends, all that it has spent is told once more
+            self.begin(None)  # when the browser ends, all its time is reported once more
         elif "browser" in getattr(item, "fixturenames", ()):
             processor_seconds()  # before the pages are closed
 

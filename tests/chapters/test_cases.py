@@ -1,4 +1,4 @@
-"""What the cases from practice print, against formulas for small errors."""
+"""The printed results of the practical cases, against formulas for small errors."""
 
 import json
 import re
@@ -11,7 +11,7 @@ from orientation_recordings import bright_stars
 
 
 def printed(words):
-    """What the cell that prints these words has printed."""
+    """Return the output of the cell that prints these words."""
     notebook = json.loads((REPOSITORY / "chapters" / "cases-from-practice.ipynb").read_text("utf8"))
     texts = [
         "".join(out.get("text", ""))
@@ -22,16 +22,18 @@ def printed(words):
 
 
 def test_the_phone_is_as_wrong_as_its_noise_says():
-    # Across the level field of 20 microtesla, and up as far as it is
-    # wrong, times the tangent of the dip.
+    # The horizontal error across the level field of 20 microtesla, and the error of up times the
+    # tangent of the dip.
     heading = np.degrees(np.hypot(0.5 / 20, 0.03 / 9.81 * 44 / 20))
-    told = float(re.search(r"heading: ([\d.]+)", printed("of which the heading"))[1])
-    assert abs(told / heading - 1) < 0.05, "one draw stands for many, or the noise is another"
+    printed_heading = float(re.search(r"heading: ([\d.]+)", printed("of which the heading"))[1])
+    assert abs(printed_heading / heading - 1) < 0.05, (
+        "one draw stands for many, or the noise is another"
+    )
 
 
 def test_an_unturned_reading_of_the_other_maker_is_half_a_turn_wrong():
-    found = re.search(r"wrong by ([\d.]+) to ([\d.]+) degrees", printed("to 180.0 degrees"))
-    assert found and float(found[1]) > 175 and float(found[2]) <= 180
+    match = re.search(r"wrong by ([\d.]+) to ([\d.]+) degrees", printed("to 180.0 degrees"))
+    assert match and float(match[1]) > 175 and float(match[2]) <= 180
 
 
 def numbers(text):
@@ -56,14 +58,14 @@ def test_the_stars_say_what_another_program_finds():
         noisy = seen + deviations[:, None] * random.normal(size=seen.shape)
         errors.append(Rotation.align_vectors(noisy, seen, weights=deviations**-2.0)[0].as_rotvec())
     arcseconds = np.degrees(np.sqrt(np.mean(np.square(errors), axis=0))) * 3600
-    one, many, foretold, alike = (
+    single, many, foretold, alike = (
         numbers(line.partition(":")[2]) for line in printed("rms over 2000").splitlines()
     )
     # An rms over 400 is uncertain by 3.5 per cent, one over 2000 by 1.6: three times that.
     assert (
         np.abs(arcseconds / foretold - 1).max() < 0.11 and np.abs(many / foretold - 1).max() < 0.06
     )
-    assert (alike > 1.1 * many).all() and np.abs(one[2]) < 4 * many[2]
+    assert (alike > 1.1 * many).all() and np.abs(single[2]) < 4 * many[2]
 
 
 def test_a_second_camera_sees_what_the_first_does_not():
@@ -74,15 +76,18 @@ def test_a_second_camera_sees_what_the_first_does_not():
 
 def test_a_wrist_near_straight_must_hurry():
     for line in printed("degrees from straight").splitlines():
-        miss, fastest, _, told = numbers(line)
-        assert abs(fastest * np.sin(np.radians(miss)) / 60 - 1) < 0.02 and abs(told - fastest) <= 2
+        miss, fastest, _, printed_speed = numbers(line)
+        assert (
+            abs(fastest * np.sin(np.radians(miss)) / 60 - 1) < 0.02
+            and abs(printed_speed - fastest) <= 2
+        )
 
 
 def test_an_axis_that_is_marked_wrong_makes_an_adduction():
-    # The marked frame is turned by 5 degrees about y from the true one; by
-    # SciPy, whose matrices are active.
+    # SciPy rotates the marked frame by 5 degrees about y from the true one; its matrices are
+    # active.
     for line in printed("5 sin:").splitlines():
-        bend, *report, _, told = numbers(line)
+        bend, *report, _, printed_adduction = numbers(line)
         true = Rotation.from_euler("z", -bend, degrees=True)
         seen = (Rotation.from_euler("y", -5, degrees=True) * true).as_euler("ZXY", degrees=True) * (
             -1,
@@ -90,12 +95,13 @@ def test_an_axis_that_is_marked_wrong_makes_an_adduction():
             1,
         )
         assert (
-            np.abs(seen - report).max() < 0.06 and abs(told - 5 * np.sin(np.radians(bend))) < 0.06
+            np.abs(seen - report).max() < 0.06
+            and abs(printed_adduction - 5 * np.sin(np.radians(bend))) < 0.06
         )
 
 
 def test_two_sensors_nod_with_each_step_and_turn_with_the_steel():
-    """Steel across the level field of 20 microtesla turns it by the angle with tangent a half."""
+    """Steel across the level field of 20 microtesla rotates it by the angle with tangent 1/2."""
     lines = printed("past a car").splitlines()
     rows = [numbers(line.partition("degrees rms")[0])[-1:].tolist() for line in lines]
     [walking], [no_car], [before], [beside] = rows
@@ -115,16 +121,17 @@ def test_skin_that_tips_a_plate_does_more_harm_than_balls_that_slip_each_for_its
 
 
 def test_the_attitude_of_an_aircraft_for_a_robot():
-    """East, north, up and forwards, left, up, by SciPy: its rotations turn
-    components of the body into the ground's.
+    """East, north, up and forwards, left, up, by SciPy.
+
+    Its rotations convert components along the body to components along the ground.
     """
     text = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
     outputs = [
         "".join(out.get("text", "")) for cell in text["cells"] for out in cell.get("outputs", [])
     ]
-    told = next(text for text in outputs if "south-west" in text).splitlines()
+    printed_lines = next(text for text in outputs if "south-west" in text).splitlines()
     swap = Rotation.from_matrix([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
-    for line, angles in zip(told, ((90, 0, 0), (225, 10, 25)), strict=True):
+    for line, angles in zip(printed_lines, ((90, 0, 0), (225, 10, 25)), strict=True):
         aviation = Rotation.from_euler("ZYX", angles, degrees=True)
         robot = swap * aviation * Rotation.from_matrix(np.diag([1, -1, -1]))
         assert (

@@ -1,6 +1,4 @@
-"""Every chapter has its parts; what is forgotten is told by file, line and
-cell; what is new has all of them.
-"""
+"""Every chapter has its parts, missing ones are reported, and new ones are complete."""
 
 import os
 import re
@@ -20,7 +18,7 @@ from tools import chapters, new
 
 @pytest.fixture
 def book(tmp_path, monkeypatch):
-    """The texts of the book, in a folder of their own."""
+    """Copy the texts of the book into a folder of their own."""
     for name in ("chapters", "appendix", "exercises", "tests/solutions"):
         shutil.copytree(REPOSITORY / name, tmp_path / name, ignore=shutil.ignore_patterns(".*"))
     for path in (REPOSITORY / "_toc.yml", *REPOSITORY.glob("*.ipynb")):
@@ -31,8 +29,8 @@ def book(tmp_path, monkeypatch):
 
 def test_every_chapter_has_its_parts(monkeypatch):
     monkeypatch.chdir(REPOSITORY)
-    told = list(chapters.faults())
-    assert not told, "\n" + "\n".join(told)
+    faults = list(chapters.faults())
+    assert not faults, "\n" + "\n".join(faults)
 
 
 FORGOTTEN = {
@@ -102,21 +100,21 @@ FORGOTTEN = {
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("part", FORGOTTEN)
 def test_what_is_forgotten_is_told_by_its_place(book, part):
-    path, old, other, says = FORGOTTEN[part]
+    path, old, replacement, says = FORGOTTEN[part]
     text = (book / path).read_text("utf8")
     assert old in text
-    (book / path).write_text(text.replace(old, other), "utf8")
-    told = list(chapters.faults())
-    assert any(re.search(says, fault) for fault in told), told
+    (book / path).write_text(text.replace(old, replacement), "utf8")
+    faults = list(chapters.faults())
+    assert any(re.search(says, fault) for fault in faults), faults
 
 
 def test_a_notebook_of_exercises_that_is_not_there(book):
     (book / "tests/solutions/gimbal-lock.ipynb").unlink()
     (book / "exercises/gimbal-lock.ipynb").unlink()
-    told = "\n".join(chapters.faults())
-    assert "its exercises are missing, tests/solutions/gimbal-lock.ipynb" in told
+    faults = "\n".join(chapters.faults())
+    assert "its exercises are missing, tests/solutions/gimbal-lock.ipynb" in faults
     assert re.search(
-        r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", told
+        r"_toc.yml:\d+: there is no page exercises/gimbal-lock; `make release` makes it", faults
     )
 
 
@@ -131,10 +129,10 @@ def test_a_new_chapter_has_all_its_parts(book):
         "chapter", "chapter-of-the-tests", "Chapter of the tests", "--after", "quaternions-in-full"
     )
     assert done.returncode == 0, done.stderr
-    # As a release would put it there.
+    # A release would put it there.
     shutil.copy("tests/solutions/chapter-of-the-tests.ipynb", "exercises")
-    told = list(chapters.faults())
-    assert told and all("TO BE WRITTEN" in fault for fault in told), told
+    faults = list(chapters.faults())
+    assert faults and all("TO BE WRITTEN" in fault for fault in faults), faults
     pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
     for folder in ("chapters", "exercises"):
         place = pages.index(f"{folder}/chapter-of-the-tests")
@@ -200,7 +198,7 @@ EQUATIONS = re.findall(
 
 
 def test_docstrings_name_equations_of_the_book():
-    """By their labels, from which the reference page makes numbers and links: numbers move."""
+    """Docstrings name equations by labels, which the reference page converts to numbers."""
     texts = "".join(path.read_text("utf8") for path in (REPOSITORY / "chapters").glob("*.ipynb"))
     assert (
         len(EQUATIONS) >= 20

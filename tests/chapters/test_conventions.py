@@ -1,5 +1,6 @@
-"""What other libraries answered, as the convention card prints it; ``python
--m tools.programs`` asks them anew.
+"""The stored answers of other libraries on the convention card.
+
+``python -m tools.programs`` asks them again.
 """
 
 import ast

@@ -1,5 +1,6 @@
-"""What every chapter holds; and what the first eight claim: their own code is
-run, and held against other results.
+"""What every chapter contains, and the claims of the first eight.
+
+The chapters' own code is run and compared with other results.
 """
 
 import re
@@ -30,7 +31,7 @@ def cells(name):
 
 @cache
 def names_of(name):
-    """The names that a chapter's code defines, its figures and exercises left out."""
+    """Return the names that a chapter's code defines, without its figures and exercises."""
     names = {"__name__": name}
     for cell in cells(name):
         if (
@@ -61,9 +62,7 @@ BOXES = re.compile(r"^`{3,}\{(predict|exercise|recap)\}.*?^`{3,}$", re.MULTILINE
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_chapter_is_read_first_and_practised_at_its_end(name):
-    """How many questions stand where is the author's to judge; but what
-    interrupts no argument stands after it.
-    """
+    """The number of questions between the text is up to the author; the others are at the end."""
     text = text_of(name)
     reading, _, practice = text.partition("## Exercises\n")
     assert practice and "\n## " not in practice
@@ -91,9 +90,7 @@ def test_some_exercise_asks_for_a_proof_or_an_explanation(name):
 
 @pytest.mark.parametrize("name", ALL)
 def test_no_sentence_is_cut_in_two_by_a_cell(name):
-    """Text before a cell ends as a sentence does, or with a colon,
-    and what follows begins as one.
-    """
+    """Text before a cell ends like a sentence, or with a colon, and text after it begins so."""
     for before, cell in zip(cells(name), cells(name)[1:]):
         # Without the marks of a lecture.
         text = re.sub(r"<!--.*?-->", "", before.source, flags=re.DOTALL).rstrip()
@@ -106,7 +103,7 @@ def test_no_sentence_is_cut_in_two_by_a_cell(name):
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_chapter_says_what_for_shows_something_real_and_sums_up(name):
-    """A figure that moves, or what an instrument has recorded."""
+    """A chapter has a moving figure or a recording of an instrument."""
     text = text_of(name)
     for part in ("objectives", "summary"):
         [points] = re.findall(
@@ -130,13 +127,13 @@ def test_a_chapter_has_sealed_questions(name):
 
 @pytest.mark.parametrize("name", ALL)
 def test_directives_begin_their_line(name):
-    """Within a line they would be printed as they stand, and no warning says so."""
+    """Within a line, directives would be printed as they are, without a warning."""
     assert re.findall(r"^[^`:\n].*(?:`{3,}|:{3,})\{[\w-]+\}.*$", text_of(name), re.MULTILINE) == []
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_a_prediction_is_a_question_and_not_only_a_box(name):
-    """What is asked can be answered on the page, and every choice has its reply."""
+    """A prediction can be answered on the page, and every choice has its reply."""
     text = text_of(name)
     assert not re.search(r"admonition\} Predict", text)
     for question in re.findall(r"^```\{predict\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
@@ -154,9 +151,9 @@ def test_a_left_handed_triad_passes_along_itself_and_fails_along_a_right_handed_
     assert mirrored.det() == -1 and turned.det() == 1
     for triad in (mirrored, turned):
         assert triad * triad.T == sm.eye(3)
-        # Along itself every triad is the identity, whichever hand it has.
+        # With respect to itself every triad is the identity, whatever its handedness.
         assert triad.T * triad == sm.eye(3)
-    # By the cross products, which the chapter names as the rule.
+    # The chapter names the cross products as the rule.
     assert mirrored.col(0).cross(mirrored.col(1)) == -mirrored.col(2)
     assert turned.col(0).cross(turned.col(1)) == turned.col(2)
 
@@ -175,7 +172,7 @@ def test_orienting_a_frame_again_leaves_old_matrices_and_cuts_the_path():
         C.orient_axis(B, B.x, alpha)
         return N, B, C
 
-    for angle in (2 * theta, theta):  # changed, and run again as it was
+    for angle in (2 * theta, theta):  # changed, and run again without the change
         N, B, C = chain()
         before = C.dcm(N)
         B.orient_axis(N, N.z, angle)
@@ -185,7 +182,7 @@ def test_orienting_a_frame_again_leaves_old_matrices_and_cuts_the_path():
         N, B, C = chain()
         B.orient_axis(N, N.z, angle)
         with pytest.raises(ValueError, match="No connecting orientation path found"):
-            C.dcm(N)  # not asked for before
+            C.dcm(N)  # not requested before
     # The chapter shows both symptoms, and the habit that avoids them.
     names = names_of("orientation-with-sympy")
     assert "No connecting orientation path" in str(
@@ -214,8 +211,8 @@ def test_the_second_triple_is_the_same_orientation_for_scipy(sequence):
         assert (first.inv() * second).magnitude() < 1e-12
         # The rule of the other kind of sequence is another orientation.
         wrong = np.pi - theta if sequence in PROPER_EULER else -theta
-        other = Rotation.from_euler(sequence.upper(), (psi + np.pi, wrong, phi + np.pi))
-        assert (first.inv() * other).magnitude() > 1e-6 or abs(np.cos(theta) * np.sin(theta)) < 1e-3
+        mixed = Rotation.from_euler(sequence.upper(), (psi + np.pi, wrong, phi + np.pi))
+        assert (first.inv() * mixed).magnitude() > 1e-6 or abs(np.cos(theta) * np.sin(theta)) < 1e-3
 
 
 def test_the_chapter_tries_the_second_triple_for_all_twelve():
@@ -239,7 +236,7 @@ def test_two_half_turns_are_one_turn_through_twice_the_angle_between_their_axes(
     q = np.array([np.cos(theta / 2), *np.sin(theta / 2) * axis])
     u_1, u_2 = ([0, *first], [0, *second])
     assert multiply_quaternions(u_2, u_1) == pytest.approx(-q, abs=1e-15)
-    # SciPy makes the two half turns, and the one turn.
+    # SciPy makes the two half turns and the single rotation.
     halves = Rotation.from_rotvec(np.pi * second) * Rotation.from_rotvec(np.pi * first)
     assert (halves.inv() * Rotation.from_rotvec(theta * axis)).magnitude() < 1e-7
     vector = random.normal(size=3)
@@ -266,8 +263,9 @@ def test_the_matrix_of_a_quaternion_is_that_of_rodrigues_for_every_unit_axis():
 
 
 def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_like():
-    """|q|^2 belongs beside the stretch of a matrix. One angle for all steps would share one
-    rounding error.
+    """The square |q|^2 is comparable to the stretch of a matrix.
+
+    One angle for all steps would share one rounding error.
     """
     names = names_of("unit-quaternions")
     squared, matrices = names["drifts"]((111, 112, 113, 114, 115, 116, 117, 118))
@@ -276,8 +274,8 @@ def test_drift_of_quaternions_and_of_matrices_is_alike_when_like_is_set_against_
     assert 1 / 5 < np.exp(np.mean(np.log(quaternion / matrix))) < 5
     constant = np.float32([np.cos(0.01), np.sin(0.01)])
     assert abs(np.hypot(*constant.astype(float)) ** 20_000 - 1) > 1e-4
-    # The matrix of a quaternion stretches by its length squared, and one step
-    # of Newton's puts a matrix right.
+    # The matrix of a quaternion stretches by its length squared, and one step of Newton's method
+    # corrects a matrix.
     q = np.array([0.7, -0.2, 0.5, 0.6])
     image = multiply_quaternions(multiply_quaternions(q, [0, 1, 2, 3]), q * [1, -1, -1, -1])
     assert np.linalg.norm(image) == pytest.approx(q @ q * np.sqrt(14))
@@ -302,7 +300,7 @@ def test_two_full_turns_shrink_to_a_point_with_both_ends_held_and_one_does_not()
 
 
 def test_the_components_of_a_vector_that_stays_go_the_other_way():
-    """q* v q, derived in the chapter, against the dot products with A's unit vectors."""
+    """Compare q* v q, derived in the chapter, with the dot products with A's unit vectors."""
     random = np.random.default_rng(6)
     for q in random.normal(size=(20, 4)):
         q, vector = q / np.linalg.norm(q), random.normal(size=3)

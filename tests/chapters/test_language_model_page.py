@@ -1,4 +1,4 @@
-"""The page on language models quotes what a check says."""
+"""The page on language models quotes the reply of a check."""
 
 import nbformat
 from places import REPOSITORY

@@ -1,6 +1,4 @@
-"""What numbers mean on another processor: how far they may move, and that no
-cell prints what is rounding alone.
-"""
+"""How far numbers may move on another processor, and that no cell prints mere rounding."""
 
 import re
 
@@ -56,7 +54,7 @@ def test_a_move_says_how_far_and_what_is_allowed():
 
 
 class Cell:
-    """What nbval's own comparison asks of a cell."""
+    """The attributes of a cell that nbval's comparison uses."""
 
     class parent:
         skip_compare = ("metadata", "execution_count")
@@ -107,12 +105,13 @@ def printed(notebook):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_no_cell_prints_rounding(path):
-    """Another processor rounds otherwise: what is that small is said as
-    a bound, which the cell asserts.
+    """Another processor rounds otherwise, so numbers that small are printed as a bound.
+
+    The cell asserts the bound.
     """
     for number, text in printed(nbformat.read(path, as_version=4)):
-        for found in FREE.finditer(text):
-            said = re.search(r"(less than|below|under) (about )?$", text[: found.start()])
-            assert said or not 0 < abs(float(found[0])) < 1e-12, (
-                f"cell {number} prints {found[0]}: {text}"
+        for number_in_text in FREE.finditer(text):
+            bound = re.search(r"(less than|below|under) (about )?$", text[: number_in_text.start()])
+            assert bound or not 0 < abs(float(number_in_text[0])) < 1e-12, (
+                f"cell {number} prints {number_in_text[0]}: {text}"
             )

@@ -1,4 +1,4 @@
-"""What was once wrong in the chapters from gimbal lock on, and must not come back."""
+"""Former mistakes in the chapters from gimbal lock on."""
 
 import re
 from functools import cache
@@ -26,29 +26,25 @@ def cells(name):
 
 
 def printed(name, word):
-    """What the cell whose code holds the word has printed."""
+    """Return the output of the cell whose code contains the word."""
     [cell] = [cell for cell in cells(name) if cell.cell_type == "code" and word in cell.source]
     return "".join(output.get("text", "") for output in cell.outputs)
 
 
 def test_with_one_angular_velocity_the_descriptions_differ():
-    """By the numbers of a second computation; one crude angular velocity
-    for all had made them look alike.
-    """
+    """Compare with a second computation: a crude angular velocity for all made them look alike."""
     text = printed("orientation-in-motion", "'Euler angles': euler(angle_rates")
-    found = {
+    errors = {
         name.strip(): float(wrong)
         for name, wrong in re.findall(r"^(.*) wrong by ([\d.]+) rad", text, re.MULTILINE)
     }
-    assert found == pytest.approx(
+    assert errors == pytest.approx(
         {"matrix": 0.0143, "quaternion": 0.0036, "Euler angles": 0.101}, rel=0.05
     )
 
 
 def test_over_a_whole_flight_a_matrix_and_a_quaternion_are_nearly_alike_and_lock_is_not_the_cause():
-    """The steps of Euler's method, by the tangent that they are;
-    and what a hundred throws showed.
-    """
+    """Compare the errors with the tangents of the steps of Euler's method, and with throws."""
     for angle in (0.02, 0.05, 0.1):
         tangent = nearest_dcm(np.eye(3) - angle * np.cross(np.eye(3), [0, 0, 1.0])).dcm
         assert angle_between(tangent, np.eye(3)) == pytest.approx(np.arctan(angle), rel=1e-9)
@@ -70,8 +66,8 @@ def test_over_a_whole_flight_a_matrix_and_a_quaternion_are_nearly_alike_and_lock
 
 def test_coning_of_reports_is_what_the_chapter_says_and_pairs_of_reports_mend_it():
     text = printed("orientation-in-motion", "def in_pairs(totals):")
-    found = [float(number) for number in re.findall(r"each ([\d.]+) degrees", text)]
-    assert found == pytest.approx([0.996, 0.177, 0.045], abs=5e-4)
+    errors = [float(number) for number in re.findall(r"each ([\d.]+) degrees", text)]
+    assert errors == pytest.approx([0.996, 0.177, 0.045], abs=5e-4)
     [remedied] = [
         cell.source
         for cell in cells("orientation-in-motion")
@@ -79,7 +75,7 @@ def test_coning_of_reports_is_what_the_chapter_says_and_pairs_of_reports_mend_it
     ]
     names = {"np": np}
     exec(re.search(r"def in_pairs.*?\n\n\n", remedied, re.DOTALL)[0], names)
-    # For an angular velocity that runs along a straight line, against many small turns.
+    # Compare an angular velocity that is linear in time with many small rotations.
     random = np.random.default_rng(9)
     for first, slope in random.normal(size=(10, 2, 3)):
         wrong = {"sum": [], "pair": []}
@@ -98,7 +94,7 @@ def test_coning_of_reports_is_what_the_chapter_says_and_pairs_of_reports_mend_it
 
 
 def test_a_second_camera_gains_what_the_prediction_keys():
-    """The directions' information, added up: sum of (I - s s^T) over the variances."""
+    """Add up the information of the directions: the sum of (I - s s^T) over the variances."""
     from orientation_recordings import bright_stars
 
     names, directions, magnitudes = bright_stars()
@@ -194,16 +190,14 @@ def test_the_racket_is_a_real_one_and_the_aircraft_flies_straight():
 
 
 def prose(name):
-    """The text of a chapter, its lines joined."""
+    """Return the text of a chapter, with its lines joined."""
     return " ".join(
         "\n".join(cell.source for cell in cells(name) if cell.cell_type == "markdown").split()
     )
 
 
 def test_the_part_across_the_axis_carries_its_own_label():
-    """Beside the middle of its arrow, and far from the arrow of v,
-    whose label it had seemed to be.
-    """
+    """The label is beside the middle of its arrow, and far from the arrow of v."""
     [cell] = [cell for cell in cells("axis-and-angle") if "def rodrigues():" in cell.source]
     names = {}
     exec(cell.source, names)
@@ -226,14 +220,14 @@ def test_the_part_across_the_axis_carries_its_own_label():
 def test_both_makers_signs_are_told_and_a_bias_of_ten_microtesla_costs_sixteen_degrees():
     text = prose("cases-from-practice")
     assert "$+9.81$ along $\\hat{p}_z$" in text and "$-1$ along $\\hat{p}_z$" in text
-    # A field that stays, across the level part of the Earth's, once along either axis of the phone.
+    # A constant field, across the level part of the Earth's, along each axis of the phone in turn.
     truth = Rotation.from_euler("ZXY", (70, 20, -35), degrees=True)
     north_up = np.array([20.0, 0, -44])
-    told = re.findall(
+    printed_errors = re.findall(
         r"heading off by (-?\d+) degrees",
         printed("cases-from-practice", "biased = orientation_of_phone"),
     )
-    for number, bias in zip(told, np.eye(3)[:2] * 10, strict=True):
+    for number, bias in zip(printed_errors, np.eye(3)[:2] * 10, strict=True):
         x, y, _ = north_up + truth.apply(bias)
         assert (
             abs(abs(int(number)) - abs(np.degrees(np.arctan2(y, x)))) < 0.51
@@ -252,12 +246,12 @@ def test_angular_velocity_is_defined_and_proved_to_add():
         def moved(time, at, rate):
             return Rotation.from_rotvec(at + time * rate).as_matrix().T
 
-        def found(matrix):
+        def velocity_of(matrix):
             return angular_velocity_from_dcm_rate(matrix(0), (matrix(h) - matrix(-h)) / (2 * h))
 
-        inner = found(lambda time: moved(time, first, first_rate))
-        outer = found(lambda time: moved(time, second, second_rate))
-        whole = found(
+        inner = velocity_of(lambda time: moved(time, first, first_rate))
+        outer = velocity_of(lambda time: moved(time, second, second_rate))
+        whole = velocity_of(
             lambda time: moved(time, second, second_rate) @ moved(time, first, first_rate)
         )
         assert np.allclose(whole, outer + moved(0, second, 0) @ inner, atol=1e-6)
@@ -276,9 +270,7 @@ def test_a_fixed_direction_is_shown_to_be_the_axis_of_a_turn():
 
 
 def test_of_a_mirror_image_the_smallest_singular_value_is_given_up():
-    """No orientation among many near the answer, or anywhere, fits a
-    matrix of negative determinant better.
-    """
+    """No orientation near the answer, or anywhere, fits a matrix of negative determinant better."""
     assert "$$ (equation-nearest-mirror)" in prose("measured-matrices")
     random = np.random.default_rng(8)
     for _ in range(20):
@@ -309,8 +301,9 @@ def test_the_logarithm_jumps_at_half_a_turn_and_the_exponential_fails_at_a_whole
 
 
 def test_the_square_of_the_quaternion_fits_its_line():
-    """The table is symmetric: below its diagonal stand dots, and no row is wider
-    than a screen of 1300 pixels shows.
+    """The table is symmetric: below its diagonal are dots.
+
+    No row is wider than a screen of 1300 pixels shows.
     """
     [cell] = [
         cell for cell in cells("back-from-a-matrix") if "(equation-back-quaternion)" in cell.source

@@ -1,6 +1,4 @@
-"""What the chapters on sensors claim of recordings and of filters,
-computed a second time, by other means.
-"""
+"""The claims of the chapters on sensors, computed a second time, by other means."""
 
 import json
 import re
@@ -26,8 +24,8 @@ def cells(name):
 FILTERS = "orientation-filters"
 
 
-def found(word, name="orientation-from-sensors"):
-    """Code and print of the one cell whose code holds the word."""
+def output_of(word, name="orientation-from-sensors"):
+    """Return code and output of the only cell whose code contains the word."""
     [cell] = [
         cell
         for cell in cells(name)
@@ -52,7 +50,7 @@ def test_what_is_called_still_is_white_and_what_is_held_is_called_so():
     held, still = x_imu.time < 1, (ngimu.time >= 8.9) & (ngimu.time < 9.9)
     assert neighbours(x_imu.angular_velocity[held]).min() > 0.8
     assert np.abs(neighbours(ngimu.angular_velocity[still])).max() < 3 / np.sqrt(still.sum())
-    _, text = found("def autocorrelation")
+    _, text = output_of("def autocorrelation")
     of_held, of_still = re.findall(r"its autocorrelation (.*)", text)
     assert min(numbers(of_held)) > 0.8 and max(map(abs, numbers(of_still))) < 0.3
     words = (
@@ -63,7 +61,7 @@ def test_what_is_called_still_is_white_and_what_is_held_is_called_so():
 
 
 def test_a_low_pass_filter_makes_a_still_instrument_look_held_until_it_is_averaged():
-    """By SciPy's filters, of first and of second order, over five seeds."""
+    """Compare with SciPy's filters, of first and of second order, over five seeds."""
     from scipy.signal import butter, lfilter
 
     share = 1 - np.exp(-2 * np.pi * 42 / 200)
@@ -77,13 +75,13 @@ def test_a_low_pass_filter_makes_a_still_instrument_look_held_until_it_is_averag
                 for parts in (seconds, means)
             )
             assert as_it_is > 0.9 and averaged < 0.11
-    held, still = (numbers(line[20:]) for line in found("def low_pass")[1].splitlines()[2:])
+    held, still = (numbers(line[20:]) for line in output_of("def low_pass")[1].splitlines()[2:])
     assert held[1] == 100 and held[3] > 50 and still[1] > 90 and still[3] < 8
 
 
 def test_a_nearly_level_circle_gives_the_vertical_offset_with_a_bias():
-    """The same mean whatever the number of poses: errors in variables, by their formula."""
-    text = found("def offsets_left")[1].splitlines()
+    """Errors in variables give the same mean for any number of poses."""
+    text = output_of("def offsets_left")[1].splitlines()
     means = {int(numbers(line)[0]): numbers(line)[-1] for line in text[2:6]}
     many = {int(numbers(line)[0]): numbers(line)[1:] for line in text[7:]}
     for tip in (2, 10):
@@ -95,7 +93,7 @@ def test_a_nearly_level_circle_gives_the_vertical_offset_with_a_bias():
 
 
 def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
-    """Each gain over many stretches, by SciPy's rotations."""
+    """Compute each gain over many stretches, with SciPy's rotations."""
     x_imu = recordings.x_imu()
     end = (x_imu.time > 13) & (x_imu.time < 15)
     last = x_imu.specific_force[end].mean(axis=0)
@@ -116,7 +114,7 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
     stretches = [
         (start, start + 0.5 * k) for k in (1, 2, 3, 4) for start in np.arange(0, 2.1 - 0.5 * k, 0.5)
     ]
-    for line in found("nothing removed", FILTERS)[1].splitlines()[2:6]:
+    for line in output_of("nothing removed", FILTERS)[1].splitlines()[2:6]:
         gain, nothing, _, low, high, worse, count = numbers(line)
         assert abs(left(gain, 0) - nothing) < 0.06
         removed = [
@@ -128,22 +126,22 @@ def test_a_mean_of_motion_that_is_taken_for_a_bias_costs():
         ]
         assert abs(min(removed) - low) < 0.06 and abs(max(removed) - high) < 0.06
         assert (
-            sum(one > left(gain, 0) for one in removed) == worse >= (8 if gain else 5)
+            sum(error > left(gain, 0) for error in removed) == worse >= (8 if gain else 5)
             and count == 10
         )
 
 
 def test_eigenvector_and_decomposition_agree_to_rounding():
-    """One of the two had been given directions that were no unit vectors."""
-    code, text = found("by_svd = ")
+    """One of the two methods had been given directions that were no unit vectors."""
+    code, text = output_of("by_svd = ")
     assert "arcseconds" not in text and re.search(r"assert angle < 1e-\d+", code)
 
 
 def test_two_tests_without_the_truth_convict_different_faults_and_neither_acquits():
-    """Middle and spread over five draws of a hundred flights."""
+    """Compare middle and spread over five draws of a hundred flights."""
     rows = {
         line[:28].strip(): numbers(line[28:])
-        for line in found("def flights", FILTERS)[1].splitlines()[2:]
+        for line in output_of("def flights", FILTERS)[1].splitlines()[2:]
     }
     nees, nis, by_nis, by_autocorrelation = (
         {name: row[k] for name, row in rows.items()} for k in (0, 3, 4, 5)
@@ -163,7 +161,7 @@ def test_two_tests_without_the_truth_convict_different_faults_and_neither_acquit
 
 
 def test_a_reset_keeps_a_filter_honest_and_the_whole_rotation_longest():
-    for line in found("def after_one_look", FILTERS)[1].splitlines()[1:]:
+    for line in output_of("def after_one_look", FILTERS)[1].splitlines()[1:]:
         degrees, none, _, _, printed, _, _, whole, _, _ = numbers(line)
         assert whole <= printed <= none and (degrees > 3 or none < 3.2)
         assert (none > 6 and whole < 3.4) if degrees == 12 else True
@@ -172,19 +170,19 @@ def test_a_reset_keeps_a_filter_honest_and_the_whole_rotation_longest():
 def test_a_gate_keeps_the_heading_past_a_car_in_every_draw():
     rows = {
         line[:27].strip(): np.reshape(numbers(line[27:]), (5, 2))
-        for line in found(r"def follow\(walk", FILTERS)[1].splitlines()[1:]
+        for line in output_of(r"def follow\(walk", FILTERS)[1].splitlines()[1:]
     }
     middle, worst = rows["no gate"].T
     assert middle.min() > 10 and worst.min() > 35
     assert rows["gate 9.2"][:, 1].max() < 8 and rows["gate 9.2"][:, 0].max() < 1.5
     assert rows["no gate, true bias error"][:, 0].max() < 5
     assert np.abs(rows["no car, no gate"] - rows["no car, gate 9.2"])[:, 0].max() < 0.3
-    told = numbers(found("longest, ended", FILTERS)[1].splitlines()[-1])
-    assert 0.5 < told[0] < 2 and told[1] > 97
+    seconds = numbers(output_of("longest, ended", FILTERS)[1].splitlines()[-1])
+    assert 0.5 < seconds[0] < 2 and seconds[1] > 97
 
 
 def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments():
-    """Over twenty draws of one simple case: a body at rest, one direction, no bias."""
+    """Use twenty draws of one simple case: a body at rest, one direction, no bias."""
     for claimed, expected in ((1.0, 2.0), (0.5, 8.0)):
         random, squares = np.random.default_rng(8), []
         estimate = MultiplicativeKalmanFilter(
@@ -206,7 +204,7 @@ def test_innovations_are_what_the_filter_claims_only_if_it_knows_its_instruments
 def test_no_setting_of_the_filter_on_the_recording_is_said_to_be_right():
     rows = [
         numbers(line)
-        for line in found("looks at every sample", FILTERS)[1].splitlines()
+        for line in output_of("looks at every sample", FILTERS)[1].splitlines()
         if line[:8].strip()[:1] == "0"
     ]
     assert len(rows) == 10
@@ -225,9 +223,7 @@ def test_both_makers_have_their_matrix_in_the_table():
 
 
 def test_turning_a_filter_turns_what_it_expects():
-    """An innovation is along the body: the same flight, seen from a
-    turned body, has turned innovations.
-    """
+    """An innovation is along the body: for a rotated body, the same flight has rotated ones."""
     turned = Rotation.from_rotvec([0.3, -1.0, 0.5]).as_matrix()
     filters = [
         MultiplicativeKalmanFilter(start, 0.01 * np.eye(6), 0.01, 0.001)
@@ -246,8 +242,9 @@ def test_turning_a_filter_turns_what_it_expects():
 
 
 def walk(seed, car):
-    """The file of a phone on a table and then on a walk past a car, all things
-    varied; as in the chapter, by SciPy.
+    """Return the file of a phone on a table and then on a walk past a car, with everything varied.
+
+    SciPy computes it as the chapter does.
     """
     random, step = np.random.default_rng(seed), 0.01
     time = np.arange(0, 45, step)
@@ -284,20 +281,20 @@ def walk(seed, car):
 
 
 def test_the_bench_finds_nothing_wrong_with_walks_without_a_car():
-    """Of half of such walks it had warned, once."""
+    """The bench had once warned about half of such walks."""
     lights = {examine(walk(seed, False), "walk").light("filter") for seed in range(3)}
     assert lights == {"as it should be"}
 
 
 def named(word, chapter, *names):
-    """Functions and constants that the one cell with the word defines, as the chapter has them."""
+    """Return functions and constants that the only cell with the word defines."""
     scope = {"np": np, **vars(orientation)}
-    exec(found(word, chapter)[0].partition("\n\n\nahead")[0].partition("\n\ng_A")[0], scope)
+    exec(output_of(word, chapter)[0].partition("\n\n\nahead")[0].partition("\n\ng_A")[0], scope)
     return [scope[name] for name in names]
 
 
 def active(dcm):
-    """SciPy's rotation for a direction cosine matrix of this book, which is its transpose."""
+    """Return SciPy's rotation for a direction cosine matrix of this book, its transpose."""
     return Rotation.from_matrix(np.transpose(dcm))
 
 
@@ -319,7 +316,7 @@ def test_swing_and_twist_by_scipy():
 def test_zero_on_the_left_takes_out_the_mounting_by_scipy():
     ground, mounting = Rotation.from_euler("Z", 65, degrees=True), Rotation.random(rng=4)
     turn = Rotation.from_euler("Z", 30, degrees=True)  # of the person, about the vertical
-    # SciPy's rotations carry vectors: the instrument's own rotation in its ground frame.
+    # SciPy's rotations act on vectors: the instrument's own rotation in its ground frame.
     before, after = ground * mounting, turn * ground * mounting
     C_0, C = before.as_matrix().T, after.as_matrix().T
     assert np.allclose(active(C_0.T @ C).as_euler("ZYX", degrees=True), [30, 0, 0])
@@ -362,7 +359,7 @@ def test_misorientation_by_scipy():
 
 
 def test_an_error_is_carried_through_a_pose_as_by_differences():
-    """Against the poses themselves: one is disturbed, carried through another, and compared."""
+    """Compare with the poses themselves: disturb one, carry it through another, and compare."""
     poses, carrying = named("def carrying", "cases-from-practice", "poses", "carrying")
     random = np.random.default_rng(5)
     through, pose = poses(Rotation.random(2, rng=random).as_matrix(), random.normal(size=(2, 3)))
@@ -375,8 +372,8 @@ def test_an_error_is_carried_through_a_pose_as_by_differences():
 
 
 def test_a_camera_on_a_hand_is_as_wrong_as_its_covariance_says():
-    """As printed for five seeds; and, alone, the rotation by the formula for directions."""
-    for line in found("def calibrations", "cases-from-practice")[1].splitlines()[2:]:
+    """Compare with the printed seeds and, for the rotation alone, with the formula."""
+    for line in output_of("def calibrations", "cases-from-practice")[1].splitlines()[2:]:
         *_, low, high, low_angle, high_angle, low_place, high_place = numbers(line)
         assert 5.4 < low < high < 6.7
         assert 2.6 < low_angle < high_angle < 3.5 and 2.6 < low_place < high_place < 3.6
@@ -391,7 +388,7 @@ def test_a_camera_on_a_hand_is_as_wrong_as_its_covariance_says():
 
 @pytest.mark.long
 def test_the_printed_seed_of_the_walks_ranks_as_the_chapter_says():
-    """Seeds 1 to 6: the middle and the worst walk, without a gate, and the worst with one."""
+    """Compare seeds 1 to 6: the middle and worst walk without a gate, and the worst with one."""
     from orientation_recordings.walks import STEP, walks
     from tools.gate import chapter
 

@@ -11,7 +11,7 @@ from notebook_pages.notebooks import all_notebooks, normalise
 
 @pytest.mark.parametrize("path", all_notebooks(REPOSITORY), ids=lambda path: path.stem)
 def test_notebook_is_stored_as_make_notebooks_stores_it(path):
-    """Run in order, every cell, with normal metadata: else nbval would compare nothing."""
+    """Every cell was run in order, with normal metadata; otherwise nbval would compare nothing."""
     notebook = nbformat.read(path, as_version=4)
     counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
     assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"

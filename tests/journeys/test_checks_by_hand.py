@@ -1,4 +1,4 @@
-"""A check judges what stands in the notebook, in a kernel and on a page."""
+"""A check judges the present content of the notebook, in a kernel and on a page."""
 
 import shutil
 
@@ -25,7 +25,7 @@ def kernel(tmp_path_factory):
     with client.setup_kernel():
 
         def run(code):
-            """Run a cell as a student does: what it shows, or the name of its error."""
+            """Run a cell as a student does; return its output, or the name of its error."""
             cell = nbformat.v4.new_code_cell(code)
             client.nb.cells.append(cell)
             try:
@@ -93,7 +93,7 @@ def test_an_orientation_is_shown_as_a_triad(kernel):
     assert "We read: [[0, 1, 0], [0, 0, 1], [1, 0, 0]]" in kernel(
         "print(repr(check('simple-orientations/crank', matrix)))"
     )
-    # What is no orientation has none.
+    # An answer that is no orientation has no picture.
     assert "<svg" not in kernel("check('simple-orientations/crank', 2*matrix)")
 
 
@@ -103,7 +103,7 @@ IDLE = "() => !document.querySelector('.cell.running, .cell.waiting, html.live-b
 
 @pytest.fixture
 def reader(browser, site):
-    """A student at a page of exercises, who writes and runs with the keys alone."""
+    """Return a page of exercises, which a student edits and runs only with the keyboard."""
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     page = context.new_page()
     page.goto(site + PAGE)
@@ -115,7 +115,7 @@ def reader(browser, site):
     def write(code):
         answer.query_selector(".cm-content").click()
         page.keyboard.press("Control+a")
-        # The editor indents by itself: all in one line.
+        # The editor indents by itself, so write everything in one line.
         page.keyboard.type(code)
 
     def run():

@@ -1,4 +1,4 @@
-"""Somebody pipes a command into `head`, or runs one that is not installed."""
+"""A user pipes a command into `head`, or runs one that is not installed."""
 
 import os
 import shutil
@@ -34,8 +34,8 @@ def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):
     call = command if command.startswith("coursework") else None
     module, _, rest = command.partition(" ")
     program = call and f"-m {call}" or f"-c 'from {module} import main; main()' {rest}"
-    said = run(f'("$PYTHON" {program} | true) 2>&1', PYTHONUNBUFFERED=unbuffered)
-    assert said == ""
+    output = run(f'("$PYTHON" {program} | true) 2>&1', PYTHONUNBUFFERED=unbuffered)
+    assert output == ""
 
 
 def test_a_student_who_asks_for_an_author_s_command_is_told_what_to_install(tmp_path):
@@ -43,18 +43,18 @@ def test_a_student_who_asks_for_an_author_s_command_is_told_what_to_install(tmp_
     shutil.copytree(
         SOURCES[0] / "coursework", package, ignore=shutil.ignore_patterns("authoring", "grading")
     )
-    said = run(f'cd {tmp_path} && "$PYTHON" -m coursework new first-course')
-    assert "invalid choice: 'new'" in said
-    assert "install coursework-tools\nbeside coursework-checks" in said
+    output = run(f'cd {tmp_path} && "$PYTHON" -m coursework new first-course')
+    assert "invalid choice: 'new'" in output
+    assert "install coursework-tools\nbeside coursework-checks" in output
 
 
 def test_an_author_without_the_extra_is_told_which(tmp_path):
     (tmp_path / "nbformat.py").write_text("raise ModuleNotFoundError(name='nbformat')")
-    said = run(
+    output = run(
         f'cd {tmp_path} && "$PYTHON" -m coursework new first-course',
         PYTHONPATH=os.pathsep.join([str(tmp_path), str(SOURCES[0])]),
     )
-    assert said.splitlines() == [
+    assert output.splitlines() == [
         "coursework new needs nbformat, which is not installed here. Install coursework-tools, or "
         "in a working copy: python -m pip install --editable '.[tools]'"
     ]

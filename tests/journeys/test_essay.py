@@ -1,4 +1,4 @@
-"""The essay, opened at a stop, read on, and read in windows of all sizes."""
+"""A reader opens the essay at a stop, reads on, and uses windows of all sizes."""
 
 import pytest
 
@@ -8,7 +8,7 @@ STOPS = """() => [...document.querySelectorAll('[data-stop]')]
   .map((stop) => [stop.closest('section').id, stop.dataset.stop])"""
 SIZES = [(1300, 900), (1024, 700), (740, 360), (380, 760)]
 ZOOMED = (320, 200)  # a window of 1280 by 800 at 400 %
-# Whether the place is seen: within the window, and under nothing else.
+# Whether the place is visible: within the window, and not covered.
 SEEN = """(box) => {
   const { left, top, width, height } = box.getBoundingClientRect();
   const there = document.elementFromPoint(left + Math.min(width, 40) / 2, top + height / 2);
@@ -51,7 +51,7 @@ def test_a_link_to_a_stop_shows_that_stop(page, site, stop):
 @pytest.mark.parametrize("page", [ZOOMED], indirect=True)
 @pytest.mark.parametrize("stop", ["two-motors", "lock", "your-turn"])
 def test_at_400_percent_a_link_to_a_stop_shows_its_text_and_its_still(page, site, stop):
-    """The moving figure would fill the window; each stop has its still instead."""
+    """The moving figure would fill the window, so each stop has its still instead."""
     page.goto(f"{site}{ESSAY}#{stop}")
     page.wait_for_load_state("networkidle")
     assert page.locator(f"#{stop} > h2").evaluate(SEEN)

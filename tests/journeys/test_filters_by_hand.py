@@ -1,4 +1,4 @@
-"""What an engineer and a reader do with the filter of chapter 19."""
+"""An engineer and a reader use the filter of chapter 19."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from orientation import MultiplicativeKalmanFilter
 
 
 def test_an_engineer_writes_the_filter_from_the_page_in_another_style():
-    """The fourteen lines in another style: active rotations of SciPy, the error of Sola."""
+    """Write the fourteen lines in another style: active rotations of SciPy, the error of Sola."""
     random = np.random.default_rng(3)
     R, b = Rotation.random(random_state=4), np.zeros(3)
     P = np.diag([0.04] * 3 + [0.0025] * 3)
@@ -57,15 +57,15 @@ def test_an_engineer_writes_the_filter_from_the_page_in_another_style():
 
 
 def test_a_reader_moves_the_steel_and_the_gate(browser, site):
-    """With the keys of a keyboard, on the page as it is built."""
+    """Use the keyboard on the page as it is built."""
     page = browser.new_page(viewport={"width": 1300, "height": 900})
     page.goto(f"{site}/chapters/orientation-filters.html")
     figure = page.locator(".moving[data-figure=gate]")
     figure.scroll_into_view_if_needed()
     slider, gate = figure.get_by_role("slider"), figure.get_by_role("combobox")
     slider.focus()
-    told = figure.locator(".stage").first
-    worst = lambda: float(told.inner_text().partition("the worst ")[2].partition("°")[0])
+    stage = figure.locator(".stage").first
+    worst = lambda: float(stage.inner_text().partition("the worst ")[2].partition("°")[0])
     without = worst()
     assert without > 35
     gate.select_option("0.01")
@@ -85,5 +85,5 @@ def test_a_reader_moves_the_steel_and_the_gate(browser, site):
         ".innerText.includes(`the worst ${was}°`)",
         arg=strong,
     )
-    assert worst() > strong  # weak steel slips through
+    assert worst() > strong  # weak steel passes the gate
     page.close()

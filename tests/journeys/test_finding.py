@@ -19,7 +19,7 @@ def page(browser, site):
 
 
 def first_place(page, words):
-    """The address and the title of the first place that the search shows for ``words``."""
+    """Return the address and the title of the first place that the search shows for ``words``."""
     page.locator("form.bd-search:not(dialog form) input").click()
     page.keyboard.press("Control+a")
     page.keyboard.type(words)

@@ -1,4 +1,4 @@
-"""Formulas, read by a browser that translates, copied, and read on a phone."""
+"""A reader meets formulas in a translating browser, copies them, and reads them on a phone."""
 
 import pytest
 
@@ -21,14 +21,14 @@ def open_chapter(page, site):
 
 def test_a_browser_that_translates_leaves_formulas_alone(page, site):
     open_chapter(page, site)
-    kept = page.evaluate(
+    translated = page.evaluate(
         "[...document.querySelectorAll('.katex')].map((formula) => formula.translate)"
     )
-    assert len(kept) > 50 and not any(kept)
+    assert len(translated) > 50 and not any(translated)
 
 
 def copied(page, selector):
-    """What a reader gets who drags over an element and copies it."""
+    """Return the text that a reader gets by selecting an element and copying it."""
     page.locator(selector).first.evaluate("(box) => getSelection().selectAllChildren(box)")
     page.keyboard.press("Control+c")
     return page.evaluate("navigator.clipboard.readText()")

@@ -1,4 +1,4 @@
-"""An engineer or a packager installs what the repository offers, from an sdist and a wheel."""
+"""An engineer or a packager installs the repository's projects from an sdist and a wheel."""
 
 import os
 import re
@@ -27,7 +27,7 @@ def run(*command, **options):
 def project(request, tmp_path_factory):
     """The name of a project, its unpacked sdist, and the wheel built from that sdist alone."""
     place = tmp_path_factory.mktemp("project")
-    # A copy, since setuptools leaves folders behind where it builds.
+    # Use a copy, since setuptools leaves folders behind where it builds.
     copy = place / "copy"
     tracked = subprocess.check_output(
         ["git", "ls-files", "-z", request.param], cwd=REPOSITORY, text=True
@@ -76,7 +76,7 @@ def test_the_licence_names_every_folder_and_none_that_is_not_there():
 
 
 def test_pytest_in_a_fresh_clone_says_what_to_run(tmp_path):
-    """It ended in a traceback of conftest.py."""
+    """It once ended in a traceback of conftest.py."""
     for name in ("conftest.py", "pyproject.toml"):
         os.link(REPOSITORY / name, tmp_path / name)
     (tmp_path / "nbval.py").write_text("raise ModuleNotFoundError(name='nbval')")
@@ -107,10 +107,10 @@ def test_an_address_that_does_not_answer_is_named(tmp_path):
 def test_the_module_from_the_sdist_passes_its_tests(project, tmp_path):
     _, unpacked, wheel = project
     run("-m", "pip", "install", "-q", "--no-deps", "--target", tmp_path / "installed", wheel)
-    said = run(
+    output = run(
         *("-m", "pytest", "-q", "-p", "no:xdist", "-p", "no:cacheprovider"),
         *("tests/orientation/test_frames.py", "tests/orientation/test_borders.py"),
         cwd=unpacked,
         env={**os.environ, "PYTHONPATH": str(tmp_path / "installed")},
     )
-    assert " passed" in said and "failed" not in said
+    assert " passed" in output and "failed" not in output

@@ -1,4 +1,4 @@
-"""Controls have names of their own, figures stay as they were put, and nothing covers them."""
+"""Controls have unique names, figures keep their state, and nothing covers them."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""An engineer pastes raw numbers, as they stand in threads and consoles, into the command."""
+"""An engineer pastes raw numbers from threads and consoles into the command."""
 
 import subprocess
 import sys
@@ -17,7 +17,7 @@ def explained(*arguments):
 
 
 def test_noise_makes_no_opposite_turns_the_same():
-    """Small angles, read as degrees, hardly move: then a degree of noise fits anything."""
+    """Small angles, taken as degrees, hardly move, so that a degree of noise fits anything."""
     code, answer = explained("--noise", "1", "0.21 0.13 -0.32", "-0.21 -0.13 0.32")
     assert code == 2 and "the same orientation" not in answer
     assert "one is the turn in the other sense" in answer
@@ -74,9 +74,9 @@ def test_angles_that_were_read_and_built_by_two_sequences_are_named(first):
     from scipy.spatial.transform import Rotation
 
     turn = Rotation.from_quat([float(number) for number in first.split()])
-    other = Rotation.from_euler("xyz", turn.as_euler("XYZ"))
+    rebuilt = Rotation.from_euler("xyz", turn.as_euler("XYZ"))
     for written in (Rotation.as_quat, Rotation.as_matrix):
-        texts = [str(written(each)) for each in (turn, other)]
+        texts = [str(written(each)) for each in (turn, rebuilt)]
         code, answer = explained("--first-is", "xyzw", "--second-is", "xyzw", *texts)
         assert "they were read off as" in answer and "(space fixed)" in answer, answer
 
@@ -101,7 +101,7 @@ def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
 
 Q, P = "0.7304 0.3604 0.2402 0.5284", "0.7404 0.3504 0.2302 0.5254"
 MATRIX = "-0.9999 0.0042 -0.0133 -0.0140 -0.2997 0.9539 0.0000 0.9540 0.2997"
-#: Files as they are written, pasted whole, and the orientations that stand in them.
+# Complete files, pasted whole, and the orientations in them.
 FILES = {
     "COLMAP's images.txt": (
         "# Image list with two lines of data per image:\n"
@@ -159,7 +159,7 @@ def test_of_a_whole_file_of_bvh_one_is_told_what_to_cut_out():
     )
     code, answer = explained(motion, Q)
     assert code == 3 and "cut the three angles of one joint out" in answer and "CHANNELS" in answer
-    # What was told is done: the joint's angles, with their sequence.
+    # Follow the advice: paste the joint's angles with their sequence.
     code, answer = explained("--first-is", "zxy", "-3.41 14.78 -164.35", Q)
     assert code == 2 and "Nothing that was tried explains" in answer
 
@@ -173,7 +173,7 @@ def bench(*arguments):
     return done.returncode, done.stdout + done.stderr
 
 
-#: A trajectory as TUM's benchmark prints it: positions and quaternions, and no instrument.
+# A trajectory as TUM's benchmark prints it: positions and quaternions, without an instrument.
 TUM = "\n".join(
     f"{1305031102.1758 + 0.01 * k:.4f} {1.3405 + 0.01 * k:.4f} 0.6266 1.6575 0.6574 0.6126 -0.2949 "
     "-0.3248"
@@ -186,20 +186,22 @@ def test_a_trajectory_is_taken_for_no_instrument_and_the_answer_to_the_question_
     file.write_text(TUM)
     code, answer = bench(file, "--quick")
     assert code == 3 and "which columns are an instrument's" in answer and "--columns" in answer
-    assert "1.3405 0.6266 1.6575" in answer  # its first rows are shown
+    assert "1.3405 0.6266 1.6575" in answer  # the answer shows its first rows
     code, answer = bench(file, "--quick", "--columns", "time=1 gyroscope=2-6")
     assert code == 3 and "a vector has three" in answer
 
 
 def test_of_a_walking_leg_no_axes_are_named_that_are_not_its_own():
-    """Pushes drown gravity there, and no magnetometer stands beside it."""
+    """Acceleration exceeds gravity there, and there is no magnetometer."""
     legs = REPOSITORY / "packages" / "orientation-lab" / "src" / "orientation_recordings" / "data"
     for leg in ("lower_leg.csv", "upper_leg.csv"):
         code, answer = bench(
             legs / leg, "--quick", "--rate", "120", "--columns", "gyroscope=5-7:rad/s"
         )
-        told = " ".join(answer.partition("axes of the gyroscope")[2].partition("ok  ")[0].split())
-        assert code == 0 and ("x, y, z" in told or "pushes hide gravity" in told), answer
+        findings = " ".join(
+            answer.partition("axes of the gyroscope")[2].partition("ok  ")[0].split()
+        )
+        assert code == 0 and ("x, y, z" in findings or "pushes hide gravity" in findings), answer
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""Run is pressed where all is well, where Python is not there, and where it cannot be."""
+"""A reader presses Run where all is well, where Python is missing, and where it cannot run."""
 
 import threading
 from functools import partial
@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 CHAPTER = "chapters/simple-orientations.html"
 EXERCISE = "exercises/simple-orientations.html"
-# Words of browsers and of their programs, which say nothing to a reader.
+# Words of browsers and of their programs, which mean nothing to a reader.
 OF_PROGRAMS = ("Failed to fetch", "NetworkError", "dynamically imported module", "SecurityError")
 
 
@@ -21,8 +21,8 @@ def page(browser):
     context.close()
 
 
-def said(page, words):
-    """The words of the bar, once they hold ``words``."""
+def status_text(page, words):
+    """Return the text of the status bar once it contains ``words``."""
     bar = page.locator("#live-words")
     expect(bar).to_contain_text(words, timeout=PATIENCE)
     text = bar.inner_text()
@@ -50,11 +50,11 @@ def test_a_book_kept_without_python_says_so_offline(page, site):
     page.locator("details.take-away summary").click()
     page.locator("button.keep-book").click()
     page.locator(".live-choices button").first.click()
-    said(page, "is stored in this browser")
+    status_text(page, "is stored in this browser")
     page.context.set_offline(True)
     page.reload()
     page.locator("button.run-cell:visible").first.click()
-    assert "network" in said(page, "without Python")
+    assert "network" in status_text(page, "without Python")
 
 
 def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
@@ -67,7 +67,7 @@ def test_a_page_in_a_closed_frame_says_that_the_frame_is_closed(page, site):
 
 
 class AsText(SimpleHTTPRequestHandler):
-    """A server that sends scripts as text, and forbids browsers to take them for anything else."""
+    """A server that sends scripts as text, and forbids browsers to guess their type."""
 
     extensions_map = {**SimpleHTTPRequestHandler.extensions_map, ".js": "text/plain"}
 

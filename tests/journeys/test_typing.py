@@ -1,4 +1,4 @@
-"""Whatever a reader types, wherever the book takes text, stands there as it was typed."""
+"""Whatever a reader types, wherever the book accepts text, appears as typed."""
 
 import pytest
 from engines import ENGINES, Chromium
@@ -9,7 +9,7 @@ CELL = "chapters/simple-orientations.html"
 ANSWER = "exercises/simple-orientations.html"
 ASCII = "".join(map(chr, range(33, 127)))
 WRITTEN = "x = sm.pi/6  # " + ASCII + "äöüßéñçø€"
-# The middle of a cell's code, scrolled into view. Some are folded away.
+# The middle of a cell's code, scrolled into view. Some cells are folded.
 MIDDLE = """(number) => {
   const code = [...document.querySelectorAll('div.cell_input')].filter((one) => one.checkVisibility())[number];
   code.scrollIntoView({ block: 'center', behavior: 'instant' });
@@ -32,7 +32,7 @@ def test_every_character_stands_in_a_cell_as_it_was_typed(engine, site, address)
     engine.go(site + address)
     engine.wait(SETTLED)
     engine.click(*engine.run(MIDDLE, 1))
-    # Nobody waits for an editor to come.
+    # Type at once, without waiting for the editor.
     engine.type(WRITTEN)
     engine.wait("() => document.activeElement.matches('.cm-content')")
     assert WRITTEN in engine.run(CODE)
@@ -55,7 +55,7 @@ def write_in_a_cell(page, site):
 
 @pytest.fixture
 def late(page, site):
-    """A chapter whose editor comes three seconds after it was asked for."""
+    """A chapter whose editor arrives three seconds after it was requested."""
 
     def later(route):
         page.wait_for_timeout(3000)
@@ -79,7 +79,7 @@ def test_what_is_typed_before_the_editor_has_come_goes_into_it(late):
 
 
 def test_whoever_clicks_again_before_the_editor_has_come_types_once(late):
-    """In the same cell, and in another one."""
+    """Try it in the same cell and in another one."""
     late.keyboard.type("one/")
     late.wait_for_timeout(600)
     late.mouse.click(*late.evaluate(MIDDLE, 1))
@@ -155,11 +155,11 @@ def test_the_fields_of_figures_take_every_character_and_new_lines(page, site, ad
 
 @pytest.mark.parametrize("address", [CELL, "workbench.html", "rotations.html", "index.html"])
 def test_who_dictates_hello_to_a_page_turns_nothing(page, site, address):
-    """Dictation types where nothing takes text."""
+    """Dictation types where nothing accepts text."""
     page.goto(site + address)
     page.wait_for_load_state("load")
     page.locator("h1").first.click()
-    # Long pages are laid out in parts, the last of them while the reader begins.
+    # Long pages are laid out in parts, the last of them after the reader begins.
     page.wait_for_function("!document.documentElement.classList.contains('in-parts')")
     before = page.evaluate("[location.href, document.documentElement.className]")
     page.keyboard.type("hello/all?")

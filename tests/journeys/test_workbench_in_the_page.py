@@ -3,7 +3,7 @@
 import pytest
 from test_numbers_from_elsewhere import FLU, FRD, OPENCV, OPENGL
 
-#: A window on a desk and one of a telephone.
+# A window on a desktop and one of a telephone.
 WINDOWS = {"desk": (1300, 900), "telephone": (380, 760)}
 
 
@@ -23,7 +23,7 @@ def answer(page):
 
 
 def paste(page, first, second):
-    """Click into each field, take all that stands there, and type over it."""
+    """Click into each field, select all its text, and type over it."""
     for side, numbers in (("first", first), ("second", second)):
         page.get_by_label(f"What the {side} program gives").click()
         page.keyboard.press("Control+a")
@@ -45,9 +45,9 @@ def test_a_click_answers_the_question_of_a_shared_order(page):
     last = answer(page).get_by_role("listitem").filter(has_text="stands last in both")
     click(page, last.get_by_role("button", name="So it is"))
     answer(page).get_by_text("They differ, and this is how:").wait_for()
-    told = answer(page).inner_text().lower()
-    assert "y and z of the body reversed" in told and "world" not in told
-    # Other numbers: what was answered of these is not known of those.
+    reply = answer(page).inner_text().lower()
+    assert "y and z of the body reversed" in reply and "world" not in reply
+    # For other numbers, the earlier answer does not apply.
     paste(page, FLU, FLU.replace("0.301", "0.302"))
     paste(page, FLU, FRD)
     answer(page).get_by_text("One question decides.").wait_for()
@@ -57,12 +57,12 @@ def test_keys_answer_the_question_of_a_shared_layout(page):
     paste(page, OPENCV, OPENGL)
     answer(page).get_by_text("One question decides.").wait_for()
     assert "are the body's axes its rows or its columns?" in answer(page).inner_text()
-    # Nor does the line under the drawing answer what is still asked.
+    # The line under the drawing must not answer the open question either.
     reversed_axes = page.locator(".moving").get_by_text("reversed (").all()
     assert all(each.evaluate("(own) => !!own.closest('.answer')") for each in reversed_axes)
     columns = answer(page).get_by_role("listitem").filter(has_text="are the columns")
     button = columns.get_by_role("button", name="So it is")
-    for _ in range(12):  # from the field to the button with the tabulator alone
+    for _ in range(12):  # from the field to the button with the Tab key alone
         page.keyboard.press("Tab")
         if button.evaluate("(own) => own === document.activeElement"):
             break

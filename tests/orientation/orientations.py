@@ -1,4 +1,4 @@
-"""Orientations to test with, and how far apart two of them are. Nothing here uses the package."""
+"""Test orientations and their distance, computed without the package."""
 
 import numpy as np
 from scipy.linalg import expm
@@ -12,8 +12,11 @@ def cross_product_matrix(vector):
 
 
 def unit_vectors_after_turn(axis, angle, unit_vectors=np.eye(3)):
-    """Turn vectors, given as rows, about an axis by the right hand: the motion itself, as a limit
-    of many small turns, which each add the cross product of the axis and the vector."""
+    """Rotate vectors, given as rows, about an axis by the right-hand rule.
+
+    This follows the motion itself, in many small steps that each add the cross product of the axis
+    and the vector.
+    """
     axis = np.asarray(axis, dtype=float)
     return unit_vectors @ expm(angle * cross_product_matrix(axis / np.linalg.norm(axis))).T
 
@@ -24,21 +27,21 @@ def random_unit_vectors(count, seed, size=3):
 
 
 def random_dcms(count, seed):
-    """Uniformly spread direction cosine matrices, from random triads."""
+    """Return uniformly distributed direction cosine matrices, from random triads."""
     first, helper = random_unit_vectors(count, seed), random_unit_vectors(count, seed + 1)
     third = np.cross(first, helper)
     third /= np.linalg.norm(third, axis=1, keepdims=True)
     return np.stack([first, np.cross(third, first), third], axis=1)
 
 
-def rotation_error(dcm, other):
-    """Largest angle, in radians, between orientations that are almost the same."""
-    difference = np.asarray(dcm, dtype=float) - np.asarray(other, dtype=float)
+def rotation_error(dcm, expected):
+    """Return the largest angle, in radians, between orientations that are almost the same."""
+    difference = np.asarray(dcm, dtype=float) - np.asarray(expected, dtype=float)
     return float(np.linalg.norm(difference, axis=(-2, -1)).max() / np.sqrt(2))
 
 
 def angles_near(middle, count, seed, offset=0.0):
-    """Triples of angles whose second one lies on either side of a value, so far away."""
+    """Return triples of angles whose second one is ``offset`` above or below ``middle``."""
     source = np.random.default_rng(seed)
     angles = source.uniform(-np.pi, np.pi, (count, 3))
     angles[:, 1] = middle + offset * source.choice((-1, 1), count)
@@ -46,12 +49,12 @@ def angles_near(middle, count, seed, offset=0.0):
 
 
 def lock_angles(sequence):
-    """Middle angles at which the first and the last axis of a sequence are parallel."""
+    """Return the middle angles at which the first and the last axis of a sequence are parallel."""
     return (0.0, np.pi) if sequence[0] == sequence[2] else (np.pi / 2, -np.pi / 2)
 
 
 def composed(angles, sequence):
-    """Body fixed direction cosine matrix as a product of matrices written out by hand."""
+    """Return a body fixed direction cosine matrix as a product of matrices written out by hand."""
     if any(hasattr(angle, "free_symbols") for angle in angles):
         import sympy as library
 

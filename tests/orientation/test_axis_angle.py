@@ -1,4 +1,4 @@
-"""Axis and angle, there and back, from 0 to pi."""
+"""Axis and angle, in both directions, from 0 to pi."""
 
 import numpy as np
 import pytest
@@ -110,7 +110,7 @@ def test_there_and_back_from_0_to_pi(angle):
     assert rotation_error(dcm_from_axis_angle(axes, angles), dcms) < 1e-14
     assert abs(angles - angle).max() < 1e-14
     np.testing.assert_allclose(np.linalg.norm(axes, axis=1), 1, atol=5e-16)
-    # How far the axis may be off depends on how much it matters.
+    # The allowed error of the axis depends on its effect.
     same = np.minimum(
         np.linalg.norm(axes - UNIT_AXES, axis=1),
         np.linalg.norm(axes + UNIT_AXES, axis=1) if angle > np.pi - 1e-15 else np.inf,
@@ -132,15 +132,15 @@ def test_there_and_back_from_random_matrices_with_noise():
 
 def test_exact_half_turns_and_rest():
     for axis in np.eye(3):
-        found, angle = axis_angle_from_dcm(2 * np.outer(axis, axis) - np.eye(3))
-        assert angle == np.pi and (found == axis).all()
+        axis_found, angle = axis_angle_from_dcm(2 * np.outer(axis, axis) - np.eye(3))
+        assert angle == np.pi and (axis_found == axis).all()
     for rest in (np.eye(3), np.where(np.eye(3) == 1, 1, -0.0), np.eye(3, dtype=int)):
-        found, angle = axis_angle_from_dcm(rest)
-        assert angle == 0 and found.tolist() == [1, 0, 0]
+        axis_found, angle = axis_angle_from_dcm(rest)
+        assert angle == 0 and axis_found.tolist() == [1, 0, 0]
 
 
 def test_both_quaternions_of_an_orientation_have_one_axis_and_angle():
-    """The formula is everybody's who has components, of either sign."""
+    """Anyone who has components uses the formula, with either sign."""
     for quaternion in [*random_unit_vectors(20, 7, size=4), np.array([1.0, 0, 0, 0])]:
         for sign in (1, -1):
             *axis, angle = axis_angle_components(NUMBERS, *sign * quaternion)
@@ -166,7 +166,7 @@ def test_half_angle():
 
 
 def test_matrix_is_the_exponential_of_the_cross_product():
-    # The sign in the exponent is what tells components from vectors.
+    # The sign of the exponent distinguishes components from vectors.
     from scipy.linalg import expm
 
     for axis in UNIT_AXES[:20]:

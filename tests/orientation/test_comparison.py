@@ -1,4 +1,4 @@
-"""The same orientation or not, and what went wrong: every mix-up is named, and no other."""
+"""Whether two orientations are the same, and that every mix-up is named, and no other."""
 
 import random
 import re
@@ -91,7 +91,7 @@ EQUAL = [
 
 @pytest.mark.parametrize("pair", EQUAL, ids=range(len(EQUAL)))
 def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch):
-    pair = [one() if callable(one) else one for one in pair]
+    pair = [form() if callable(form) else form for form in pair]
 
     def refuse(*_, **__):
         raise AssertionError("an algebraic simplification was asked for")
@@ -112,7 +112,7 @@ def test_equal_in_other_forms_quickly_and_without_simplifying(pair, monkeypatch)
 DIFFERENT = [
     (simple_dcm("z", theta), simple_dcm("z", -theta)),
     (simple_dcm("z", theta), simple_dcm("y", theta)),
-    # Right for some angles and not for others:
+    # These are right for some angles and wrong for others.
     (
         simple_dcm("z", theta).subs(sm.cos(theta), sm.sqrt(1 - sm.sin(theta) ** 2)),
         simple_dcm("z", theta),
@@ -162,8 +162,8 @@ def test_every_symbol_is_tried_well_inside_of_all_four_quadrants_and_beyond_half
 
 def test_symbols_are_compared_by_name():
     in_time, positive = me.dynamicsymbols("theta"), sm.Symbol("theta", positive=True)
-    for other in (in_time, positive, sm.Function("theta")(sm.Symbol("t"))):
-        assert same_orientation(simple_dcm("z", theta), simple_dcm("z", other))
+    for namesake in (in_time, positive, sm.Function("theta")(sm.Symbol("t"))):
+        assert same_orientation(simple_dcm("z", theta), simple_dcm("z", namesake))
     assert not same_orientation(simple_dcm("z", theta), simple_dcm("z", sm.Symbol("Theta")))
 
 
@@ -235,7 +235,7 @@ def scaled(angles, factors):
 
 
 def rebuilt(cause, angles, sequence):
-    """What an answer must be if the cause that was named is true. Knows every sentence there is."""
+    """Return the answer that follows from a named cause; it parses every sentence that there is."""
 
     def place(word):
         return NAMES.index(word) if word in NAMES else ("first", "second", "third").index(word)
@@ -250,32 +250,32 @@ def rebuilt(cause, angles, sequence):
         return composed(angles[::-1], sequence[::-1])
     if cause == "the angles are in reverse order":
         return composed(angles[::-1], sequence)
-    if found := re.fullmatch(r"it is the sequence (...), not (...)", cause):
-        assert found[2] == sequence
-        return composed(angles, found[1])
-    if found := re.fullmatch(r"(?:the angle of the )?(\w+)(?: turn)? has the wrong sign", cause):
+    if match := re.fullmatch(r"it is the sequence (...), not (...)", cause):
+        assert match[2] == sequence
+        return composed(angles, match[1])
+    if match := re.fullmatch(r"(?:the angle of the )?(\w+)(?: turn)? has the wrong sign", cause):
         return composed(
             scaled(
                 angles,
-                factors(found[1], -1)
-                if found[1] in NAMES
-                else [-1 if k == place(found[1]) else 1 for k in range(3)],
+                factors(match[1], -1)
+                if match[1] in NAMES
+                else [-1 if k == place(match[1]) else 1 for k in range(3)],
             ),
             sequence,
         )
-    if found := re.fullmatch(r"(\w+) and (\w+) have changed places", cause):
+    if match := re.fullmatch(r"(\w+) and (\w+) have changed places", cause):
         order = [0, 1, 2]
-        a, b = place(found[1]), place(found[2])
+        a, b = place(match[1]), place(match[2])
         order[a], order[b] = b, a
         return composed(tuple(angles[k] for k in order), sequence)
-    if found := re.fullmatch(
+    if match := re.fullmatch(
         r"(.+) (?:was|were) given in degrees where radians are expected", cause
     ):
-        return composed(scaled(angles, factors(found[1], DEGREES)), sequence)
-    if found := re.fullmatch(
+        return composed(scaled(angles, factors(match[1], DEGREES)), sequence)
+    if match := re.fullmatch(
         r"(.+) (?:was|were) turned from degrees to radians once too often", cause
     ):
-        return composed(scaled(angles, factors(found[1], TOO_OFTEN)), sequence)
+        return composed(scaled(angles, factors(match[1], TOO_OFTEN)), sequence)
     raise AssertionError(f"nobody knows what this means: {cause}")
 
 
@@ -298,7 +298,7 @@ def numerical(matrix, angles):
 
 
 def demand_truth(diagnosis, answer, angles, sequence):
-    """Every cause that was named must make the answer that was given."""
+    """Check that every named cause makes the given answer."""
     assert not diagnosis.same
     assert len(set(diagnosis.causes)) == len(diagnosis.causes)
     for cause in diagnosis.causes:
@@ -329,12 +329,12 @@ def test_symbolic_mixups_are_named(sequence, mixup):
 
 @all_sequences
 def test_symbolic_wrong_sequence_is_named(sequence):
-    others = [other for other in SEQUENCES if other != sequence]
+    others = [alternative for alternative in SEQUENCES if alternative != sequence]
     expected = composed(SYMBOLS, sequence)
-    for other in others if sequence in ("zxy", "zxz") else others[::4]:
-        diagnosis = diagnose(composed(SYMBOLS, other), expected)
-        assert f"it is the sequence {other}, not {sequence}" in diagnosis.causes
-        demand_truth(diagnosis, composed(NUMBERS, other), NUMBERS, sequence)
+    for wrong_sequence in others if sequence in ("zxy", "zxz") else others[::4]:
+        diagnosis = diagnose(composed(SYMBOLS, wrong_sequence), expected)
+        assert f"it is the sequence {wrong_sequence}, not {sequence}" in diagnosis.causes
+        demand_truth(diagnosis, composed(NUMBERS, wrong_sequence), NUMBERS, sequence)
 
 
 @all_sequences
@@ -346,7 +346,9 @@ def test_numerical_mixups_are_named(sequence):
         for which in ("first", "second", "third")
     ]
     sentences += [
-        f"it is the sequence {other}, not {sequence}" for other in SEQUENCES if other != sequence
+        f"it is the sequence {alternative}, not {sequence}"
+        for alternative in SEQUENCES
+        if alternative != sequence
     ]
     sentences += [
         "the angles were given in degrees where radians are expected",
@@ -384,8 +386,8 @@ def test_two_mixups_at_once_are_not_taken_for_one(sequence):
     expected = composed(NUMBERS, sequence)
     first, second, third = NUMBERS
     for angles in ((-first, -second, third), (first, -third, second), (-third, second, first)):
-        for other in (sequence, sequence[::-1], "xyz"):
-            for answer in (composed(angles, other), composed(angles, other).T):
+        for wrong_sequence in (sequence, sequence[::-1], "xyz"):
+            for answer in (composed(angles, wrong_sequence), composed(angles, wrong_sequence).T):
                 diagnosis = diagnose(answer, expected, NUMBERS, sequence)
                 if not diagnosis.same:
                     demand_truth(diagnosis, answer, NUMBERS, sequence)
@@ -501,7 +503,7 @@ NOT_HALVED = "the angle was not halved: a quaternion holds the cosine and sine o
 
 
 def quaternion_mixups(turn):
-    """Wrong answers about the quaternion ``turn(angle)``, made without the package's product."""
+    """Return wrong answers about the quaternion ``turn(angle)``, without the package's product."""
 
     def parts(quaternion):
         return list(quaternion)
@@ -558,7 +560,7 @@ def test_nothing_is_named_for_other_quaternions():
 
 
 def test_a_quaternion_is_not_read_as_entries_of_a_matrix():
-    """These could be the first entries of turns about y, and the answer's those about z."""
+    """These could be the first entries of rotations about y, and the answer's those about z."""
     c, s = sm.cos(psi + theta), sm.sin(psi + theta)
     (cause,) = diagnose((c, -s, 0, s), (c, 0, s, 0)).causes
     assert cause.startswith("it has length")
@@ -591,27 +593,27 @@ def test_bad_input():
         with pytest.raises(ValueError, match="must be a direction cosine matrix"):
             function(theta, dcm)
         name = "given" if function is diagnose else "first"
-        for spoilt, said in (
+        for spoilt, message in (
             (dcm * np.nan, r"\[0, 0\] is nan"),
             (random_dcms(2, 1) * np.nan, r"\[0, 0, 0\] is nan"),
             (composed(SYMBOLS, "zxy") * sm.nan, " holds nan"),
         ):
-            with pytest.raises(ValueError, match=f"^{name}{said}"):
+            with pytest.raises(ValueError, match=f"^{name}{message}"):
                 function(spoilt, dcm)
         with pytest.raises(TypeError, match="must hold real numbers"):
             function(dcm, "zxy")
     for pair in ((random_dcms(3, 7), random_dcms(3, 7)), (random_dcms(3, 7), dcm)):
-        for given, expected in (pair, pair[::-1]):
+        for answer, expected in (pair, pair[::-1]):
             with pytest.raises(ValueError, match="one answer at a time"):
-                diagnose(given, expected)
-    for angles, error, said in (
+                diagnose(answer, expected)
+    for angles, error, message in (
         ((1, 2), ValueError, r" has shape \(2,\)"),
         (np.zeros((2, 3)), ValueError, r" has shape \(2, 3\)"),
         ((1, np.nan, 2), ValueError, r"\[1\] is nan"),
         ((psi, sm.nan, 1), ValueError, " holds nan"),
         ("zxy", TypeError, " must hold real numbers"),
     ):
-        with pytest.raises(error, match=f"^angles{said}"):
+        with pytest.raises(error, match=f"^angles{message}"):
             diagnose(dcm.T, dcm, angles, "zxy")
     with pytest.raises(ValueError, match="give both angles and sequence"):
         diagnose(dcm.T, dcm, NUMBERS)
@@ -638,14 +640,12 @@ def test_numbers_from_a_file_are_diagnosed_with_the_tolerance_of_their_digits():
 
 
 def test_a_tolerance_holds_for_everything_that_is_asked():
-    """Four digits from a file: rounding is not blamed for a mix-up, and angles
-    make what they make to four digits.
-    """
-    right, other = composed(NUMBERS, "zxy"), composed(NUMBERS[::-1], "yxz")
-    right, other = (np.round(np.array(dcm, dtype=float), 4) for dcm in (right, other))
-    found = diagnose(other, right, angles=NUMBERS, sequence="zxy", tolerance=2e-3)
+    """With four digits from a file, rounding is no mix-up, and angles need to fit only so far."""
+    right, wrong = composed(NUMBERS, "zxy"), composed(NUMBERS[::-1], "yxz")
+    right, wrong = (np.round(np.array(dcm, dtype=float), 4) for dcm in (right, wrong))
+    diagnosis = diagnose(wrong, right, angles=NUMBERS, sequence="zxy", tolerance=2e-3)
     assert (
-        found.causes
+        diagnosis.causes
         == diagnose(composed(NUMBERS[::-1], "yxz"), composed(NUMBERS, "zxy"), NUMBERS, "zxy").causes
     )
     unrelated = np.round(random_dcms(1, seed=4)[0], 4)

@@ -1,4 +1,4 @@
-"""Jacobians and covariances of every conversion, against differences, identities and throws."""
+"""Jacobians and covariances of every conversion, against differences and identities."""
 
 import mpmath
 import numpy as np
@@ -39,7 +39,7 @@ def turned(dcm, turn, along):
 
 
 def difference(conversion, value, further, along, step=1e-6):
-    """The Jacobian by central differences of the public functions."""
+    """Compute the Jacobian by central differences of the public functions."""
     columns = []
     is_dcm = np.shape(value) == (3, 3)
     for change in np.eye(3 if is_dcm else np.size(value)) * step:
@@ -84,7 +84,7 @@ def test_of_what_gives_a_matrix(case, along):
 
 @pytest.mark.parametrize("sequence", o.SEQUENCES)
 def test_there_and_back_is_the_identity_and_angular_velocity_agrees(sequence):
-    """Two independent roads: the inverse, and the matrix that makes angular velocity of rates."""
+    """Compare two independent ways: the inverse, and the matrix from rates to angular velocity."""
     there = o.jacobian(o.dcm_from_body_fixed, ANGLES, sequence)
     dcm = o.dcm_from_body_fixed(ANGLES, sequence)
     angles = o.body_fixed_from_dcm(dcm, sequence)
@@ -103,7 +103,7 @@ def test_a_quaternion_gives_twice_its_vector_part():
 
 
 def test_the_logarithm_to_forty_digits():
-    """By mpmath's differences, which lose no digits that matter."""
+    """Compare with mpmath's differences, which lose no significant digits."""
     dcm = o.dcm_from_rotation_vector(VECTOR)
 
     def logarithm(turn):

@@ -1,5 +1,6 @@
-"""Rodrigues parameters, distances, means and random orientations, against
-SciPy, pytransform3d and formulas.
+"""Rodrigues parameters, distances, means and random orientations.
+
+They are compared with SciPy, pytransform3d and formulas.
 """
 
 import numpy as np
@@ -57,7 +58,7 @@ def test_rodrigues_parameters_are_the_tangent_of_half_the_angle():
 
 
 def test_modified_rodrigues_parameters_agree_with_scipy():
-    # Only SciPy's matrix is turned round: its parameters of A in N are ours.
+    # Only SciPy's matrix is transposed: its parameters of A in N are ours.
     assert np.allclose(
         scipy_rotation_from_dcm(DCMS).as_mrp(), modified_rodrigues_from_dcm(DCMS), atol=1e-13
     )
@@ -126,7 +127,7 @@ def test_angle_between_agrees_with_scipy_and_keeps_its_digits():
 
 
 def test_distances_are_functions_of_one_angle():
-    """The Frobenius norm is sqrt(8) sin(angle/2), the chord of quaternions 2 sin(angle/4)."""
+    """The Frobenius norm is sqrt(8) sin(angle/2), and the chord of quaternions 2 sin(angle/4)."""
     angle = angle_between(DCMS[1:], DCMS[:-1])
     entries = np.linalg.norm(DCMS[1:] - DCMS[:-1], axis=(1, 2))
     assert np.allclose(entries, np.sqrt(8) * np.sin(angle / 2), atol=1e-13)
@@ -195,7 +196,7 @@ def test_two_headings_half_a_turn_apart_have_no_mean():
     for metric in ("entries", "angle"):
         with pytest.raises(ValueError, match="no unique mean"):
             mean_orientation(simple_dcm("z", [0, np.pi]), metric=metric)
-    # By angle a tenth of the weight draws the mean a tenth of the way, to either side.
+    # A tenth of the weight moves the mean by a tenth of the angle, to either side.
     with pytest.raises(ValueError, match="no unique mean by angle.*two are 36 degrees apart"):
         mean_orientation(simple_dcm("z", [0, np.pi]), [9, 1], "angle")
 
@@ -232,9 +233,7 @@ def test_means_refuse_what_they_cannot_read():
 
 
 def test_random_orientations_are_uniform():
-    """The density of the angle is (1 - cos)/pi; unit vectors are even on the
-    sphere; the mean matrix vanishes.
-    """
+    """Check the density of the angle, (1 - cos)/pi, the unit vectors, and the mean matrix."""
     dcms = random_orientations(20_000, 9)
     check_dcm(dcms)
     angles = np.sort(angle_between(dcms, np.eye(3)))

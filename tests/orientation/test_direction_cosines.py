@@ -38,7 +38,8 @@ def test_simple_orientation_is_that_of_a_reference_frame(axis):
 
 
 def test_matrix_takes_components_along_n_to_components_along_a():
-    # A is turned a little about z, so a vector along n_x is seen from A as turned the other way.
+    # A is rotated a little about z, so a vector along n_x appears rotated in the opposite sense
+    # from A.
     np.testing.assert_allclose(
         simple_dcm("z", 0.1) @ (1, 0, 0), (np.cos(0.1), -np.sin(0.1), 0), atol=1e-16
     )
@@ -85,7 +86,7 @@ def test_any_one_wrong_entry_is_found(row, column, change):
 
 
 def test_triads_that_are_skewed_or_shrunk_in_one_plane_are_found():
-    # The third row is the cross product of the first two, so only these two can tell.
+    # The third row is the cross product of the first two, so only these two can show the fault.
     for first, second, _ in random_dcms(20, 9):
         for x, y in (
             (0.9 * first, second),
@@ -100,7 +101,7 @@ def test_triads_that_are_skewed_or_shrunk_in_one_plane_are_found():
 
 
 @pytest.mark.parametrize(
-    "factor, said",
+    "factor, message",
     [
         (3, "row x has length 3, not 1. The whole matrix is 3 times an orthogonal one"),
         (1.001, "row x has length 1.001, not 1. The whole matrix is 1.001 times an orthogonal one"),
@@ -113,14 +114,14 @@ def test_triads_that_are_skewed_or_shrunk_in_one_plane_are_found():
         (np.array([[1], [0.8], [1]]), "row y has length 0.8, not 1. An entry or a sign is wrong"),
     ],
 )
-def test_likely_causes(factor, said):
+def test_likely_causes(factor, message):
     for dcm in (np.eye(3), random_dcms(1, 10)[0]):
-        with pytest.raises(ValueError, match=said):
+        with pytest.raises(ValueError, match=message):
             check_dcm(factor * dcm)
 
 
 def test_rows_that_are_not_perpendicular_are_named_with_their_dot_product():
-    for share, said in (
+    for share, message in (
         (0.02, "Were its entries rounded"),
         (-0.02, "Were its entries rounded"),
         (0.3, "An entry or a sign is wrong"),
@@ -129,7 +130,7 @@ def test_rows_that_are_not_perpendicular_are_named_with_their_dot_product():
         rows = np.eye(3)
         rows[2] = (0, share, np.sqrt(1 - share**2))
         with pytest.raises(
-            ValueError, match=f"rows y and z have dot product {share}, not 0. {said}"
+            ValueError, match=f"rows y and z have dot product {share}, not 0. {message}"
         ):
             check_dcm(rows)
 
@@ -174,8 +175,8 @@ def test_nearest_is_nearer_than_any_other():
         for sign in (1, -1):
             others = np.array(
                 [
-                    unit_vectors_after_turn(axis, sign * size, one.T).T
-                    for axis, one in zip(axes, nearest)
+                    unit_vectors_after_turn(axis, sign * size, dcm.T).T
+                    for axis, dcm in zip(axes, nearest)
                 ]
             )
             assert (np.sqrt(((others - measured) ** 2).sum(axis=(1, 2))) > distance).all()

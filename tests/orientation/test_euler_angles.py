@@ -1,4 +1,4 @@
-"""All twelve sequences, there and back, at and near gimbal lock."""
+"""All twelve sequences, in both directions, at and near gimbal lock."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ all_sequences = pytest.mark.parametrize("sequence", SEQUENCES)
 def test_the_twelve_sequences():
     allowed = {a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if a != b != c}
     assert set(SEQUENCES) == allowed and len(SEQUENCES) == 12
-    assert set(PROPER_EULER) == {one for one in allowed if one[0] == one[2]}
+    assert set(PROPER_EULER) == {sequence for sequence in allowed if sequence[0] == sequence[2]}
     assert set(TAIT_BRYAN) == allowed - set(PROPER_EULER)
 
 
@@ -116,7 +116,7 @@ def test_way_back_at_and_near_lock(sequence, offset):
         dcms = dcm_from_body_fixed(angles_near(lock, 300, 14, offset), sequence)
         demand_way_back(dcms, sequence)
         demand_way_back(dcms + source.uniform(-2.3e-16, 2.3e-16, dcms.shape), sequence)
-        # What is measured is off by more; the answer must not be off by much more than that.
+        # The measured matrix has a larger error; that of the answer must not be much larger.
         demand_way_back(dcms + source.uniform(-1e-10, 1e-10, dcms.shape), sequence, largest=5e-10)
 
 
@@ -128,12 +128,12 @@ def test_way_back_at_exact_lock_with_either_zero(sequence, zero):
         angles = np.array([(first, lock, last) for first in quarters for last in quarters])
         dcms = dcm_from_body_fixed(angles, sequence).round()
         dcms[dcms == 0] = zero
-        found = demand_way_back(dcms, sequence, largest=1e-15)
-        assert (found[:, 0] == 0).all()
-        assert found[:, 1] == pytest.approx(lock, abs=1e-15)
+        recovered = demand_way_back(dcms, sequence, largest=1e-15)
+        assert (recovered[:, 0] == 0).all()
+        assert recovered[:, 1] == pytest.approx(lock, abs=1e-15)
         one_by_one = [body_fixed_from_dcm(dcm, sequence) for dcm in dcms]
         assert rotation_error(dcm_from_body_fixed(one_by_one, sequence), dcms) < 1e-15
-        assert not np.signbit(found[found == 0]).any()
+        assert not np.signbit(recovered[recovered == 0]).any()
 
 
 @all_sequences
@@ -160,7 +160,7 @@ def test_way_back_among_the_24_ways_a_cube_fits_its_box(sequence):
 def test_margin_is_the_angle_between_the_first_and_the_last_axis(sequence):
     angles = np.random.default_rng(15).uniform(-10, 10, (500, 3))
     dcms = dcm_from_body_fixed(angles, sequence)
-    # Both axes along D: the first axis is A's and D's alone knows it by the matrix.
+    # Use both axes along D: the first axis belongs to A, and only the matrix gives it along D.
     first = dcms[:, :, "xyz".index(sequence[0])]
     last = np.eye(3)["xyz".index(sequence[2])]
     between = np.arctan2(np.linalg.norm(np.cross(first, last), axis=1), abs(first @ last))

@@ -1,6 +1,4 @@
-"""The filter of an orientation tells the truth about itself: its errors
-are as large as its covariance says.
-"""
+"""The errors of the orientation filter are as large as its covariance says."""
 
 import numpy as np
 import pytest
@@ -19,9 +17,7 @@ REFERENCES = {"up": ((0, 0, 1.0), 0.03), "north": ((0.6, 0, -0.8), 0.08)}
 
 
 def flight(runs, seconds, seed):
-    """True orientations and biases of many flights, and what
-    their instruments say, step by step.
-    """
+    """Simulate true orientations and biases of many flights, and their instruments, by steps."""
     source = np.random.default_rng(seed)
     dcm = random_dcms(runs, seed)
     bias = 0.05 * source.normal(size=(runs, 3))
@@ -41,7 +37,7 @@ def flight(runs, seconds, seed):
 
 
 def first_estimate(dcm, seed):
-    """A filter that starts wrong by as much as it believes."""
+    """Return a filter whose first error is as large as its covariance says."""
     source = np.random.default_rng(seed)
     covariance = np.diag([0.2**2] * 3 + [0.05**2] * 3)
     wrong = dcm_from_rotation_vector(0.2 * source.normal(size=(len(dcm), 3)))
@@ -49,7 +45,7 @@ def first_estimate(dcm, seed):
 
 
 def normalised_errors(estimate, dcm, bias):
-    """The squares of the errors, each measured by the covariance that belongs to it."""
+    """Return the squares of the errors, each normalised by its covariance."""
     turned = rotation_vector_from_dcm(dcm @ estimate.dcm.swapaxes(-1, -2))
     error = np.concatenate([turned, bias - estimate.bias], axis=-1)
     return np.einsum("ni,nij,nj->n", error, np.linalg.inv(estimate.covariance), error)
@@ -85,9 +81,7 @@ def test_errors_are_as_large_as_the_filter_says():
 
 
 def test_a_filter_that_claims_too_much_is_found_out():
-    """The same test fails for a filter that believes its instruments to be
-    three times as good as they are.
-    """
+    """The same test fails for a filter that assumes its instruments to be three times as good."""
     squares, _ = follow(claimed=1 / 3)
     assert squares.mean() > 9
 
@@ -110,7 +104,7 @@ def test_one_orientation_is_a_batch_of_one():
 
 
 def kalman_filters(shape, source):
-    """A filter with a bias, of a batch of any shape, in which nothing is like anything else."""
+    """Return a filter with a bias, of a batch of any shape, with different values everywhere."""
     roots = 0.03 * source.normal(size=(*shape, 6, 6))
     estimate = MultiplicativeKalmanFilter(
         random_dcms(max(1, np.prod(shape, dtype=int)), 5).reshape(*shape, 3, 3),
@@ -123,7 +117,7 @@ def kalman_filters(shape, source):
 
 
 def by_differences(function):
-    """The derivative of a vector by small turns of the body."""
+    """Return the derivative of a vector by small rotations of the body."""
     size = 1e-6
     return np.stack(
         [
@@ -158,28 +152,28 @@ def test_each_step_is_kalmans_for_the_model_of_its_docstring(shape):
         seen, known = (v[k] / np.linalg.norm(v[k]) for v in (observed, reference))
         H = np.hstack([by_differences(lambda turn: turn @ dcm[k] @ known), 0 * eye])
         information = H.T / deviation[k] ** 2
-        # By the inverses of the covariances: another way than that of the gain.
+        # Use the inverses of the covariances, another way than the gain.
         after = np.linalg.inv(np.linalg.inv(P[k]) + information @ H)
         difference = seen - dcm[k] @ known
         change = after @ information @ difference
         S = H @ P[k] @ H.T + deviation[k] ** 2 * eye
         reset = np.eye(6)
         reset[:3, :3] = by_differences(
-            # The error that is left after a correction, if the whole error was a little larger.
+            # The error that remains after a correction, if the whole error was a little larger.
             lambda turn: rotation_vector_from_dcm(
                 dcm_from_rotation_vector(change[:3] + rotation_vector_from_dcm(turn))
                 @ dcm_from_rotation_vector(-change[:3])
             )
         )
         reached = estimate.covariance[k]
-        for found, right in (
+        for computed, right in (
             (innovation.difference[k], difference),
             (innovation.covariance[k], S),
             (innovation.normalised_square[k], difference @ np.linalg.inv(S) @ difference),
             (estimate.dcm[k], dcm_from_rotation_vector(change[:3]) @ dcm[k]),
             (estimate.bias[k], bias[k] + change[3:]),
         ):
-            np.testing.assert_allclose(found, right, rtol=1e-8, atol=1e-9)
+            np.testing.assert_allclose(computed, right, rtol=1e-8, atol=1e-9)
         # The filter resets to second order in the correction.
         third_order = np.linalg.norm(change[:3]) ** 3 * np.abs(after).max()
         assert np.abs(reached - reset @ after @ reset.T).max() < third_order
@@ -216,7 +210,7 @@ def test_a_gate_leaves_alone_what_it_rejects_and_says_so():
 
 @pytest.mark.parametrize(("freedom", "gate"), [(2, 9.21034), (3, 11.34487)])
 def test_an_honest_filter_rejects_one_in_a_hundred(freedom, gate):
-    """Directions and whole orientations, twenty thousand of each."""
+    """Test directions and whole orientations, twenty thousand of each."""
     count, random = 20_000, np.random.default_rng(9)
     P = np.diag([4e-4, 1e-4, 2e-4])
     truth = random_dcms(count, 4)
@@ -235,7 +229,7 @@ def test_an_honest_filter_rejects_one_in_a_hundred(freedom, gate):
 
 
 def test_a_whole_orientation_counts_as_three_directions_would():
-    """Three equal directions at right angles have the information 2 / variance about each axis."""
+    """Three equal orthogonal directions have the information 2 / variance about each axis."""
     source = np.random.default_rng(7)
     P = np.diag([1e-6] * 3 + [1e-7] * 3)
     start, measured = np.eye(3), dcm_from_rotation_vector(1e-3 * source.normal(size=3))
@@ -248,7 +242,7 @@ def test_a_whole_orientation_counts_as_three_directions_would():
 
 
 def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
-    """Small errors about one axis: the same numbers as one linear problem for all moments."""
+    """For small errors about one axis, compare with a single linear problem for all times."""
     random, steps, h, q, s = np.random.default_rng(2), 12, 0.1, 1e-4, 2e-4
     p, b = 1e-3, 1e-3
     estimate = MultiplicativeKalmanFilter(
@@ -263,10 +257,10 @@ def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
             np.eye(2 * steps + 2)[2 * k : 2 * k + 2],
             np.eye(2 * steps + 2)[2 * k + 2 :][:2],
         )
-        # The angle is behind by what the bias adds to the gyroscope.
+        # The change of the angle differs from the gyroscope's by the bias.
         rows += [(later[0] - now[0] + h * now[1]) / q / h**0.5, (later[1] - now[1]) / s / h**0.5]
         values += [rates[k] * h / q / h**0.5, 0]
-        # Measured along the body: a body turned by an angle about z sees x at minus that angle.
+        # Measured along the body: a body rotated by an angle about z sees x at minus that angle.
         estimate.observe((1, -seen[k], 0), (1, 0, 0), 1e-4)
         rows.append(later[0] / 1e-4)
         values.append(seen[k] / 1e-4)
@@ -283,7 +277,7 @@ def test_a_smoother_is_the_least_squares_of_all_that_was_seen():
 
 
 def test_a_smoother_is_nearer_to_the_truth_and_as_honest():
-    """Of two hundred flights, at their middle."""
+    """Compare two hundred flights, at their middle."""
     flights = list(flight(200, 8, 5))
     estimate, predictions, middle = first_estimate(flights[0][0], 6), [], 200
     for k, (_, _, measured, directions) in enumerate(flights[1:], 1):
@@ -306,7 +300,7 @@ def test_a_smoother_is_nearer_to_the_truth_and_as_honest():
 
 
 def test_a_reset_of_first_order_would_enlarge_the_covariance_with_every_correction():
-    """Five hundred corrections of six degrees about any axes; the exact derivative shrinks it."""
+    """Make five hundred corrections of six degrees; the exact derivative shrinks the covariance."""
     random = np.random.default_rng(8)
     first, second, exact = np.eye(3), np.eye(3), np.eye(3)
     for axis in random.normal(size=(500, 3)):

@@ -1,4 +1,4 @@
-"""A graph of named frames: the right product over every path, and no way for it to go stale."""
+"""A graph of named frames: the right product over every path, and no stale matrices."""
 
 import itertools
 
@@ -46,8 +46,9 @@ def test_camera_in_handgrip(gimbal):
 
 
 def random_tree(seed, count=6):
-    """Edges of a random tree: joined in random order, each given from
-    either end, in every way there is.
+    """Return the edges of a random tree, joined in random order.
+
+    Each edge is given from either end, in every possible form.
     """
     source = np.random.default_rng(seed)
     names = [f"F{k}" for k in range(count)]
@@ -89,7 +90,7 @@ def random_tree(seed, count=6):
 
 
 def complete(truth, names):
-    """Every pair's matrix, found by multiplying what is known until nothing is missing."""
+    """Return every pair's matrix, by multiplying the known ones until none is missing."""
     truth = {**truth, **{(name, name): np.eye(3) for name in names}}
     while len(truth) < len(names) ** 2:
         for (a, b), (c, d) in itertools.product(list(truth), repeat=2):
@@ -107,7 +108,7 @@ def test_trees_of_every_shape_both_ways_and_as_reference_frames(seed):
         dcm = frames.dcm(target, source)
         check_dcm(dcm)
         assert rotation_error(dcm, truth[target, source]) < 1e-14
-        # The truth is found along a path of its own; SymPy's frames along the one they were given.
+        # The truth comes from a separate path; SymPy's frames use the given one.
         assert rotation_error(sympy_frames[target].dcm(sympy_frames[source]), dcm) < 1e-14
 
 
@@ -272,21 +273,21 @@ def test_turns_about_other_axes_are_not_joined():
 
 def test_orienting_leaves_the_frames_as_they_were():
     empty = Frames()
-    one = empty.orient_axis("A", "N", "z", psi)
-    two = one.orient_axis("B", "A", "x", theta)
-    other = one.orient_axis("B", "A", "y", theta)
+    first = empty.orient_axis("A", "N", "z", psi)
+    second = first.orient_axis("B", "A", "x", theta)
+    alternative = first.orient_axis("B", "A", "y", theta)
     assert (
         repr(empty) == "Frames()"
-        and repr(one) == "Frames(A in N)"
-        and repr(two) == "Frames(A in N, B in A)"
+        and repr(first) == "Frames(A in N)"
+        and repr(second) == "Frames(A in N, B in A)"
     )
     with pytest.raises(
         ValueError, match=r"no frame named 'A' in this Frames\(\): it is still empty"
     ):
         empty.dcm("A", "N")
     with pytest.raises(ValueError, match=r"no frame named 'B' in this Frames\(\): it has A, N"):
-        one.dcm("B", "N")
-    assert not same_orientation(two.dcm("B", "N"), other.dcm("B", "N"))
+        first.dcm("B", "N")
+    assert not same_orientation(second.dcm("B", "N"), alternative.dcm("B", "N"))
 
 
 ORIENTATIONS = {
@@ -307,7 +308,7 @@ ORIENTATIONS = {
 def test_a_cell_can_be_run_again_but_not_with_another_answer(orientation, angle, changed):
     frames = orientation(Frames().orient_axis("A", "N", "x", phi), angle)
     assert orientation(frames, angle) is frames
-    # The same, from the other end.
+    # The same orientation, from the other end.
     assert frames.orient_dcm("A", "D", frames.dcm("A", "D")) is frames
     with pytest.raises(
         ValueError, match="D and A are already connected, by D - A: a second path could contradict"
@@ -338,9 +339,9 @@ def test_a_second_path_is_refused_and_the_first_is_named(gimbal):
 def test_a_batch_run_again_with_other_data():
     frames = Frames().orient_axis("B", "A", "z", np.zeros(3))
     assert frames.orient_axis("B", "A", "z", np.zeros(3)) is frames
-    for other in (np.ones(3), np.zeros(2), 0.0):
+    for other_angle in (np.ones(3), np.zeros(2), 0.0):
         with pytest.raises(ValueError, match="already connected"):
-            frames.orient_axis("B", "A", "z", other)
+            frames.orient_axis("B", "A", "z", other_angle)
     empty = Frames().orient_axis("B", "A", "z", np.zeros(0))
     assert empty.orient_axis("B", "A", "z", np.zeros(0)) is empty
 
@@ -358,8 +359,8 @@ def test_what_was_given_can_change_afterwards():
         .orient_dcm("M", "N", matrix)
     )
     before = frames.dcm("F", "A"), frames.dcm("M", "N")
-    for given in (angle, angles, axis, dcm, quaternion, matrix):
-        given[0] = 7
+    for argument in (angle, angles, axis, dcm, quaternion, matrix):
+        argument[0] = 7
     assert (frames.dcm("F", "A") == before[0]).all() and frames.dcm("M", "N") == before[1]
 
 
@@ -418,7 +419,7 @@ def test_equation_tells_what_each_factor_is():
         .orient_body_fixed("F", "E_1", SYMBOLS, "zxy")
         .orient_axis("G", "F", (sm.sqrt(2), 0, 1), 0.5)
     )
-    for target, source, said in (
+    for target, source, subscript in (
         ("B", "A", r"\text{axis }(0, 1, 1),\ 0.5"),
         ("C", "B", r"\text{matrix}"),
         ("B", "C", r"\text{matrix},\ \text{back}"),
@@ -429,8 +430,8 @@ def test_equation_tells_what_each_factor_is():
         ("E_1", "F", r"y,\ - \varphi;\ x,\ - \theta;\ z,\ - \psi"),
     ):
         tex = str(frames.equation(target, source))
-        assert rf"_{{{said}}}" in tex
-    assert r"E\_1" in str(frames.equation("E_1", "D"))  # an underscore of a name is no subscript
+        assert rf"_{{{subscript}}}" in tex
+    assert r"E\_1" in str(frames.equation("E_1", "D"))  # an underscore of a name is not a subscript
 
 
 # --- errors ---------------------------------------------------------------------------------------
@@ -449,7 +450,7 @@ def test_a_frame_in_itself():
 
 
 @pytest.mark.parametrize(
-    "orient, said",
+    "orient, message",
     [
         (lambda frames: frames.orient_axis("B", "A", "q", 1), "axis must be .* not 'q'"),
         (lambda frames: frames.orient_axis("B", "A", "z", np.nan), "angle is nan"),
@@ -479,8 +480,8 @@ def test_a_frame_in_itself():
         (lambda frames: frames.orient_quaternion("B", "A", (1, 1, 0, 0)), "length 1.414"),
     ],
 )
-def test_bad_input_is_refused_when_it_is_given(orient, said):
-    with pytest.raises(ValueError, match=said):
+def test_bad_input_is_refused_when_it_is_given(orient, message):
+    with pytest.raises(ValueError, match=message):
         orient(Frames())
 
 
@@ -488,7 +489,7 @@ def test_bad_input_is_refused_when_it_is_given(orient, said):
 
 
 def test_names_of_other_programs_are_names():
-    """ROS names frames with slashes, others with spaces and hyphens."""
+    """ROS names frames with slashes, other programs with spaces and hyphens."""
     frames = Frames().orient_axis("imu link", "robot/base-link", "z", 0.3)
     assert frames.names == ("robot/base-link", "imu link")
     assert frames.path("imu link", "robot/base-link") == "imu link - robot/base-link"
@@ -510,8 +511,8 @@ def test_a_vector_is_expressed_along_another_frame():
 
 def test_an_orientation_is_replaced():
     frames = Frames().orient_axis("A", "N", "z", 0.1).orient_axis("B", "A", "x", 0.2)
-    other = frames.without("N", "A").orient_axis("A", "N", "z", 0.5)
-    assert same_orientation(other.dcm("B", "N"), simple_dcm("x", 0.2) @ simple_dcm("z", 0.5))
+    replaced = frames.without("N", "A").orient_axis("A", "N", "z", 0.5)
+    assert same_orientation(replaced.dcm("B", "N"), simple_dcm("x", 0.2) @ simple_dcm("z", 0.5))
     with pytest.raises(ValueError, match="no orientation connects B and N directly; .*B - A - N"):
         frames.without("B", "N")
 
@@ -550,7 +551,7 @@ def test_values_are_put_in_for_symbols():
 
 
 def test_building_many_frames_is_not_quadratic_in_steps():
-    """Each new frame looks only for a path between its own two, over the edges that leave them."""
+    """Each new frame searches only for a path between its own two, over the edges at them."""
     frames = Frames()
     for k in range(400):
         frames = frames.orient_axis(f"F{k + 1}", f"F{k}", "z", 0.001)

@@ -1,4 +1,4 @@
-"""One call for symbols, numbers and batches, and what bad input is told."""
+"""One call for symbols, numbers and batches, and the messages for bad input."""
 
 import inspect
 import subprocess
@@ -96,7 +96,7 @@ symbolic = pytest.mark.parametrize(
 
 
 def name_of(function, place):
-    """What a function calls one of its arguments, and so must its errors."""
+    """Return a function's name for one of its arguments, which its errors must use too."""
     return list(inspect.signature(function).parameters)[place]
 
 
@@ -114,7 +114,7 @@ def test_no_conversion_is_forgotten():
         "dcm_from_scipy_rotation",
         "scipy_rotation_from_dcm",
     }
-    # Not conversions of one orientation: they have tests of their own.
+    # These are not conversions of one orientation, and they have tests of their own.
     elsewhere |= {"dcm_from_directions", "dcm_from_two_directions", "directions_covariance"}
     elsewhere |= {"jacobian", "propagate_covariance", "smooth"}
     elsewhere |= {
@@ -163,11 +163,11 @@ def test_large_batches_have_no_seams(function, batches, count):
 @pytest.mark.parametrize("function, batches", [(f, b) for f, *b in ALL.values() if len(b) > 1])
 def test_arguments_are_broadcast(function, batches):
     for place in range(len(batches)):
-        one = [batch[0] if k == place else batch for k, batch in enumerate(batches)]
+        unbatched = [batch[0] if k == place else batch for k, batch in enumerate(batches)]
         many = [
             np.stack(COUNT * [batch[0]]) if k == place else batch for k, batch in enumerate(batches)
         ]
-        assert (function(*one) == function(*many)).all()
+        assert (function(*unbatched) == function(*many)).all()
     first, *rest = batches
     grid = function(first[:, None], *(batch[None, :5] for batch in rest))
     assert grid.shape[:2] == (COUNT, 5)
@@ -227,7 +227,7 @@ def test_lists_tuples_and_objects(function, batches):
 
 @every
 def test_one_item_of_plain_numbers_is_read_at_a_glance(function, batches, monkeypatch):
-    """Most of the speed of a single conversion lies in this, and no other result shows it."""
+    """Most of the speed of a single conversion depends on this, and no result shows it."""
 
     def refuse(*_):
         raise AssertionError("read the long way")
@@ -452,11 +452,11 @@ def test_whoever_takes_numbers_says_which_are_none(function, arguments):
     for place, argument in enumerate(arguments):
         name, bad = name_of(function, place), argument.copy()
         bad.reshape(-1)[-1] = np.nan
-        for wrong, error, said in (
+        for wrong, error, message in (
             (bad, ValueError, r"\[.*\] is nan: a number is missing"),
             ({"angle": 1}, TypeError, " must hold real numbers"),
         ):
-            with pytest.raises(error, match=f"^{name}{said}"):
+            with pytest.raises(error, match=f"^{name}{message}"):
                 function(*arguments[:place], wrong, *arguments[place + 1 :])
 
 
@@ -579,13 +579,13 @@ def test_axes_that_are_none(axis):
 @pytest.mark.parametrize("function", [dcm_from_axis_angle, quaternion_from_axis_angle])
 @pytest.mark.parametrize("angle", [0.5, theta, np.zeros(2)])
 def test_axes_without_a_direction(function, angle):
-    for axis, said in (
+    for axis, message in (
         ((0, 0, 0), "a zero vector has no direction"),
         ((0.0, -0.0, 0), "a zero vector has no direction"),
         ((1e-200, 0, 0), "too short"),
         ((0, 1e200, 0), "too long"),
     ):
-        with pytest.raises(ValueError, match=rf"axis.* is \(.*\): {said}"):
+        with pytest.raises(ValueError, match=rf"axis.* is \(.*\): {message}"):
             function(axis, angle)
     if angle is not theta:
         with pytest.raises(
@@ -612,7 +612,7 @@ def test_matrices_that_are_no_orientation(function):
     dcm = composed((0.3, 0.4, 0.5), "zxy")
     swapped, typo = dcm[[1, 0, 2]], dcm.copy()
     typo[1, 2] = 2
-    for bad, said in (
+    for bad, message in (
         (
             swapped,
             "is orthogonal but left-handed: its determinant is -1, not .1. One row or column",
@@ -627,28 +627,28 @@ def test_matrices_that_are_no_orientation(function):
         (np.zeros((3, 3)), "is not orthogonal: row x has length 0, not 1. Every entry is zero"),
         (np.full((3, 3), 1e200), "is not orthogonal: row x has length inf"),
     ):
-        with pytest.raises(ValueError, match="dcm " + said):
+        with pytest.raises(ValueError, match="dcm " + message):
             function(bad)
-        with pytest.raises(ValueError, match=r"dcm \(item \[9000\]\) " + said):
+        with pytest.raises(ValueError, match=r"dcm \(item \[9000\]\) " + message):
             function(np.concatenate([np.stack(9000 * [dcm]), [bad]]))
-        with pytest.raises(ValueError, match=r"dcm \(item \[1, 2\]\) " + said):
+        with pytest.raises(ValueError, match=r"dcm \(item \[1, 2\]\) " + message):
             function(np.stack([*5 * [dcm], bad]).reshape(2, 3, 3, 3))
 
 
 @pytest.mark.parametrize(
-    ("function", "good", "said"),
+    ("function", "good", "message"),
     [
         (angle_between, DCMS[:3], "is not orthogonal: row x has length 2"),
         (lambda *two: interpolate_quaternions(*two, 0.5), QUATERNIONS[:3], "has length 2, not 1"),
     ],
 )
-def test_which_of_two_is_no_orientation_is_told(function, good, said):
-    twice = [2 * good[1] if k == 1 else one for k, one in enumerate(good)]
+def test_which_of_two_is_no_orientation_is_told(function, good, message):
+    twice = [2 * good[1] if k == 1 else matrix for k, matrix in enumerate(good)]
     for name, pair in (("first", (twice, good)), ("second", (good, twice))):
-        with pytest.raises(ValueError, match=rf"^{name} \(item \[1\]\) {said}"):
+        with pytest.raises(ValueError, match=rf"^{name} \(item \[1\]\) {message}"):
             function(*pair)
-        with pytest.raises(ValueError, match=f"^{name} {said}"):
-            function(*(one[1] for one in pair))
+        with pytest.raises(ValueError, match=f"^{name} {message}"):
+            function(*(matrix[1] for matrix in pair))
 
 
 def test_symbolic_matrices_that_are_no_orientation():
@@ -725,8 +725,8 @@ def test_numbers_load_no_sympy():
 
 
 def test_symbols_work_without_numpy():
-    """In the browser there may be none."""
-    said = python("""
+    """A browser may not have NumPy."""
+    output = python("""
 import sys
 
 class Blocked:
@@ -763,7 +763,7 @@ except ValueError as error:
     print(error)
 assert 'numpy' not in sys.modules
 """)
-    assert [line.split(":")[-1].strip() for line in said.splitlines()] == [
+    assert [line.split(":")[-1].strip() for line in output.splitlines()] == [
         "it is the transpose, the orientation the other way round.",
         "the matrices are multiplied in the other order, which is space fixed.",
         "the scalar part stands last; in this book it stands first.",

@@ -34,7 +34,7 @@ from orientation import (
 
 @pytest.fixture
 def random():
-    """The same chance for each test, whichever ran before."""
+    """Give each test the same random numbers, whatever ran before."""
     return np.random.default_rng(11)
 
 
@@ -62,7 +62,7 @@ def test_determinant_is_the_sine_of_the_lock_margin(sequence, random):
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_all_rates_belong_to_one_motion(sequence, random):
-    """Central differences of the matrix and of the quaternion, moving with constant angle rates."""
+    """Use central differences of the matrix and the quaternion, with constant angle rates."""
     step = 1e-5
     for angles, rates in zip(random.uniform(-3, 3, (10, 3)), random.uniform(-2, 2, (10, 3))):
         omega = angular_velocity_matrix(angles, sequence) @ rates
@@ -79,7 +79,7 @@ def test_rates_of_symbols_and_batches():
     q = sm.symbols("q_0, q_i, q_j, q_k")
     omega = sm.symbols("omega_x, omega_y, omega_z")
     rate = quaternion_rate(q, omega)
-    assert sm.expand(2 * sum(a * b for a, b in zip(q, rate))) == 0  # the length stays
+    assert sm.expand(2 * sum(a * b for a, b in zip(q, rate))) == 0  # the length is constant
     assert quaternion_rate(random_unit_vectors(7, 1, size=4), (1.0, 0, 0)).shape == (7, 4)
     assert dcm_rate(np.eye(3), np.zeros((5, 3))).shape == (5, 3, 3)
 
@@ -123,8 +123,8 @@ def test_slerp_agrees_with_scipy():
 
 def test_slerp_between_nearly_and_exactly_equal_orientations():
     q = random_unit_vectors(1, 1, size=4)[0]
-    for other in (q, -q):
-        assert same_orientation(interpolate_quaternions(q, other, 0.3), q)
+    for end in (q, -q):
+        assert same_orientation(interpolate_quaternions(q, end, 0.3), q)
     near = q + 1e-10 * np.array([-q[1], q[0], -q[3], q[2]])
     assert abs(interpolate_quaternions(q, near, 0.5) - (q + near) / 2).max() < 1e-15
 
@@ -140,7 +140,7 @@ def test_slerp_refuses_what_has_no_answer():
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_the_rate_of_the_matrix_defines_the_angular_velocity(sequence):
-    """Against SymPy's own, by differentiating our matrix of functions of time."""
+    """Compare with SymPy's own, by differentiating our matrix of functions of time."""
     angles = me.dynamicsymbols("psi, theta, varphi")
     t = me.dynamicsymbols._t
     A, D = me.ReferenceFrame("A"), me.ReferenceFrame("D")
@@ -158,7 +158,7 @@ def test_angular_velocity_undoes_the_rate_of_the_matrix(random):
     assert np.allclose(
         angular_velocity_from_dcm_rate(dcms, dcm_rate(dcms, omegas)), omegas, atol=1e-14
     )
-    # What is symmetric in the product is no turning: the skew part is taken.
+    # The symmetric part of the product is no rotation, so the skew part is used.
     stretch = np.diag([0.1, 0.2, 0.3]) @ dcms[0]
     assert np.allclose(
         angular_velocity_from_dcm_rate(dcms[0], dcm_rate(dcms[0], omegas[0]) + stretch), omegas[0]
@@ -169,9 +169,7 @@ def test_angular_velocity_undoes_the_rate_of_the_matrix(random):
 
 @pytest.mark.parametrize("size", [1e-12, 1e-6, 1e-3, 0.05, 1, 3, 4.5, 6.2])
 def test_rotation_vector_rate_against_differences(size, random):
-    """The matrix of r + h dr/dt must move as the angular velocity
-    says, beyond half a turn as well.
-    """
+    """The matrix of r + h dr/dt must follow the angular velocity, beyond half a turn as well."""
     h = 1e-5
     for _ in range(20):
         vector = random.normal(size=3)
@@ -218,7 +216,7 @@ def tumbling(t):
 
 @pytest.fixture(scope="module")
 def tumbled():
-    """What SciPy's integrator of eighth order makes of the nine equations of the matrix."""
+    """Integrate the nine equations of the matrix with SciPy's integrator of eighth order."""
     solution = solve_ivp(
         lambda t, c: dcm_rate(c.reshape(3, 3), tumbling(t)).ravel(),
         (0, 4),
@@ -246,7 +244,7 @@ def test_exponential_steps_have_their_order_and_stay_valid(order, tumbled):
 
 
 def test_the_fourth_order_needs_its_cross_product(tumbled):
-    """Without it, or with the other sign, the order falls to two: a mutant that must be seen."""
+    """Without the product, or with the opposite sign, the order drops to two."""
     times = np.linspace(0, 4, 201)
     turns = turns_from_angular_velocity(tumbling, times)
     h, node = times[1], 3**0.5 / 6
@@ -273,8 +271,8 @@ def test_steps_refuse_what_they_cannot_read():
     for times in ([0], [[0, 1]]):
         with pytest.raises(ValueError, match="^times must have shape .* ends of one interval"):
             turns_from_angular_velocity(tumbling, times)
-    for wrong, said in ((np.nan, r"\[0, 0\] is nan"), ("fast", " must hold real numbers")):
-        with pytest.raises((ValueError, TypeError), match=rf"^angular_velocity\(times\){said}"):
+    for wrong, message in ((np.nan, r"\[0, 0\] is nan"), ("fast", " must hold real numbers")):
+        with pytest.raises((ValueError, TypeError), match=rf"^angular_velocity\(times\){message}"):
             turns_from_angular_velocity(lambda t: [3 * [wrong]], [0, 1])
     with pytest.raises(ValueError, match="^start is not orthogonal"):
         dcms_after_turns(2 * np.eye(3), np.zeros((1, 3)))
@@ -285,9 +283,7 @@ def test_steps_refuse_what_they_cannot_read():
 
 
 def test_restoring_the_matrix_leaves_the_error_of_the_orientation_as_it_is():
-    """The nearest valid matrix of a Runge-Kutta run is as wrong as that
-    of a run restored at every step.
-    """
+    """The nearest valid matrix of a Runge-Kutta run has the error of that of a restored run."""
     from orientation import nearest_dcm
 
     h, count = 0.02, 200

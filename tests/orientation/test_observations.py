@@ -1,4 +1,4 @@
-"""Orientation from observed directions: against SciPy, Davenport's method, and Monte Carlo."""
+"""Orientation from observed directions, against SciPy, Davenport's method, and Monte Carlo."""
 
 import numpy as np
 import pytest
@@ -15,14 +15,12 @@ from orientation import (
 
 
 def seen(dcm, directions):
-    """Directions of N along the body: each is the matrix times the direction."""
+    """Return directions of N along the body: the matrix times each direction."""
     return np.einsum("...ij,kj->...ki", dcm, directions)
 
 
 def davenport(observed, reference, weights):
-    """Davenport's q-method, as a second way: the eigenvector of the
-    largest eigenvalue of a 4 by 4 matrix.
-    """
+    """Davenport's q-method: the eigenvector of the largest eigenvalue of a 4 by 4 matrix."""
     profile = np.einsum("k,ki,kj->ij", weights, observed, reference)
     z = sum(w * np.cross(b, n) for w, b, n in zip(weights, observed, reference, strict=True))
     K = np.block(
@@ -32,8 +30,8 @@ def davenport(observed, reference, weights):
         ]
     )
     x, y, z, w = np.linalg.eigh(K)[1][:, -1]
-    # The eigenvector is the quaternion in the convention of the attitude matrix: its
-    # matrix is Shuster's (1993) A(q).
+    # The eigenvector is the quaternion in the convention of the attitude matrix: its matrix is
+    # Shuster's (1993) A(q).
     return Rotation.from_quat([x, y, z, w]).as_matrix().T
 
 
@@ -49,8 +47,8 @@ def test_the_first_of_two_directions_is_met_exactly():
     for dcm, wrong in zip(random_dcms(50, 2), random_unit_vectors(50, 4), strict=True):
         observed = seen(dcm, reference)
         observed[1] += 0.2 * wrong
-        found = dcm_from_two_directions(observed, reference)
-        assert np.allclose(found @ reference[0], observed[0], atol=1e-14)
+        fitted = dcm_from_two_directions(observed, reference)
+        assert np.allclose(fitted @ reference[0], observed[0], atol=1e-14)
 
 
 @pytest.mark.parametrize("count", [2, 3, 8])
@@ -61,10 +59,10 @@ def test_many_directions_fit_as_scipy_and_davenport_fit_them(count):
         deviations = source.uniform(0.001, 0.1, count)
         observed = seen(dcm, reference) + deviations[:, None] * source.normal(size=(count, 3))
         observed /= np.linalg.norm(observed, axis=1, keepdims=True)
-        found = dcm_from_directions(observed, reference, deviations)
+        fitted = dcm_from_directions(observed, reference, deviations)
         scipy = Rotation.align_vectors(observed, reference, weights=deviations**-2.0)[0].as_matrix()
-        assert rotation_error(found, scipy) < 1e-7
-        assert rotation_error(found, davenport(observed, reference, deviations**-2.0)) < 1e-7
+        assert rotation_error(fitted, scipy) < 1e-7
+        assert rotation_error(fitted, davenport(observed, reference, deviations**-2.0)) < 1e-7
 
 
 def test_batches_are_single_ones_together():
@@ -72,14 +70,12 @@ def test_batches_are_single_ones_together():
     observed = seen(dcms, reference) + 0.05 * np.random.default_rng(7).normal(size=(20, 4, 3))
     together = dcm_from_directions(observed, reference)
     assert np.allclose(
-        together, [dcm_from_directions(one, reference) for one in observed], atol=1e-14
+        together, [dcm_from_directions(measured, reference) for measured in observed], atol=1e-14
     )
 
 
 def test_covariance_is_what_many_noisy_measurements_show():
-    """10,000 noisy sightings: the covariance of their errors is the one
-    that is promised, within 5 per cent.
-    """
+    """Compare the promised covariance with that of 10,000 noisy sightings, within 5 per cent."""
     source = np.random.default_rng(11)
     dcm = dcm_from_rotation_vector((0.4, -0.9, 1.3))
     reference = np.array([[1, 0, 0], [0.9, 0.3, 0.2], [0.7, -0.5, 0.5]])
@@ -96,13 +92,13 @@ def test_covariance_is_what_many_noisy_measurements_show():
 
 
 def test_what_does_not_fix_an_orientation_is_refused():
-    for size, said in ((2, "the two {} directions are parallel"), (0, "{} has .* length zero")):
+    for size, message in ((2, "the two {} directions are parallel"), (0, "{} has .* length zero")):
         bad, good = [[1, 0, 0], [size, 0, 0]], np.eye(3)[:2]
         for name, pair in (("observed", (bad, good)), ("reference", (good, bad))):
-            with pytest.raises(ValueError, match=said.format(name)):
+            with pytest.raises(ValueError, match=message.format(name)):
                 dcm_from_two_directions(*pair)
             if size == 0:
-                with pytest.raises(ValueError, match=said.format(name)):
+                with pytest.raises(ValueError, match=message.format(name)):
                     dcm_from_directions(*pair)
     with pytest.raises(ValueError, match="one line"):
         dcm_from_directions([[1, 0, 0], [-1, 0, 0]], [[1, 0, 0], [-1, 0, 0]])
@@ -118,7 +114,7 @@ def test_what_does_not_fix_an_orientation_is_refused():
 
 
 @pytest.mark.parametrize(
-    ("function", "taken", "refused"),
+    ("function", "accepted", "refused"),
     [
         (lambda pair: dcm_from_two_directions(pair, pair), 1e-5, 5e-7),
         (lambda pair: dcm_from_directions(pair, pair), 1e-2, 1e-3),
@@ -127,13 +123,13 @@ def test_what_does_not_fix_an_orientation_is_refused():
     ],
 )
 def test_how_near_two_directions_may_be_does_not_depend_on_lengths_or_units(
-    function, taken, refused
+    function, accepted, refused
 ):
     def pair(angle):
         return np.array([[0, 0, 1], [0, np.sin(angle), np.cos(angle)]])
 
     for lengths in ([[1.0], [1.0]], [[1e-3], [1e4]]):
-        assert np.allclose(function(lengths * pair(taken)), function(pair(taken)), 1e-4, 1e-9)
+        assert np.allclose(function(lengths * pair(accepted)), function(pair(accepted)), 1e-4, 1e-9)
         for near in (lengths * pair(refused), [lengths * pair(2), lengths * pair(refused)]):
             with pytest.raises(ValueError, match="parallel|one line"):
                 function(np.array(near))

@@ -11,7 +11,7 @@ DCM = o.dcm_from_body_fixed((0.1, 0.2, 0.3), "zxy")
 
 
 class Table:
-    """As a DataFrame: it has a shape, and becomes an array when it is asked to."""
+    """A table like a DataFrame: it has a shape, and becomes an array on request."""
 
     def __init__(self, values):
         self.values = np.asarray(values, dtype=float)
@@ -23,7 +23,7 @@ class Table:
 
 @pytest.mark.parametrize("batch", [(), (4,)])
 def test_single_precision_stays_itself_and_is_accepted(batch):
-    """Rotations from torch, glTF and ROS are float32, and were refused at 1e-9."""
+    """Rotations from torch, glTF and ROS are float32, and were once refused at 1e-9."""
     dcm = np.broadcast_to(DCM, (*batch, 3, 3)).astype(np.float32)
     quaternion = o.quaternion_from_dcm(dcm)
     back = o.dcm_from_quaternion(quaternion)
@@ -79,7 +79,7 @@ def test_a_matrix_of_zeros_is_called_one():
 
 
 def test_a_star_tracker_and_a_magnetometer_fix_an_orientation():
-    """Weights in the ratio of two millions, which is no reason to refuse."""
+    """The weights have a ratio of two millions, which is no reason to refuse them."""
     dcm = o.dcm_from_body_fixed((0.3, -1.1, 2.0), "zxy")
     reference = np.array([[1, 0, 0], [0.2, 0.9, 0.3]])
     fitted = o.dcm_from_directions(reference @ dcm.T, reference, [2.4e-5, 0.035])
@@ -90,7 +90,7 @@ def test_a_star_tracker_and_a_magnetometer_fix_an_orientation():
 
 
 def test_a_batch_hands_no_memory_back_in_between():
-    """At 10,000 items every call gave memory back to the system and fetched it again: 768 pages."""
+    """At 10,000 items, every call once gave memory back to the system and fetched it again."""
     resource = pytest.importorskip("resource")
     quaternions = o.quaternion_from_axis_angle(np.ones((10_000, 3)), np.linspace(0, 3, 10_000))
 
@@ -105,7 +105,7 @@ def test_a_batch_hands_no_memory_back_in_between():
 
 @pytest.mark.parametrize("entry", [np.nan, np.inf])
 def test_what_is_missing_in_a_batch_is_called_so(entry):
-    """The check of the values finds it first, and must not call it a wrong length."""
+    """The check of the values comes first, and must not report a wrong length."""
     axes = np.ones((3, 3))
     axes[2, 1] = entry
     with pytest.raises(ValueError, match=r"axis\[2, 1\] is (nan|inf): a number is missing"):

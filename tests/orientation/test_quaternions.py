@@ -1,4 +1,4 @@
-"""Unit quaternions, there and back, and their product."""
+"""Unit quaternions, in both directions, and their product."""
 
 import numpy as np
 import pytest
@@ -70,9 +70,7 @@ def test_a_quaternion_and_its_negative_are_one_orientation():
 
 @pytest.mark.parametrize("digits", (4, 6, 9))
 def test_a_printed_quaternion_is_refused_with_what_to_do_and_taken_when_it_is_done(digits):
-    """Nine digits are few enough to be refused: a tolerance that lets print
-    through would let faults through.
-    """
+    """Nine digits are refused, because a tolerance for printed numbers would also admit faults."""
     exact = random_unit_vectors(200, 9, size=4)
     printed = np.array([[float(f"{number:.{digits}f}") for number in row] for row in exact])
     with pytest.raises(
@@ -134,9 +132,9 @@ def test_there_and_back_near_half_and_full_turns(angle):
 
 
 def test_of_the_two_the_one_with_positive_scalar_part():
-    found = quaternion_from_dcm(random_dcms(5000, 8))
-    assert (found[:, 0] >= 0).all()
-    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=4e-16)
+    quaternions = quaternion_from_dcm(random_dcms(5000, 8))
+    assert (quaternions[:, 0] >= 0).all()
+    np.testing.assert_allclose(np.linalg.norm(quaternions, axis=1), 1, atol=4e-16)
     for half_turn in (I, J, K):
         assert (quaternion_from_dcm(dcm_from_quaternion(-half_turn)) == half_turn).all()
     assert not np.signbit(quaternion_from_dcm(np.eye(3))).any()
@@ -198,7 +196,7 @@ def test_lengths_multiply_and_are_not_restored():
 
 
 @pytest.mark.parametrize(
-    "quaternion, said",
+    "quaternion, message",
     [
         ((0, 0, 0, 0), "has length 0, not 1: the zero quaternion describes no orientation"),
         ((0.7071, 0.7071, 0, 0), "has length 0.99999.*, not 1: were its components rounded when"),
@@ -210,8 +208,8 @@ def test_lengths_multiply_and_are_not_restored():
         ((sm.Rational(1, 2), sm.Rational(1, 2), 0, 0), "has length 0.7071"),
     ],
 )
-def test_a_quaternion_that_is_not_of_unit_length(quaternion, said):
-    with pytest.raises(ValueError, match=said):
+def test_a_quaternion_that_is_not_of_unit_length(quaternion, message):
+    with pytest.raises(ValueError, match=message):
         dcm_from_quaternion(quaternion)
 
 

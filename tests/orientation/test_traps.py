@@ -1,8 +1,7 @@
-"""The traps that the book warns of are real in the versions it runs
-with, and the package has none of them.
+"""The traps that the book warns of exist in the installed libraries, and not in the package.
 
-If one of these tests fails after an update, a library has changed,
-and so must the page that says so.
+If one of these tests fails after an update, a library has changed, and so must the page that
+mentions it.
 """
 
 import warnings
@@ -47,7 +46,8 @@ def test_reference_frames_keep_the_old_matrix_when_a_cell_is_run_again():
     A.orient_axis(N, N.x, alpha)  # the cell is corrected and run again
     assert A.dcm(N) == simple_dcm("x", alpha)
     assert B.dcm(N) == B_C_N != B_C_A * A.dcm(N)
-    # Had nobody asked for B's matrix before, it would now be lost with the link between A and B.
+    # If B's matrix had not been requested before, it would now be lost with the link between A and
+    # B.
     with pytest.raises(ValueError, match="No connecting orientation path found between B and A"):
         B.dcm(A)
 
@@ -95,7 +95,7 @@ def test_a_quaternion_that_is_not_of_unit_length_gives_no_direction_cosines():
 def test_orient_axis_sorts_its_arguments_by_type():
     N, A, B = frames_of_sympy("NAB")
     A.orient_axis(N, N.z, theta)
-    B.orient_axis(N, theta, N.z)  # the other way round, without a word
+    B.orient_axis(N, theta, N.z)  # the opposite rotation, without a warning
     assert A.dcm(N) == B.dcm(N)
 
 
@@ -105,7 +105,7 @@ def test_which_matrix_orient_explicit_and_orient_dcm_want():
     N.orient_explicit(A, A_C_N)
     assert A.dcm(N) == A_C_N
     N, A = frames_of_sympy("NA")
-    A.orient_explicit(N, A_C_N)  # reads like the others, and means the transpose
+    A.orient_explicit(N, A_C_N)  # looks like the others, but means the transpose
     assert A.dcm(N) == A_C_N.T
     N, A = frames_of_sympy("NA")
     A.orient_dcm(N, A_C_N)
@@ -126,11 +126,11 @@ def test_sympy_multiplies_turns_about_one_axis_out():
 
 def test_simplify_does_not_see_that_two_forms_are_equal():
     ours = dcm_from_body_fixed((psi, theta, phi), "zxz")
-    other = ours.applyfunc(lambda entry: entry.rewrite(sm.exp))
-    difference = other[0, 2] - ours[0, 2]
+    rewritten = ours.applyfunc(lambda entry: entry.rewrite(sm.exp))
+    difference = rewritten[0, 2] - ours[0, 2]
     assert sm.simplify(difference) != 0
     assert abs(difference.subs({psi: 0.3, theta: 0.5, phi: 0.7}).evalf()) < 1e-12
-    assert same_orientation(other, ours)
+    assert same_orientation(rewritten, ours)
 
 
 # --- SciPy ----------------------------------------------------------------------------------------

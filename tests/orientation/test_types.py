@@ -1,6 +1,4 @@
-"""What editors and type checkers are told of a result: an array for
-numbers, a matrix of SymPy for symbols.
-"""
+"""Types of results for type checkers: arrays for numbers, SymPy matrices for symbols."""
 
 import subprocess
 import sys

@@ -1,8 +1,7 @@
-"""Other engines than Chromium, driven by what their makers ship: Firefox by
-WebDriver BiDi, WebKitGTK by WebDriver.
+"""Other engines than Chromium: Firefox by WebDriver BiDi, WebKitGTK by WebDriver.
 
-Each gives the same small interface: ``go`` to an address, ``run`` a function in
-the page, ``wait`` for a condition.
+Each has the same small interface: ``go`` to an address, ``run`` a function in the page, ``wait``
+for a condition.
 """
 
 import json
@@ -21,19 +20,20 @@ from places import BROWSER_REQUIRED
 PATIENCE = 600  # seconds, for a busy machine; nothing waits longer than it must
 
 
-def absent(what):
-    pytest.fail(what) if BROWSER_REQUIRED else pytest.skip(what)
+def absent(reason):
+    pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
 
 
 def free_port():
-    with socket.socket() as taken:
-        taken.bind(("127.0.0.1", 0))
-        return taken.getsockname()[1]
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        return bound.getsockname()[1]
 
 
 class Engine:
-    """What all engines share. The keyboard and the pointer are those of WebDriver:
-    ``perform`` is given their actions.
+    """The common part of all engines.
+
+    The keyboard and the pointer are those of WebDriver: ``perform`` gets their actions.
     """
 
     def click(self, x, y):
@@ -46,12 +46,12 @@ class Engine:
         self.perform({"type": "key", "id": "keyboard", "actions": strokes})
 
     def wait(self, function, *arguments):
-        """Wait until ``function``, in the page, gives something true; give that."""
+        """Wait until ``function``, in the page, returns a true value, and return it."""
         end = time.monotonic() + PATIENCE
-        while not (found := self.run(function, *arguments)):
+        while not (result := self.run(function, *arguments)):
             assert time.monotonic() < end, f"after {PATIENCE} s still not so: {function}"
             time.sleep(0.1)
-        return found
+        return result
 
 
 class Chromium(Engine):
@@ -85,7 +85,7 @@ class Firefox(Engine):
             absent("Firefox is not on this machine (on Debian: sudo apt install firefox-esr)")
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         port = free_port()
-        # It asks its makers for nothing.
+        # These settings prevent requests to its makers.
         settings = {
             "app.normandy.enabled": False,
             "browser.safebrowsing.malware.enabled": False,
@@ -190,16 +190,16 @@ class WebKit(Engine):
             pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         os.close(writing)
-        with os.fdopen(reading) as told:
-            display = told.readline().strip()
+        with os.fdopen(reading) as pipe:
+            display = pipe.readline().strip()
         port = free_port()
         environment = {
             **os.environ, "DISPLAY": f":{display}", "HOME": self.folder.name,
             "XDG_RUNTIME_DIR": self.folder.name, "WEBKIT_DISABLE_COMPOSITING_MODE": "1",
             "WEBKIT_DISABLE_SANDBOX_THIS_IS_DANGEROUS": "1", "GDK_BACKEND": "x11",
             "NO_AT_BRIDGE": "1", "LIBGL_ALWAYS_SOFTWARE": "1",
-            # Safari gives shared memory to isolated pages; this build of its
-            # engine does when it is asked to.
+            # Safari gives shared memory to isolated pages; this build of its engine does so on
+            # request.
             "JSC_useSharedArrayBuffer": "1",
         }  # fmt: skip
         environment.pop("WAYLAND_DISPLAY", None)
@@ -209,11 +209,11 @@ class WebKit(Engine):
         )  # fmt: skip
         self.address = f"http://127.0.0.1:{port}/session"
         options = {"binary": str(browser), "args": ["--automation"]}
-        wanted = {"capabilities": {"alwaysMatch": {"webkitgtk:browserOptions": options}}}
+        capabilities = {"capabilities": {"alwaysMatch": {"webkitgtk:browserOptions": options}}}
         end = time.monotonic() + PATIENCE
         while True:
             try:
-                session = self.send("", wanted)
+                session = self.send("", capabilities)
                 break
             except ConnectionError:
                 assert time.monotonic() < end and self.process.poll() is None, (
@@ -264,7 +264,7 @@ class WebKit(Engine):
                 urllib.request.Request(self.address, method="DELETE"), timeout=20
             ).close()
         except OSError:
-            pass  # it has gone already
+            pass  # it has ended already
         for process in (self.process, self.screen):
             process.terminate()
             process.wait()

@@ -1,5 +1,6 @@
-"""A small book in many editions, and a server whose network breaks when a test
-wants it: for what a browser keeps.
+"""A small book in many editions, and a server whose network breaks on request.
+
+They are for tests of what a browser keeps.
 """
 
 import json
@@ -19,8 +20,7 @@ PAGE = """<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{nam
 <script src="{up}_static/book.js?v={js}" defer></script></head>
 <body><article><section id="{name}"><h1>{name}</h1><p id="edition">{edition}</p></section>
 <section id="same"><h2>What stays</h2><p>The same in all editions.</p></section></article></body></html>"""
-# What a page shows, by its three parts: text, style and script. A page
-# of two editions shows two numbers.
+# The text, style and script of a page. A page of two editions shows two numbers.
 SHOWN = """() => [document.querySelector("#edition")?.textContent, window.edition,
   getComputedStyle(document.documentElement).getPropertyValue("--edition").trim()].map(String)"""
 TOOLS = """const said = [], tools = { progress() {}, say: (text) => said.push(text), ask(text, actions) {
@@ -47,7 +47,7 @@ IS_CONTROLLED = "() => Boolean(navigator.serviceWorker.controller)"
 
 
 def sample(folder, with_scripts):
-    """The parts that all editions have: our own scripts, as the book's pages have them."""
+    """Write the parts that all editions share: our own scripts, as the book's pages have them."""
     if with_scripts is None:
         scripts.write(folder)
         (folder / "runtime" / "pyodide-lock.json").write_text('{"packages": {}}')
@@ -56,8 +56,9 @@ def sample(folder, with_scripts):
 
 
 def write_edition(folder, number, with_scripts=None):
-    """Write edition ``number`` into ``folder``; ``appendix/three`` and two
-    files of its folder never change.
+    """Write edition ``number`` into ``folder``.
+
+    ``appendix/three`` and two files of its folder never change.
     """
     sample(folder, with_scripts)
     files = {
@@ -86,14 +87,12 @@ def write_edition(folder, number, with_scripts=None):
         (folder / f"{name}.html").parent.mkdir(exist_ok=True)
         (folder / f"{name}.html").write_text(text)
     install.write_list(folder)
-    for path in folder.rglob("*"):  # servers tell editions apart by the time
+    for path in folder.rglob("*"):  # servers distinguish editions by the time
         os.utime(path, (1_000_000_000 + number, 1_000_000_000 + number))
 
 
 class Network(SimpleHTTPRequestHandler):
-    """Serves ``folder`` until ``left`` requests have been
-    answered; then it is as ``broken`` says.
-    """
+    """A server of ``folder`` that, after ``left`` requests, fails as ``broken`` says."""
 
     folder, left, broken = None, None, "cut"
     refused, held = 0, threading.Event()
@@ -126,7 +125,7 @@ class Network(SimpleHTTPRequestHandler):
 
 @contextmanager
 def network(folder):
-    """The class of a server's handler, which a test sets, and its address."""
+    """Yield a server's handler class, which a test configures, and its address."""
     handler = type("Here", (Network,), {"folder": str(folder), "held": threading.Event()})
     server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
     threading.Thread(target=server.serve_forever, daemon=True).start()
@@ -139,9 +138,9 @@ def network(folder):
 
 
 def scripts_of(folder):
-    """The path of the folder with our scripts."""
-    (found,) = (folder / "runtime").glob("scripts-*")
-    return f"/{found.relative_to(folder)}/"
+    """Return the path of the folder with our scripts."""
+    (scripts,) = (folder / "runtime").glob("scripts-*")
+    return f"/{scripts.relative_to(folder)}/"
 
 
 def listed(folder):

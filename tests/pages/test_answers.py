@@ -1,6 +1,4 @@
-"""What a reader writes in the page: kept in two tabs, through crashes and new
-editions, handed in, brought back.
-"""
+"""Answers in the page: kept in two tabs, through crashes and new editions, submitted, restored."""
 
 import csv
 import json
@@ -50,7 +48,7 @@ class Tab:
         self.page.wait_for_selector("button.run-cell", state="attached")
 
     def edit(self):
-        """Open the editors, as the first Run or a kept answer does, but without Python."""
+        """Open the editors, as the first Run or a stored answer does, but without Python."""
         if not self.page.locator(".cm-content").count():
             self.page.route("**/pyodide*", lambda route: route.abort())
             self.page.evaluate("document.querySelector('button.run-cell').click()")
@@ -107,9 +105,7 @@ class Tab:
         )
 
     def shown(self):
-        """Everything that the page lets its reader see again: editors,
-        offers, what was written before.
-        """
+        """Everything that the page lets its reader see again: editors, offers, earlier text."""
         return "\n".join(
             [*self.page.evaluate(CODES), *self.page.locator(".live-choice pre").all_text_contents()]
         )
@@ -119,21 +115,21 @@ class Tab:
 
 
 def test_two_tabs_share_their_answers(context, site):
-    one, two = Tab(context, site).edit(), Tab(context, site).edit()
-    one.write(ANSWER, "first = 1")
-    two.write(OTHER, "second = 2")
-    one.wait(OTHER, "second = 2")
-    two.wait(ANSWER, "first = 1")
-    one.reload()
-    one.wait(ANSWER, "first = 1")
-    one.wait(OTHER, "second = 2")
-    two.write(ANSWER, "first = 10")
-    one.wait(ANSWER, "first = 10")
-    assert one.errors == two.errors == []
+    first, second = Tab(context, site).edit(), Tab(context, site).edit()
+    first.write(ANSWER, "first = 1")
+    second.write(OTHER, "second = 2")
+    first.wait(OTHER, "second = 2")
+    second.wait(ANSWER, "first = 1")
+    first.reload()
+    first.wait(ANSWER, "first = 1")
+    first.wait(OTHER, "second = 2")
+    second.write(ANSWER, "first = 10")
+    first.wait(ANSWER, "first = 10")
+    assert first.errors == second.errors == []
 
 
 def test_text_of_a_tab_that_slept_is_set_aside(context, site):
-    """A tab that has missed what another one wrote takes its place, and loses nothing."""
+    """A tab that has missed another tab's text replaces it, but loses nothing."""
     tab = Tab(context, site).edit()
     tab.write(ANSWER, "mine = 1")
     (key, entry) = next(iter(tab.page.evaluate(KEPT).items()))
@@ -152,15 +148,15 @@ def test_text_of_a_tab_that_slept_is_set_aside(context, site):
 
 
 def test_keys_carry_the_path_of_the_site(context, site):
-    """Two years' editions at one address do not share answers."""
+    """Editions of two years at one address do not share answers."""
     context.route(
         "**/2027/**", lambda route: route.continue_(url=route.request.url.replace("/2027/", "/"))
     )
     Tab(context, site).edit().write(ANSWER, "of this year = 1")
-    other = Tab(context, f"{site}2027/").edit()
-    assert other.text(ANSWER) == BLANK
-    other.write(ANSWER, "of the next = 1")
-    starts = {key.split()[1] for key in other.page.evaluate(KEPT)}
+    next_year = Tab(context, f"{site}2027/").edit()
+    assert next_year.text(ANSWER) == BLANK
+    next_year.write(ANSWER, "of the next = 1")
+    starts = {key.split()[1] for key in next_year.page.evaluate(KEPT)}
     assert starts == {"/", "/2027/"}
 
 
@@ -180,7 +176,7 @@ def test_books_code_asks_and_can_be_undone(context, site):
     tab.wait(OTHER, "mine = 2")
     tab.press("Book’s code")
     tab.press("Bring it back")
-    tab.reload()  # too late for Undo: each cell has its own text still
+    tab.reload()  # too late for Undo: each cell still has its own text
     tab.page.locator(".live-earlier summary").first.wait_for()
     assert tab.page.locator(".live-earlier").count() == 2
     assert "mine = 1" in tab.shown() and "mine = 2" in tab.shown()
@@ -216,17 +212,17 @@ def test_page_is_handed_in_and_graded(context, site, tmp_path):
     handed_in = tmp_path / "class" / "ada" / "simple-orientations.ipynb"
     handed_in.parent.mkdir(parents=True)
     download.save_as(handed_in)
-    taken, original = (
+    submitted, original = (
         nbformat.read(path, as_version=4) for path in (handed_in, REPOSITORY / f"{EXERCISE}.ipynb")
     )
-    nbformat.validate(taken)
-    assert [cell.metadata for cell in taken.cells] == [cell.metadata for cell in original.cells]
+    nbformat.validate(submitted)
+    assert [cell.metadata for cell in submitted.cells] == [cell.metadata for cell in original.cells]
     changed = [
         k
-        for k, (mine, theirs) in enumerate(zip(taken.cells, original.cells))
+        for k, (mine, theirs) in enumerate(zip(submitted.cells, original.cells))
         if mine.source != theirs.source
     ]
-    assert [taken.cells[k].source for k in changed] == [who, right]
+    assert [submitted.cells[k].source for k in changed] == [who, right]
     coursework(["grade", str(tmp_path / "class"), "--out", str(tmp_path / "out")])
     with open(tmp_path / "out" / "grades.csv", newline="", encoding="utf8") as table:
         (row,) = csv.DictReader(table)
@@ -234,7 +230,7 @@ def test_page_is_handed_in_and_graded(context, site, tmp_path):
 
 
 def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
-    """On a laptop the numbers of its questions are the ones that its reader had on the page."""
+    """On a laptop, the questions have the numbers that the reader had on the page."""
     tab = Tab(context, site).edit()
     before = tab.text(1)
     tab.page.evaluate("bookStore.put('coursework me.txt', { text: 'Ada O\\'Hara', at: 1 })")
@@ -258,7 +254,7 @@ def test_notebook_is_loaded_back(context, site, tmp_path):
     tab.bring(path)
     tab.wait(ANSWER, "answer = 'mine'")
     assert "answer = 'newer'" in tab.shown()
-    # As from JupyterLab: a cell of one's own among the others.
+    # Add a cell of one's own among the others, as from JupyterLab.
     with_more = nbformat.read(path, as_version=4)
     with_more.cells.insert(2, nbformat.v4.new_code_cell("scratch = 1"))
     with_more.cells[-1].source += "  # seen"
@@ -277,11 +273,11 @@ def test_chapter_is_taken_away_and_loaded(context, site, browser, tmp_path):
     tab = Tab(context, site, CHAPTER).edit()
     tab.write(3, "mine = 3")
     tab.take().save_as(tmp_path / "mine.ipynb")
-    other = browser.new_context()
-    fresh = Tab(other, site, CHAPTER)
+    other_context = browser.new_context()
+    fresh = Tab(other_context, site, CHAPTER)
     fresh.bring(tmp_path / "mine.ipynb")
     fresh.wait(3, "mine = 3")
-    other.close()
+    other_context.close()
 
 
 def test_everything_is_backed_up_and_restored(context, site, browser, tmp_path):
@@ -292,17 +288,17 @@ def test_everything_is_backed_up_and_restored(context, site, browser, tmp_path):
     download = tab.take("backUp")
     assert "2 answers and 1 notebook" in tab.words()
     download.save_as(tmp_path / "all.json")
-    other = browser.new_context()
-    fresh = Tab(other, site).edit()
+    other_context = browser.new_context()
+    fresh = Tab(other_context, site).edit()
     fresh.write(ANSWER, "answer = 'newer'")
     fresh.bring(tmp_path / "all.json", "restore")
     assert fresh.text(ANSWER) == "answer = 'newer'" and "answer = 1" in fresh.shown()
     fresh.reload()
     fresh.wait(OTHER, "boom = 2")
-    Tab(other, site, CHAPTER).wait(3, "chapter = 3")
+    Tab(other_context, site, CHAPTER).wait(3, "chapter = 3")
     fresh.bring(HTML / notebook_address(CHAPTER), "restore")
     assert "not a backup" in fresh.words()
-    other.close()
+    other_context.close()
 
 
 # --- the page and its notebook --------------------------------------------------------------------
@@ -353,10 +349,9 @@ READ_COPY = """async (path) => {
 
 
 def visit_notebook(page, site, name, changes=None, choose="Open the new version"):
-    """What opening the notebook in JupyterLite does with its copy, and saving
-    it with ``changes`` by grade_id.
+    """Open the notebook in JupyterLite, and save its copy with ``changes`` by grade_id.
 
-    The page's own script runs, as before JupyterLite starts; only JupyterLite itself is played.
+    The page's own script runs, as before JupyterLite starts; only JupyterLite itself is simulated.
     """
     tab = page.context.new_page()
     tab.goto(f"{site}search.html?path={name}.ipynb")
@@ -364,7 +359,7 @@ def visit_notebook(page, site, name, changes=None, choose="Open the new version"
         served = json.loads((HTML / "lite" / "files" / f"{name}.ipynb").read_text("utf8"))
         start(tab, choose)
         if tab.evaluate(CHANGE_COPY, [f"{name}.ipynb", None]) is None:
-            # JupyterLite saves what it was given.
+            # JupyterLite saves the file that it was given.
             tab.evaluate(WRITE_COPY, [f"{name}.ipynb", served])
     else:
         start(tab, choose)
@@ -412,14 +407,14 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
     tab.reload()
     tab.wait(OTHER, "notebook = 2")
     tab.wait(ANSWER, "page = 1")
-    # Each side's newer text goes to the other one, cell by cell.
+    # The newer text of each side goes to the other one, cell by cell.
     tab.write(ANSWER, "page = 3")
     cells = visit_notebook(tab.page, site, EXERCISE, {BOOM: "notebook = 4"})
     assert (cells[CRANK], cells[BOOM]) == ("page = 3", "notebook = 4")
     tab.reload()
     tab.wait(ANSWER, "page = 3")
     tab.wait(OTHER, "notebook = 4")
-    # The book's code, brought back on the page, comes to the notebook as well.
+    # The book's code, restored on the page, goes to the notebook as well.
     tab.press("Book’s code")
     tab.press("Bring it back")
     cells = visit_notebook(tab.page, site, EXERCISE)
@@ -428,9 +423,7 @@ def test_answers_go_to_the_notebook_and_come_back(context, site):
 
 
 def test_progress_is_one_for_pages_and_notebooks(context, site):
-    """What was right on either side stays right on both, and no wrong
-    answer and no help is forgotten.
-    """
+    """A right answer on either side counts on both, and no wrong answer and no help is lost."""
     tab = Tab(context, site)
     path = "exercises/.coursework/progress.json"
     here = {
@@ -448,19 +441,22 @@ def test_progress_is_one_for_pages_and_notebooks(context, site):
     notebook = tab.page.context.new_page()
     notebook.goto(f"{site}search.html?path={EXERCISE}.ipynb")
     start(notebook, "")
-    kept = json.loads(tab.page.evaluate("bookStore.tries().text"))
+    progress = json.loads(tab.page.evaluate("bookStore.tries().text"))
     copy = json.loads(notebook.evaluate(READ_COPY, path))
-    assert kept == copy
-    assert {name: entry["outcome"] for name, entry in kept.items()} == {
+    assert progress == copy
+    assert {name: entry["outcome"] for name, entry in progress.items()} == {
         "a/page": "correct", "a/notebook": "correct", "a/both": "correct", "a/tried": "wrong",
     }  # fmt: skip
-    assert (sorted(kept["a/both"]["answers"]), kept["a/both"]["help"]) == (["2", "5"], "hint")
-    assert (sorted(kept["a/tried"]["answers"]), kept["a/tried"]["help"]) == (
+    assert (sorted(progress["a/both"]["answers"]), progress["a/both"]["help"]) == (
+        ["2", "5"],
+        "hint",
+    )
+    assert (sorted(progress["a/tried"]["answers"]), progress["a/tried"]["help"]) == (
         ["3", "4", "6"],
         "solution",
     )
-    # The page looks at the notebook's record whenever it is opened.
-    notebook.evaluate(WRITE_COPY, [path, {**kept, "a/later": {"outcome": "correct"}}])
+    # The page reads the notebook's record whenever it is opened.
+    notebook.evaluate(WRITE_COPY, [path, {**progress, "a/later": {"outcome": "correct"}}])
     tab.reload()
     tab.page.wait_for_function("bookStore.tries().text.includes('a/later')")
 
@@ -469,7 +465,7 @@ def test_both_changed_the_newer_text_stands(context, site):
     tab = Tab(context, site).edit()
     tab.write(ANSWER, "agreed = 1")
     visit_notebook(tab.page, site, EXERCISE)
-    # JupyterLite has the notebook open while the page goes on.
+    # JupyterLite has the notebook open while the page is used.
     tab.write(ANSWER, "page = 2")
     tab.page.evaluate(CHANGE_COPY, [f"{EXERCISE}.ipynb", {CRANK: "notebook = 3"}])
     tab.reload()
@@ -479,9 +475,7 @@ def test_both_changed_the_newer_text_stands(context, site):
 
 
 def newer_book(notebook):
-    """The notebook of a new edition: one exercise is worded anew,
-    and one comes before all others.
-    """
+    """Return the notebook of a new edition: an exercise is reworded, and a new one comes first."""
     changed = json.loads(json.dumps(notebook).replace(BLANK, "A_C_N = ...  # nine entries"))
     for name, (cell, _) in changed["metadata"]["book"]["cells"].items():
         if cell == CRANK:
@@ -514,7 +508,7 @@ def test_old_copy_is_told_from_the_new_edition(context, site, choice):
 
 
 def test_what_was_written_for_a_question_that_is_gone_stands_in_no_other_cell(context, site):
-    """The next edition asks one question less: its answer is shown, named, and put into no cell."""
+    """The next edition lacks a question: its answer is shown, named, and put into no cell."""
     tab = Tab(context, site)
     gone = {"code": "gone = 1", "number": OTHER, "original": "of code that is gone", "at": 1}
     tab.page.evaluate(
@@ -535,7 +529,7 @@ def test_what_was_written_for_a_question_that_is_gone_stands_in_no_other_cell(co
 
 
 def test_copies_of_one_minute_stand_beside_each_other(context, site):
-    """What the name of a copy says, the minute, does not tell it from another one."""
+    """The names of copies contain only the minute, which does not distinguish them."""
     tab = Tab(context, site)
     served = json.loads((HTML / "lite" / "files" / f"{EXERCISE}.ipynb").read_text("utf8"))
     visit_notebook(tab.page, site, EXERCISE, {CRANK: "first = 1"})
@@ -551,9 +545,9 @@ def test_copies_of_one_minute_stand_beside_each_other(context, site):
 
 
 def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
-    """Tabs hear of each other late: the other one, played here, changes what it does not know."""
-    tab, other = Tab(context, site).edit(), context.new_page()
-    other.goto(f"{site}search.html")
+    """Tabs are notified late: the other one, simulated here, changes what it does not know."""
+    tab, other_tab = Tab(context, site).edit(), context.new_page()
+    other_tab.goto(f"{site}search.html")
     change = (
         "([key, text]) => text === null ? localStorage.removeItem(key) : "
         "localStorage.setItem(key, text)"
@@ -561,18 +555,18 @@ def test_what_two_tabs_write_at_one_moment_is_kept_of_both(context, site):
 
     def written(code):
         tab.write(ANSWER, code)
-        [(key, entry)] = [one for one in tab.page.evaluate(KEPT).items() if " answer " in one[0]]
+        [(key, entry)] = [item for item in tab.page.evaluate(KEPT).items() if " answer " in item[0]]
         return key, json.loads(entry)
 
     key, entry = written("mine = 1")
-    other.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
+    other_tab.evaluate(change, [f"{key}-of-none", json.dumps(entry)])  # news of something else
     tab.wait(ANSWER, "mine = 1")
-    other.evaluate(change, [f"{key}-of-none", None])
-    other.evaluate(change, [key, None])  # it took the book's code for that of the page
+    other_tab.evaluate(change, [f"{key}-of-none", None])
+    other_tab.evaluate(change, [key, None])  # it took the book's code for that of the page
     tab.wait(ANSWER, BLANK)
     assert "mine = 1" in tab.shown()
     key, entry = written("mine = 2")
-    other.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
+    other_tab.evaluate(change, [key, json.dumps(entry | {"code": "theirs = 1"})])
     tab.wait(ANSWER, "theirs = 1")
     assert "mine = 2" in tab.shown()
     key, entry = written("mine = 3")
@@ -634,7 +628,7 @@ def test_reader_is_told_that_nothing_can_be_kept(browser, site):
 
 
 def fill(tab):
-    """Leave no room in the browser's store."""
+    """Fill the browser's storage."""
     tab.page.evaluate(
         "() => { let k = 0, text = 'x'.repeat(4e6); while (text.length > 4) { try { "
         "localStorage.setItem(`filler ${k++}`, text); } catch { text = text.slice(0, text.length / "
@@ -649,26 +643,27 @@ EMPTY = """() => Object.keys(localStorage).filter((key) => key.startsWith('fille
 
 
 def test_what_found_no_room_stays_on_the_page_and_can_be_taken_away(context, site):
-    tab, other = Tab(context, site).edit(), Tab(context, site).edit()
+    tab, other_tab = Tab(context, site).edit(), Tab(context, site).edit()
     tab.write(ANSWER, "mine = 1")
-    other.wait(ANSWER, "mine = 1")
+    other_tab.wait(ANSWER, "mine = 1")
     fill(tab)
     long = f"mine = {'2' * 200}"
     tab.write(ANSWER, long)
     assert "no room left" in tab.words()
-    # The tab is left and comes back, another one changes what is kept: neither takes the text away.
+    # The tab is left and resumed, and another one changes the stored text: neither removes the
+    # text.
     tab.page.evaluate(AWAKE)
     tab.page.evaluate("addEventListener('storage', () => (window.heard = true))")
-    other.write(ANSWER, "mine = 9")  # as long as before: there is room for that
+    other_tab.write(ANSWER, "mine = 9")  # as long as before: there is room for that
     tab.page.wait_for_function("window.heard")
     assert tab.text(ANSWER) == long
     assert long in tab.take().path().read_text("utf8"), "as the page says"
-    # There is room again: it is kept with the next letter.
+    # There is room again, so it is stored with the next letter.
     tab.page.evaluate(EMPTY)
     tab.write(ANSWER, f"{long}0")
-    other.wait(ANSWER, f"{long}0")
-    assert "mine = 9" in other.shown()
-    assert tab.errors == other.errors == []
+    other_tab.wait(ANSWER, f"{long}0")
+    assert "mine = 9" in other_tab.shown()
+    assert tab.errors == other_tab.errors == []
 
 
 def test_text_of_another_tab_is_not_overwritten_where_it_cannot_be_set_aside(context, site):
@@ -699,9 +694,7 @@ def test_books_code_needs_no_room(context, site):
 
 
 def test_stored_number_does_not_stand_under_other_code(context, site):
-    """Where NumPy is absent, the book's result is folded away from
-    below the reader's changed code.
-    """
+    """Without NumPy, the book's result is folded away from below the reader's changed code."""
     page = "chapters/measured-matrices"
     tab = Tab(context, site, page)
     with_results = tab.page.evaluate(
@@ -730,13 +723,14 @@ def test_stored_number_does_not_stand_under_other_code(context, site):
 
 class Life:
     """A reader at work: two tabs, crashes, new editions, the notebook.
-    Nothing that was written may be lost.
+
+    No text may be lost.
     """
 
     def __init__(self, context, site, seed):
         self.context, self.site, self.random = context, site, random.Random(seed)
         self.number, self.edition = 0, 0
-        # What must still be there: not typed over by the reader where it could be seen.
+        # The texts that must still exist: not overwritten by the reader where they were visible.
         self.written = set()
         context.route(f"**/{EXERCISE}.html", self.serve_page)
         context.route(f"**/lite/files/{EXERCISE}.ipynb", self.serve_notebook)
@@ -846,7 +840,7 @@ class Life:
 
     def load(self):
         if self.edition:
-            return  # the notebook to take away is that of the first edition
+            return  # the notebook to download is that of the first edition
         tab = self.tab()
         path = tab.take().path()
         tab.bring(
@@ -854,9 +848,7 @@ class Life:
         )
 
     def missing(self):
-        """What the reader can find nowhere: not on the page, not
-        in the notebook or a copy of it.
-        """
+        """Return the texts that are not on the page, in the notebook or in a copy of it."""
         fresh = Tab(self.context, self.site).edit()
         seen = fresh.shown()
         fresh.page.close()

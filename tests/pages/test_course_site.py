@@ -1,6 +1,4 @@
-"""A course of somebody's own becomes a site in one command, and its
-pages check what is answered in them.
-"""
+"""An author's own course becomes a site with one command, and its pages check answers."""
 
 import os
 import re
@@ -30,7 +28,7 @@ def run(folder, *arguments):
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
 
 
-pytestmark = pytest.mark.long  # a whole site is built for it
+pytestmark = pytest.mark.long  # this builds a whole site
 
 
 @pytest.fixture(scope="module")
@@ -53,14 +51,14 @@ def test_the_site_holds_all_and_tells_nothing(course):
     answers = [
         cell.source.splitlines()[1] for cell in solved.cells if "BEGIN SOLUTION" in cell.source
     ]
-    said = [
+    leaks = [
         path
         for path in site.rglob("*.html")
         for answer in answers
         if answer in path.read_text("utf8")
     ]
-    assert answers and said == []
-    # What may be done with a course is for its author to say, and this one has not.
+    assert answers and leaks == []
+    # The author decides on the licence of a course, and this one has none.
     assert "CC BY" not in front + page and "orientation" not in (front + page).lower()
 
 
@@ -100,16 +98,16 @@ def test_an_answer_is_checked_where_it_is_written(course, browser):
 
 
 def test_what_cannot_be_published_is_said(course, tmp_path, monkeypatch):
-    found = find_course(course)
+    course_found = find_course(course)
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(AuthorError, match="no site"):
-        publish.publish(found, tmp_path)
+        publish.publish(course_found, tmp_path)
     assert (tmp_path / "mine.txt").read_text() == "mine"
     with pytest.raises(AuthorError, match="coursework release"):
-        publish.publish(found._replace(exercises=tmp_path), tmp_path / "site")
-    monkeypatch.setattr(publish.metadata, "entry_points", lambda **wanted: [])
+        publish.publish(course_found._replace(exercises=tmp_path), tmp_path / "site")
+    monkeypatch.setattr(publish.metadata, "entry_points", lambda **selection: [])
     with pytest.raises(AuthorError, match="notebook-pages"):
-        publish.publish(found, tmp_path / "site")
+        publish.publish(course_found, tmp_path / "site")
     monkeypatch.setenv("NOTEBOOK_PAGES_FETCHED", str(tmp_path))
     with pytest.raises(RuntimeError, match="notebook_pages.set_up"):
         pages.publish({"format": 1}, tmp_path / "book", tmp_path / "site")

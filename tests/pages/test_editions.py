@@ -1,6 +1,4 @@
-"""Which edition the book is, and the edition for exams: without solutions,
-and without a word that leads to one.
-"""
+"""The edition of the book, and the edition for exams, without solutions and links to them."""
 
 import io
 import os
@@ -34,7 +32,9 @@ def test_the_edition_is_said_in_one_place():
     assert (which.name, which.date) == (stated["edition"], stated["date-released"])
     assert which.words == f"{which.name}, {which.day}"
     assert {CITATION["title"], stated["title"]} == {SETTINGS["title"]}
-    assert {one["name"] for one in CITATION["authors"] + stated["authors"]} == {SETTINGS["author"]}
+    assert {author["name"] for author in CITATION["authors"] + stated["authors"]} == {
+        SETTINGS["author"]
+    }
     sources = [
         *REPOSITORY.glob("*.ipynb"),
         *(REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages").rglob("*.py"),
@@ -63,7 +63,7 @@ def test_the_front_page_says_how_the_book_is_cited():
 
 
 def test_the_newest_version_is_the_same_everywhere():
-    """In the packages, in how the book is cited, and on top of the changelog."""
+    """In the packages, in the citation, and on top of the changelog."""
     changes = re.findall(
         r"^## ([0-9.]+)$", (REPOSITORY / "CHANGELOG.md").read_text("utf8"), re.MULTILINE
     )
@@ -83,18 +83,18 @@ def refers(label, kind="ref"):
 
 
 def paragraph(*parts):
-    found = nodes.paragraph(
+    node = nodes.paragraph(
         "", "", *(nodes.Text(part) if isinstance(part, str) else part for part in parts)
     )
-    page = nodes.section("", found)
+    page = nodes.section("", node)
     exam.strip(None, page)
-    return [one.astext() for one in page.children]
+    return [part.astext() for part in page.children]
 
 
 def test_only_the_sentence_that_leads_to_a_solution_goes():
-    solution, other = refers("solution-door"), refers("/exercises/door", "doc")
+    solution, exercise = refers("solution-door"), refers("/exercises/door", "doc")
     assert paragraph(
-        "Worked solutions: ", solution, " and ", refers("solution-x"), ". More: ", other, "."
+        "Worked solutions: ", solution, " and ", refers("solution-x"), ". More: ", exercise, "."
     ) == ["More: there."]
     assert paragraph("Try first! The solutions are ", refers("solutions"), ". They wait.") == [
         "Try first! They wait."
@@ -139,7 +139,7 @@ def test_a_page_that_led_to_a_solution_is_built_without(tmp_path, monkeypatch):
 
 
 def passages():
-    """Runs of plain words from the worked solutions, long enough to be found by nothing else."""
+    """Return runs of plain words from the worked solutions, long enough to be unique."""
     for path in sorted((REPOSITORY / "appendix").glob("solutions*.ipynb")):
         for cell in nbformat.read(path, as_version=4).cells:
             if cell.cell_type == "markdown":
@@ -150,7 +150,7 @@ def passages():
 
 
 def contents(name, content):
-    """The files in ``content``, also those within archives."""
+    """Iterate over the files in ``content``, also those within archives."""
     if content[:2] == b"PK":
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             for inside in archive.namelist():
@@ -164,21 +164,23 @@ def contents(name, content):
         yield name, " ".join(text.split())
 
 
-def with_solutions(folder, wanted):
-    """The files below ``folder`` that hold one of the passages ``wanted``."""
-    pattern = re.compile("|".join(map(re.escape, wanted)))
+def with_solutions(folder, sought):
+    """Return the files below ``folder`` that contain one of the passages ``sought``."""
+    pattern = re.compile("|".join(map(re.escape, sought)))
     files = [path for path in folder.rglob("*") if path.is_file()]
-    found = (
-        one for path in files for one in contents(str(path.relative_to(folder)), path.read_bytes())
+    texts = (
+        text
+        for path in files
+        for text in contents(str(path.relative_to(folder)), path.read_bytes())
     )
-    return {name: match[0] for name, text in found if (match := pattern.search(text))}
+    return {name: match[0] for name, text in texts if (match := pattern.search(text))}
 
 
 @pytest.mark.long
 def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
-    wanted = set(passages())
-    assert len(wanted) > 80
-    there = with_solutions(HTML / "appendix", wanted)
+    sought = set(passages())
+    assert len(sought) > 80
+    there = with_solutions(HTML / "appendix", sought)
     assert set(there) >= {"solutions.html", "solutions-going-further.html"}, (
         "the passages are found where they are"
     )
@@ -204,7 +206,7 @@ def test_no_file_of_an_exam_edition_holds_a_solution(tmp_path):
         )
         assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     site = tmp_path / "_build" / "html"
-    assert with_solutions(site, wanted) == {}
+    assert with_solutions(site, sought) == {}
     pages = [path for path in pages_of(site) if path.name != "404.html"]
     assert len(pages) > 50
     for path in [

@@ -1,4 +1,4 @@
-"""Live cells in Firefox and WebKit: what they give is what the book prints."""
+"""Live cells in Firefox and WebKit: their results are those that the book prints."""
 
 import pytest
 from engines import ENGINES
@@ -26,8 +26,9 @@ def engine(request):
 
 
 def compare(engine, site, name):
-    """Run the page; each cell that needs nothing from elsewhere gives what is
-    printed. Returns how many there are.
+    """Run the page, and compare each cell that needs no download with the printed result.
+
+    Returns the number of cells.
     """
     engine.go(site + name)
     engine.run("() => { localStorage.clear(); sessionStorage.clear(); }")
@@ -58,7 +59,7 @@ def test_results_equal_the_stored_ones(engine, site, name):
 
 @pytest.mark.long
 def test_stop_keeps_the_names(engine, site):
-    """In a page that the server isolates: Python listens, and what was defined stays."""
+    """In a page that the server isolates, Python can be interrupted, and its variables remain."""
     engine.go(site + QUIET)
     assert compare(engine, site, QUIET) > 3
     assert engine.run("() => crossOriginIsolated")
@@ -82,9 +83,9 @@ def test_stop_keeps_the_names(engine, site):
 
 
 def test_page_opens_and_is_read(engine, site):
-    """Each day: one page, its mathematics, its typefaces, and its buttons."""
+    """Check one page each day: its mathematics, its typefaces, and its buttons."""
     engine.go(site + QUIET)
-    # Or, once Python was fetched, nothing is told of its size.
+    # Otherwise, after a download of Python, its size is not shown.
     engine.run("() => localStorage.clear()")
     engine.go(site + QUIET)
     engine.wait("() => !document.documentElement.matches('.settling, .in-parts')")
@@ -106,5 +107,5 @@ def test_page_opens_and_is_read(engine, site):
 
 def test_light_formulas_stand_as_katex_sets_them(engine, site):
     engine.go(site + "index.html")
-    # WebKit makes lines whole pixels high, and moves all that stands in them.
+    # WebKit rounds the heights of lines to pixels, and moves their content.
     stand_as_katex_sets_them(engine.run, within=2)

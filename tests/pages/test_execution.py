@@ -1,4 +1,4 @@
-"""What is run again when something has changed, and what is not."""
+"""Which notebooks are run again after a change, and which are not."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ from notebook_pages import execution, used
 from notebook_pages.live import cells
 from orientation_figures import moving
 
-# jupyter-cache leaves its database open, which Python tells since 3.13.
+# jupyter-cache leaves its database open, which Python reports since 3.13.
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 
 PACKAGE = {
@@ -38,7 +38,7 @@ PACKAGE = {
 
 @pytest.fixture
 def packages(tmp_path, monkeypatch):
-    """Small packages of the same names; gives a function that changes one of their files."""
+    """Write small packages of the same names; return a function that changes one of their files."""
     sources = tmp_path / "src"
 
     def write(name, text):
@@ -67,7 +67,7 @@ def notebook(*codes, words="# A chapter"):
     return new_notebook(cells=[new_markdown_cell(words), *map(new_code_cell, codes)])
 
 
-# What is not Python is left to the run.
+# Code that is not Python is left to the run.
 FIGURES = notebook("from orientation_figures.drawing import Drawing", "1 +")
 CHECKS = notebook("from coursework import check", "check('chapters/a', 1)")
 
@@ -88,9 +88,9 @@ CHECKS = notebook("from coursework import check", "check('chapters/a', 1)")
     ],
 )
 def test_a_notebook_depends_on_what_it_uses_and_on_nothing_else(packages, name, figures, checks):
-    before = [used.fingerprint_of_used(one) for one in (FIGURES, CHECKS)]
+    before = [used.fingerprint_of_used(chapter) for chapter in (FIGURES, CHECKS)]
     packages(name, "# mended")
-    after = [used.fingerprint_of_used(one) for one in (FIGURES, CHECKS)]
+    after = [used.fingerprint_of_used(chapter) for chapter in (FIGURES, CHECKS)]
     assert [old != new for old, new in zip(before, after, strict=True)] == [figures, checks]
 
 
@@ -149,7 +149,7 @@ def test_a_run_side_by_side_says_nothing_of_its_processes(tmp_path):
 
 
 def test_old_runs_are_thrown_away(packages, tmp_path):
-    """Also the run of code that a notebook held before, and may hold again."""
+    """This includes the run of code that a notebook contained before, and may contain again."""
     from jupyter_cache import get_cache
 
     page, folder = tmp_path / "page.ipynb", tmp_path / "cache"
@@ -190,15 +190,15 @@ def code_cell(code, *tags, text=None, ran=True):
 
 
 def test_cells_that_a_page_hides_run_before_the_next_one(monkeypatch):
-    """Else each cell below them would have the kind, and the edits, of another."""
-    found = cells.classify([
+    """Otherwise each cell below them would have the kind, and the edits, of another."""
+    kinds = cells.classify([
         code_cell("hidden = 3", "remove-cell"),
         code_cell("hidden", text="3"),
         code_cell("import numpy\nlength = numpy.size([1, 2])", "remove-input"),
         code_cell("hidden + length", "hide-input", text="5"),
         code_cell("hidden * 2", text="6"),
     ])  # fmt: skip
-    shown = cells.on_the_page(found)
+    shown = cells.on_the_page(kinds)
     assert [kind["code"] for kind in shown] == ["hidden", "hidden + length", "hidden * 2"]
     assert [kind["before"] for kind in shown] == [
         "hidden = 3",
@@ -217,11 +217,11 @@ def test_a_chapter_that_was_never_run_can_be_seen():
 
 
 def test_whoever_names_a_figure_needs_anywidget_and_what_comes_with_it():
-    """A page has that at hand; of something else it would say that it is fetched from elsewhere."""
+    """A page has anywidget; anything else it would report as a download."""
     names = [code_cell(f"moving.{name}", ran=False) for name in moving.__all__]
-    first, *found = cells.classify([code_cell("from orientation_figures import moving"), *names])
+    first, *kinds = cells.classify([code_cell("from orientation_figures import moving"), *names])
     assert first["needs"] == []
-    assert [kind["needs"] for kind in found] == [["anywidget"]] * len(found)
+    assert [kind["needs"] for kind in kinds] == [["anywidget"]] * len(kinds)
 
 
 def test_kinds_are_kept_while_only_the_prose_changes(tmp_path, monkeypatch):
@@ -239,7 +239,7 @@ def test_kinds_are_kept_while_only_the_prose_changes(tmp_path, monkeypatch):
 
 
 def test_code_is_parsed_from_several_threads():
-    """Python 3.11 ends with a SystemError where two threads make syntax trees at the same time."""
+    """Python 3.11 raises a SystemError if two threads make syntax trees at the same time."""
     from concurrent.futures import ThreadPoolExecutor
 
     from notebook_pages.used import parse

@@ -1,4 +1,4 @@
-"""The first view of a page stands before the rest is looked at, and nothing is lost by it."""
+"""The first view of a page is shown before the rest is laid out, and nothing is lost by this."""
 
 import re
 
@@ -11,23 +11,22 @@ LONG = "chapters/unit-quaternions.html"
 SIZES = {"wide": {"width": 1300, "height": 900}, "narrow": {"width": 380, "height": 760}}
 SCRIPT = re.compile(r'<script[^>]* src="([^"?]*)')
 FIGURES = re.compile(r'<link rel="figure-script" href="([^"?]*)')
-#: At most so many scripts: of the page itself, of its figures (what they
-#: share, and each kind), of its code.
+# The largest number of scripts: of the page itself, of its figures (the shared one, and each kind),
+# of its code.
 SCRIPTS = 1 + 2 + 2 + 1
-# What lies below is left alone until the test lets go.
+# The blocks below are not laid out until the test allows it.
 HOLD = "window.held = []; window.requestIdleCallback = (action) => held.push(action);"
-# The frames after the first view are drawn when the test says so.
+# The frames after the first view are drawn when the test allows it.
 HOLD_FRAMES = """
 window.held = [];
 const draw = window.requestAnimationFrame.bind(window);
 window.requestAnimationFrame = (action) => document.documentElement.matches(".settling") ? draw(action) : held.push(action);
 window.release = () => { window.requestAnimationFrame = draw; held.splice(0).forEach((action) => draw(action)); };
 """
-# Where each block of the text begins.
+# The top of each block of the text.
 PLACES = """() => [...document.querySelectorAll('.bd-article section > *')].map(
   (block) => Math.round(block.getBoundingClientRect().top + scrollY))"""
-# Which elements that are not laid out were measured, by whatever a script
-# can ask: that would lay them out.
+# The elements that a script measured although they are not laid out: measuring lays them out.
 MEASURED = """
 window.measured = [];
 const isLeftAlone = (element) => document.documentElement.matches(".settling, .in-parts") && element.closest(".later")
@@ -84,7 +83,7 @@ def test_long_pages_are_marked_and_short_ones_are_not():
 def test_few_scripts_are_fetched():
     pages = {name: (HTML / name).read_text("utf8") for name in html_pages()}
     fetched = {name: SCRIPT.findall(text) + FIGURES.findall(text) for name, text in pages.items()}
-    assert {name: found for name, found in fetched.items() if len(found) > SCRIPTS} == {}
+    assert {name: scripts for name, scripts in fetched.items() if len(scripts) > SCRIPTS} == {}
 
 
 @pytest.mark.sampled(1)
@@ -123,7 +122,7 @@ def test_scripts_are_asked_for_when_the_text_has_come():
 
 
 def test_figures_are_brought_to_life_when_the_first_view_stands(open_page):
-    """Their scripts are more than half of a page's: nobody waits for them with an empty screen."""
+    """Their scripts are more than half of a page's, and must not delay the first view."""
     page = open_page(LONG, script=HOLD_FRAMES)
     page.wait_for_function("held.length", polling=50)  # nothing is drawn from here on
     asked = """() => performance.getEntriesByType('resource').filter(

@@ -1,4 +1,4 @@
-"""Every formula of the book in words, as its PDF says it."""
+"""Every formula of the book in words, as in its PDF."""
 
 import re
 
@@ -13,10 +13,10 @@ from notebook_pages.spoken import spoken
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("page", pages())
 def test_every_formula_of_the_page_can_be_said(page):
-    """In words: no sign, and nothing of TeX."""
+    """The words contain no symbols and no TeX."""
     for math in dict.fromkeys(
         re.findall(r"<math\b.*?</math>", (HTML / f"{page}.html").read_text("utf8"), re.DOTALL)
     ):
-        said = spoken(BeautifulSoup(math, "lxml").math)
-        assert re.fullmatch(r"[A-Za-z0-9 ,.;:\u00a0'’-]+", said), f"{said!r} from {math}"
-        assert not re.search(r"[,;] ?[,;]|  ", said), said
+        words = spoken(BeautifulSoup(math, "lxml").math)
+        assert re.fullmatch(r"[A-Za-z0-9 ,.;:\u00a0'’-]+", words), f"{words!r} from {math}"
+        assert not re.search(r"[,;] ?[,;]|  ", words), words

@@ -1,6 +1,4 @@
-"""The book that a browser keeps is one edition or another, never half
-of each, whatever the network does.
-"""
+"""The book that a browser keeps is always one whole edition, whatever the network does."""
 
 import json
 import shutil
@@ -44,7 +42,7 @@ def engine(request):
 
 @pytest.fixture(scope="module")
 def parts(tmp_path_factory):
-    """What all editions have in common, made once."""
+    """The files that all editions share, made once."""
     folder = tmp_path_factory.mktemp("parts")
     write_edition(folder, 0)
     for path in folder.rglob("*.html"):
@@ -55,7 +53,7 @@ def parts(tmp_path_factory):
 
 @pytest.fixture
 def editions(tmp_path, parts):
-    """Gives the folder of an edition by its number."""
+    """Return a function from the number of an edition to its folder."""
 
     def folder(number):
         place = tmp_path / str(number)
@@ -74,24 +72,25 @@ def keep(engine, address, folder, choice="The pages"):
 
 
 def shown(engine, address):
-    """What each page shows; one that is half of one edition and half of another fails."""
-    found = {}
+    """Return the edition that the pages show; fail if they are of different editions."""
+    editions_shown = {}
     for name in PAGES:
         engine.go(f"{address}{name}.html")
         parts = engine.run(SHOWN)
         assert len(set(parts)) == 1, f"{name} shows the parts of several editions: {parts}"
-        found[name] = int(parts[0])
-    assert found.pop("appendix/three") == 0
-    assert len(set(found.values())) == 1, f"pages of several editions: {found}"
-    return set(found.values()).pop()
+        editions_shown[name] = int(parts[0])
+    assert editions_shown.pop("appendix/three") == 0
+    assert len(set(editions_shown.values())) == 1, f"pages of several editions: {editions_shown}"
+    return set(editions_shown.values()).pop()
 
 
 def renew(engine, address, folder):
-    """Open a page until the newest edition is that of ``folder``: while one look
-    at the network lasts, none begins.
+    """Open a page until the newest edition is that of ``folder``.
+
+    While one check of the network is running, no other begins.
     """
-    wanted, end = listed(folder)["edition"], time.monotonic() + PATIENCE
-    while engine.run(NEWEST) != wanted:
+    newest, end = listed(folder)["edition"], time.monotonic() + PATIENCE
+    while engine.run(NEWEST) != newest:
         assert time.monotonic() < end, f"the edition of {folder} does not become the newest"
         engine.go(f"{address}index.html")
         engine.wait(RESTS)
@@ -99,9 +98,7 @@ def renew(engine, address, folder):
 
 @pytest.mark.parametrize("step", [4, pytest.param(1, marks=pytest.mark.long)])
 def test_renewal_that_breaks_off_anywhere_leaves_the_edition_before_it(engine, editions, step):
-    """The network is cut after each request in turn, or every fourth, and comes
-    back: the next edition is whole.
-    """
+    """Cut the network after each request in turn, or every fourth: the next edition is whole."""
     with network(editions(1)) as (net, address):
         assert "is stored" in keep(engine, address, editions(1))
         newest, cut, whole = 1, 0, False
@@ -136,7 +133,7 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
         engine.go(f"{address}chapters/two.html")
         (mine,) = (editions(1) / "runtime" / "wheels").iterdir()
         net.folder = str(editions(2))
-        # another tab comes to a page: the answer to a frame is one to a navigation, too
+        # Another tab opens a page; the response to a frame is a navigation, too.
         engine.run(
             """() => new Promise((come) => {
               const frame = Object.assign(document.createElement("iframe"), { src: "/index.html", onload: come });
@@ -159,9 +156,9 @@ def test_open_tab_is_told_what_has_changed_and_still_has_its_own_edition(engine,
 def test_neighbours_of_a_book_at_the_root_are_left_alone(engine, editions):
     with network(editions(1)) as (_, address):
         keep(engine, address, editions(1))
-        other = editions(1) / "other-course" / "page.html"
-        other.parent.mkdir()
-        other.write_text("<!DOCTYPE html><title>Another course</title>")
+        neighbour = editions(1) / "other-course" / "page.html"
+        neighbour.parent.mkdir()
+        neighbour.write_text("<!DOCTYPE html><title>Another course</title>")
         header = "async (path) => (await fetch(path)).headers.get('Cross-Origin-Embedder-Policy')"
         assert engine.run(header, "/chapters/one.html") == "require-corp"
         assert engine.run(header, "/other-course/page.html") is None

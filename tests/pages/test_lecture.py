@@ -8,7 +8,7 @@ from test_site import violations
 CHAPTERS = sorted(path.stem for path in (HTML / "chapters").glob("*.html"))
 BAR = ".lecture-bar button"
 
-# Goes through the lecture; returns for each step what is wrong with it.
+# Go through the lecture, and return the faults of each step.
 STEPS = """() => {
   const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
   press("Home");
@@ -56,7 +56,7 @@ def opened(browser, site):
 
 
 def begin(page):
-    """The lecture comes when it is asked for."""
+    """Start the lecture and wait for it."""
     box = page.locator("button.lecture-mode").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.wait_for_selector("html.lecture")
@@ -88,14 +88,14 @@ def test_keys_work_after_clicks_and_on_what_is_moved(opened):
     slider.click()
     expect(page.locator(".lecture-line")).to_be_focused()
     page.keyboard.press("ArrowRight")
-    assert step(page) == 6  # a pointer gives the keys back
+    assert step(page) == 6  # a pointer returns the keys to the lecture
     slider = page.locator("figure.in-step [type=range]").first
     slider.focus()
     value = slider.input_value()
     page.keyboard.press("ArrowRight")
-    # Whoever came by keyboard moves the figure.
+    # A reader who came by keyboard moves the figure.
     assert step(page) == 6 and slider.input_value() != value
-    page.keyboard.press("PageDown")  # and a speaker's remote goes on
+    page.keyboard.press("PageDown")  # and a speaker's remote control continues
     assert step(page) == 7
     page.keyboard.type("3")
     page.keyboard.press("Enter")
@@ -135,7 +135,7 @@ def test_a_prediction_is_voted_twice_and_answered(opened):
     assert box.locator(".choices > li.right").get_attribute("data-name") == right
     page.keyboard.press("ArrowRight")
     assert step(page) == at + 1
-    # A vote of the hall is nobody's own answer.
+    # A vote of the audience is nobody's own answer.
     assert not any(here["answers"] for here in page.evaluate("bookStore.record()").values())
     page.keyboard.press("Escape")
     assert page.locator(".hands").count() == 0

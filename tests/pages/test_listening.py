@@ -1,6 +1,4 @@
-"""Two chapters and an exercise as a screen reader walks through them: what
-the browser tells it, in its order.
-"""
+"""Two chapters and an exercise as a screen reader reads them, in the browser's order."""
 
 import re
 
@@ -12,7 +10,7 @@ WALKED = (
     "chapters/simple-orientations.html",
     "chapters/unit-quaternions.html",
 )
-#: What a reader acts on, or is told of by its name alone.
+# Elements that a reader acts on, or that are announced by name only.
 NAMED = {
     "button", "link", "textbox", "searchbox", "slider", "spinbutton", "checkbox", "radio",
     "combobox", "img", "image", "listbox", "figure", "navigation", "DisclosureTriangle",
@@ -20,23 +18,23 @@ NAMED = {
 pytestmark = pytest.mark.long
 
 
-def told(page):
-    """What is there for a screen reader: role, name and level, from the first to the last."""
+def spoken_tree(page):
+    """Return the nodes of a screen reader in order: role, name and level."""
     nodes = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
     by_id = {node["nodeId"]: node for node in nodes}
-    found = []
+    spoken_nodes = []
 
     def walk(node):
         if not node["ignored"]:
             level = next(
                 (
-                    one["value"]["value"]
-                    for one in node.get("properties", [])
-                    if one["name"] == "level"
+                    property_of_node["value"]["value"]
+                    for property_of_node in node.get("properties", [])
+                    if property_of_node["name"] == "level"
                 ),
                 None,
             )
-            found.append(
+            spoken_nodes.append(
                 (node["role"]["value"], node.get("name", {}).get("value", "").strip(), level)
             )
         for child in node.get("childIds", []):
@@ -44,7 +42,7 @@ def told(page):
                 walk(by_id[child])
 
     walk(nodes[0])
-    return found
+    return spoken_nodes
 
 
 @pytest.mark.parametrize("name", WALKED)
@@ -66,31 +64,30 @@ def test_a_walk_through_the_page(browser, site, name):
             (one) => one.getBoundingClientRect().height < 40).map((one) => one.getAttribute('aria-label')),
           code: [...document.querySelectorAll('article pre')].map((one) => one.textContent).join('\\n'),
         })""")
-        tree = told(page)
+        tree = spoken_tree(page)
     roles = [role for role, _, _ in tree]
     nameless = sorted({role for role, words, _ in tree if role in NAMED and not words})
     assert nameless == [], f"{name}: they have no name"
     assert roles.count("main") == 1 and "navigation" in roles
-    # Headings: one above all, and no step is left out on the way down.
+    # There is one top heading, and no level is skipped on the way down.
     inside = tree[roles.index("main") :]
     levels = [level for role, _, level in inside if role == "heading"]
     assert levels.count(1) == 1 and levels[0] == 1
     assert all(below <= above + 1 for above, below in zip(levels, levels[1:])), levels
-    # Formulas come as mathematics, each once, and nothing of how
-    # they are drawn, or of their source.
+    # Formulas are announced as mathematics, each once, without their drawing or source.
     mathematics = [
         place for place, (role, _, _) in enumerate(inside) if role in ("math", "MathMLMath")
     ]
     assert len(mathematics) >= seen["formulas"] > 5
     words = [text for role, text, _ in inside if role == "StaticText"]
     tex = [text for text in words if re.search(r"\\(?:hat|mathbf|frac|begin)", text)]
-    assert [text for text in tex if text not in seen["code"]] == []  # a program may hold some
-    # Every piece of code can be run, by a button that says which.
+    assert [text for text in tex if text not in seen["code"]] == []  # a program may contain some
+    # Every piece of code has a button to run it, with a name.
     runs = [text for role, text, _ in inside if role == "button" and text.startswith("Run cell")]
     assert [int(re.match(r"Run cell (\d+)", text)[1]) for text in runs] == seen["cells"] and len(
         runs
     ) > 2
-    # A figure is called by its number, and its picture says more than that it is one.
+    # A figure is named by its number, and its picture has a description.
     figures = [text for role, text, _ in inside if role == "figure"]
     assert len(set(figures)) == len(figures) and all(
         text.startswith("Figure ") for text in figures
@@ -99,7 +96,7 @@ def test_a_walk_through_the_page(browser, site, name):
         text for role, text, _ in inside if role in ("img", "image") and text not in seen["signs"]
     ]
     assert all(len(text) > 15 for text in pictures), [text for text in pictures if len(text) <= 15]
-    # The page begins with its title and ends with the way to the next one.
+    # The page begins with its title and ends with the link to the next one.
     assert next(text for role, text, _ in inside if role == "heading") in seen["title"]
     links = [text for role, text, _ in tree if role == "link"]
     assert links[0] == "Skip to main content"

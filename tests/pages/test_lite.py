@@ -1,6 +1,4 @@
-"""Notebooks in the browser: JupyterLite opens a chapter and an
-exercise, runs them, and asks nobody else.
-"""
+"""Notebooks in the browser: JupyterLite opens a chapter and an exercise, and runs them offline."""
 
 import hashlib
 import json
@@ -51,16 +49,14 @@ def test_every_notebook_is_there_and_its_page_opens_it():
 
 @pytest.mark.parametrize("page", notebook_pages())
 def test_notebook_is_the_page_ready_to_run(page):
-    """Exercises as they were released; chapters with all their code,
-    and a word where NumPy comes in.
-    """
+    """Exercises are as released; chapters have all their code, and a note where NumPy is needed."""
     source = nbformat.read(REPOSITORY / f"{page}.ipynb", as_version=4)
     if page.startswith("exercises/"):
-        found = notebook(page)
-        assert set(found.metadata.pop("book")["cells"]) == {
+        released = notebook(page)
+        assert set(released.metadata.pop("book")["cells"]) == {
             c.id for c in source.cells if c.cell_type == "code"
         }
-        assert found == source
+        assert released == source
         return
     assert "pip install" not in notebook(page).cells[0].source
     announced = [
@@ -72,7 +68,7 @@ def test_notebook_is_the_page_ready_to_run(page):
     ]
     if any(needs):
         assert announced.index(True) == needs.index(True)
-        # The words come before all code that imports it.
+        # The note comes before all code that imports it.
         before = "\n".join(codes(page)[: needs.index(True)])
         assert "import numpy" not in before and "from numpy" not in before
     expected = [cell.source for cell in source.cells if cell.cell_type == "code"]
@@ -80,8 +76,9 @@ def test_notebook_is_the_page_ready_to_run(page):
 
 
 def test_the_interface_leaves_the_pages_their_dates():
-    """A page that is older than its source is written again by the next build: all were, since
-    JupyterLite gives what lies beside it the date of the commit.
+    """A page that is older than its source is written again by the next build.
+
+    Once this happened to all, since JupyterLite gives the files beside it the date of the commit.
     """
     younger = [
         page
@@ -99,7 +96,7 @@ def test_lock_lists_what_is_there():
             assert hashlib.sha256(content).hexdigest() == package["sha256"]
         assert set(package["depends"]) <= set(packages)
     loaded = KERNEL["loadPyodideOptions"]["packages"]
-    # "comm" among them, or the kernel hangs without a word.
+    # Without "comm" among them, the kernel hangs silently.
     assert {"sympy", "ipywidgets", "anywidget", "comm", "orientation-of-reference-frames"} <= set(
         loaded
     )
@@ -127,7 +124,7 @@ class Interface:
         context.on("request", lambda request: self.asked.append(request.url))
         context.on("weberror", lambda error: self.errors.append(str(error.error)))
         context.route(ELSEWHERE, lambda route: route.abort())
-        # The tests read the notebook as the interface holds it; a reader has no need of this.
+        # The tests read the interface's model of the notebook, which a reader does not need.
         shown = {**SETTINGS, "exposeAppInBrowser": True}
         settings = {"jupyter-lite-schema-version": 0, "jupyter-config-data": shown}
         context.route(f"**/{FOLDER}/jupyter-lite.json", lambda route: route.fulfill(json=settings))
@@ -146,19 +143,19 @@ class Interface:
         )
 
     def cells(self):
-        """The cells as the interface holds them, also those that are out of sight."""
+        """Return the cells of the interface's model, also those that are out of sight."""
         return self.page.evaluate(
             "() => jupyterapp.shell.currentWidget.content.widgets.map(cell => cell.model.toJSON())"
         )
 
     def number(self, code):
-        """The place of the cell that begins with ``code``."""
-        (found,) = (
+        """Return the place of the cell that begins with ``code``."""
+        (place,) = (
             place
             for place, cell in enumerate(self.cells())
             if "".join(cell["source"]).startswith(code)
         )
-        return found
+        return place
 
     def enter(self, place):
         """Put the cursor into the code of a cell."""
@@ -168,12 +165,12 @@ class Interface:
             place,
         )
         cell = self.page.locator(".jp-Notebook .jp-Cell.jp-mod-active")
-        # The code that draws a figure is folded away.
+        # The code that draws a figure is folded.
         folded = self.cells()[place]["metadata"].get("jupyter", {}).get("source_hidden")
         (cell if folded else cell.locator(".cm-content")).focus()
 
     def run(self, place):
-        """Run a cell with the keyboard; give what it put out."""
+        """Run a cell with the keyboard, and return its output."""
         model = "jupyterapp.shell.currentWidget.content.widgets[place].model"
         self.page.evaluate(f"place => {{ {model}.executionCount = null; }}", place)
         self.enter(place)
@@ -192,7 +189,7 @@ class Interface:
 
 
 def reply(outputs):
-    """The outcome and the words of a checked answer."""
+    """Return the outcome and the words of a checked answer."""
     (output,) = outputs
     html = "".join(output["data"]["text/html"])
     return re.search(r'data-outcome="([^"]*)"', html)[1], html
@@ -216,7 +213,7 @@ def test_exercise_is_solved_kept_and_downloaded(browser, site):
     )
     interface = Interface(context, site, EXERCISE)
     assert interface.run(interface.number("from math")) == []
-    interface.run(interface.number("bicycle = variant("))  # what the answer is about
+    interface.run(interface.number("bicycle = variant("))  # the data of the question
     answer, check = (
         interface.number(code) for code in ("A_C_N = ...", "check('simple-orientations/crank'")
     )
@@ -232,10 +229,10 @@ def test_exercise_is_solved_kept_and_downloaded(browser, site):
     ):
         interface.write(answer, code)
         assert interface.run(answer) == []
-        found, html = reply(interface.run(check))
-        assert found == outcome, html
+        shown_outcome, html = reply(interface.run(check))
+        assert shown_outcome == outcome, html
         assert outcome != "wrong" or "transpose" in html
-    # Progress is kept beside the notebook, in this browser.
+    # Progress is stored beside the notebook, in this browser.
     interface.write(check, "from coursework import progress\nprogress()")
     assert "1 " in reply(interface.run(check))[1]
     interface.page.keyboard.press("Control+s")
@@ -261,10 +258,10 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     context = browser.new_context(viewport={"width": 1300, "height": 900})
     interface = Interface(context, site, CHAPTER)
     page = interface.page
-    # The cells that the page runs without NumPy give here what the book prints, too.
+    # The cells that the page runs without NumPy give the printed results here, too.
     stored = nbformat.read(REPOSITORY / f"{CHAPTER}.ipynb", as_version=4)
     cells = [cell for cell in stored.cells if cell.cell_type == "code"]
-    ran, absent = 0, set()  # names that only cells with NumPy give
+    ran, absent = 0, set()  # names that only cells with NumPy assign
     for cell, kind in zip(cells, kinds_of_cells()[CHAPTER], strict=True):
         if kind["needs"] or kind["numpy"] or names_taken(cell.source) & absent:
             absent |= names_bound(cell.source)
@@ -282,7 +279,7 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
     page.get_by_label("theta in degrees", exact=True).first.wait_for()
     assert interface.outside() == []
 
-    # Python moves a figure, and hears when the reader does.
+    # Python moves a figure, and is notified when the reader does.
     place = interface.number("at_lock = M.subs")
     interface.write(place, "figure = GimbalFigure(angles=(0.1, 0.2, 0.3))\nfigure")
     interface.run(place)
@@ -317,9 +314,7 @@ def test_chapter_runs_and_its_figure_moves(browser, site):
 
 @pytest.mark.long
 def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
-    """Said on a page, the notebook knows it and shows that one's numbers;
-    what is said there, the page knows.
-    """
+    """An ID given on a page applies in the notebook, and the other way round."""
     question = "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
     ada, ben = (
@@ -335,7 +330,8 @@ def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
     interface.run(first)
     sealed = []
     interface.page.on(
-        "response", lambda one: "/sealed-" in one.url and sealed.append(len(one.body()))
+        "response",
+        lambda response: "/sealed-" in response.url and sealed.append(len(response.body())),
     )
     shown = next(
         k
@@ -359,9 +355,7 @@ def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
 @pytest.mark.long
 @pytest.mark.parametrize("lost", [1, 2, None])
 def test_notebook_opens_where_what_brings_the_answers_has_not_come(browser, site, lost):
-    """Lost once, it is asked for again; lost twice, or on a network that hangs, the notebook opens
-    as it is kept in this browser.
-    """
+    """If the script is lost once, it is requested again; if twice, the notebook opens as stored."""
     context = browser.new_context()
     asked = []
 

@@ -1,4 +1,4 @@
-"""Code in the page: every cell, what a student would type, and what the browser asks for."""
+"""Code in the page: every cell, a student's input, and the browser's requests."""
 
 import gzip
 import hashlib
@@ -30,11 +30,11 @@ from notebook_pages.serve import Handler, server
 
 PAGES = [name for name in html_pages() if 'id="live-data"' in (HTML / name).read_text("utf8")]
 ELSEWHERE = "https://cdn.jsdelivr.net/**"
-# has cells with and without NumPy, and runs in a moment
+# This page has cells with and without NumPy, and runs quickly.
 QUIET = "chapters/successive-orientations.html"
 
-# The results of a page, as the reader sees them: each cell's
-# output, without what differs on purpose.
+# The results of a page, as the reader sees them: each cell's output, without intentional
+# differences.
 RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   const output = cell.querySelector(':scope > .cell_output');
   if (!output) return '';
@@ -64,7 +64,7 @@ RESULTS = r"""() => [...document.querySelectorAll('div.cell')].map((cell) => {
   copy.querySelectorAll('pre').forEach((pre) => pre.removeAttribute('id'));
   return copy.innerHTML.replace(/\s+/g, ' ').replace(/> </g, '><').replace(/ <\/pre>/g, '</pre>').trim();
 })"""
-# Drawings that are played have their controls.
+# Animated drawings have their controls.
 PLAYABLE = "() => !document.querySelector('figure[data-moving]:not([data-ready])')"
 RAN = (
     "() => document.querySelector('div.cell.running, div.cell.waiting, html.live-busy') === null "
@@ -77,7 +77,7 @@ opened = []
 
 @pytest.fixture(autouse=True)
 def close_pages():
-    """Close what a test has opened, also where it fails: a forgotten page goes on working."""
+    """Close the pages of a test even if it fails, because a forgotten page keeps working."""
     yield
     while opened:
         page = opened.pop()
@@ -85,7 +85,7 @@ def close_pages():
         page.close()
 
 
-# What predictions cover is folded; here all of it is tried.
+# Cells covered by predictions are folded; open them to try everything.
 UNFOLD = """() => document.querySelectorAll('.covered').forEach((box) => {
   box.inert = false;
   box.className = 'uncovered';
@@ -93,7 +93,7 @@ UNFOLD = """() => document.querySelectorAll('.covered').forEach((box) => {
 
 
 class Page:
-    """A page of the book in a browser, driven as a reader drives it."""
+    """A page of the book in a browser, used as a reader uses it."""
 
     def __init__(self, context, site, name, refuse=True):
         self.page = context.new_page()
@@ -117,9 +117,7 @@ class Page:
         assert "ran." in self.words(), self.words()
 
     def results_of_a_run(self):
-        """What stands below each cell before the page is run, and after it,
-        and what notes stand there then.
-        """
+        """Return the results below each cell before and after a run, and the notes after it."""
         before = self.page.evaluate(RESULTS)
         self.run()
         self.page.wait_for_function(PLAYABLE)
@@ -145,7 +143,7 @@ class Page:
         )
 
     def try_code(self, number, code, wait=True):
-        """Write ``code`` into a cell, run it with the keyboard, and return what stands below it."""
+        """Write ``code`` into a cell, run it with the keyboard, and return its output."""
         self.write(number, code)
         self.page.keyboard.press("Shift+Enter")
         if wait:
@@ -188,10 +186,10 @@ def page_that_has_run(context, site):
 
 @pytest.fixture
 def shared(page_that_has_run):
-    """A page whose cells have run once; a test that leaves it running spoils no other."""
+    """A page whose cells have run once; tests may leave it running."""
     yield page_that_has_run
     assert page_that_has_run.errors == []
-    # Or the next page would bring the edits back.
+    # Otherwise the next page would restore the edits.
     page_that_has_run.page.evaluate("localStorage.clear()")
     if page_that_has_run.page.locator("html.live-busy").count():
         page_that_has_run.page.reload()
@@ -199,7 +197,7 @@ def shared(page_that_has_run):
 
 @pytest.fixture(scope="module")
 def not_isolated():
-    """The address of the book on a server that gives no page shared memory, as most servers are."""
+    """The address of the book on a server that gives pages no shared memory, as most servers do."""
 
     class Plain(Handler):
         isolated = False
@@ -224,19 +222,17 @@ def test_every_notebook_is_a_page_with_code():
     }
     shown = {f"{name}.html" for name, kinds in kinds_of_cells().items() if on_the_page(kinds)}
     assert set(PAGES) == shown
-    # Whose figures need no code on the page.
+    # The figures of these pages need no code on the page.
     assert notebooks - shown == {"index.html", "rotations.html"}
 
 
 def all_shown(results):
-    """What a check says where nobody has answered yet is shown only once somebody has asked it."""
+    """Unhide the messages of checks that nobody has run, which a page shows only after a run."""
     return [result.replace(' hidden=""', "") for result in results]
 
 
 def equal_the_stored_ones(page, name, before, after, notes):
-    """Every cell that needs SymPy only gives what is printed; the
-    others say why they did not run.
-    """
+    """Check that cells which need only SymPy give the printed results, and others say why not."""
     before, after = all_shown(before), list(map(in_short, after))
     for number, (kind, note) in enumerate(zip(kinds(name), notes, strict=True), start=1):
         if not kind["needs"]:
@@ -245,7 +241,7 @@ def equal_the_stored_ones(page, name, before, after, notes):
         elif kind["skip"]:
             assert note == []
         elif kind["needs"] == ["anywidget"]:
-            # A figure, or what asks one: all that it needs comes with the site.
+            # A moving figure needs nothing beyond the files of the site.
             assert note == [], f"cell {number}"
         else:
             assert "Not run here" in note[0], f"cell {number}"
@@ -306,8 +302,9 @@ def test_pages_hardly_grow(name):
 
 
 def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
-    """KaTeX's own rules, which come with it, give way to those of the page:
-    they would make all formulas larger.
+    """KaTeX's own rules, which arrive with Python, must not override those of the page.
+
+    They would make all formulas larger.
     """
     (sheet,) = HTML.glob("runtime/scripts-*/live.css")
     before, _, rules = sheet.read_text("utf8").partition("@layer katex {")
@@ -316,7 +313,7 @@ def test_formulas_of_the_page_stay_as_they_are_when_python_comes():
 
 @pytest.mark.long
 def test_browser_asks_nobody_else(site, browser, tmp_path):
-    """By the browser's own log of the network, from its start to its end."""
+    """Read the browser's own log of the network, from its start to its end."""
     log = tmp_path / "network.json"
     name = "chapters/orientation-with-sympy.html"
     logged = browser.browser_type.launch(
@@ -328,7 +325,7 @@ def test_browser_asks_nobody_else(site, browser, tmp_path):
     opened.remove(page.page)
     logged.close()
     events = [event.get("params", {}) for event in json.loads(log.read_text("utf8"))["events"]]
-    # The browser asks its maker for things of its own: those have no page as their origin.
+    # The browser's requests to its maker have no page as their origin.
     asked = {
         params["url"]
         for params in events
@@ -383,7 +380,7 @@ def test_versions_are_those_of_the_book():
 
 @pytest.fixture
 def made_wheels(tmp_path):
-    """Wheels that stand for the official ones, and a list of packages that names them."""
+    """Return wheels in place of the official ones, and a list of packages that names them."""
     packages = {}
     for name in runtime.with_dependencies(runtime.NUMERICAL, runtime.official_lock()["packages"]):
         package = dict(runtime.official_lock()["packages"][name])
@@ -435,9 +432,7 @@ def test_one_command_brings_the_wheels_once_and_checks_each(made_wheels, tmp_pat
 
 
 def test_one_setting_puts_them_beside_the_pages(monkeypatch):
-    """As the workflow that publishes sets it: the makefile's
-    command and its folder are the same.
-    """
+    """Set it like the workflow that publishes, which uses the makefile's command and folder."""
     monkeypatch.setenv("BOOK_NUMPY", "_build/numpy")
     assert runtime.numpy_setting("official") == "_build/numpy"
     monkeypatch.setenv("BOOK_NUMPY", "")
@@ -457,7 +452,7 @@ def test_numpy_off(setting, tmp_path):
 
 
 def numpy_page(context, site, lock, wheel):
-    """A page whose list of packages is ``lock``; the official address gives ``wheel``."""
+    """Return a page whose list of packages is ``lock``; the official address returns ``wheel``."""
     page = Page(context, site, QUIET, refuse=False)
     page.page.route("**/pyodide-lock.json", lambda route: route.fulfill(json=lock))
     headers = {"Access-Control-Allow-Origin": "*", "Content-Type": "application/octet-stream"}
@@ -472,7 +467,7 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
     lock["packages"]["numpy"]["sha256"] = made["packages"]["numpy"]["sha256"]
     wheel = (folder / made["packages"]["numpy"]["file_name"]).read_bytes()
     page = numpy_page(context, site, lock, wheel)
-    page.page.click("button.run-cell >> nth=2")  # a cell of SymPy: nothing is asked for
+    page.page.click("button.run-cell >> nth=2")  # a cell of SymPy requests nothing
     page.wait()
     assert page.outside() == []
     assert "made numpy" in page.try_code(3, "import numpy as np\nprint(np.__version__)")
@@ -489,7 +484,7 @@ def test_numpy_is_fetched_and_checked(context, site, made_wheels):
 @pytest.mark.long
 def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
     page = Page(context, site, QUIET)
-    page.page.click("button.run-cell >> nth=2")  # with it comes the editor
+    page.page.click("button.run-cell >> nth=2")  # this also loads the editor
     page.wait()
     text = page.try_code(
         3, "import numpy as np\na = np.array([[2.0, 1], [0, 4]])\nnp.linalg.inv(a)"
@@ -504,9 +499,7 @@ def test_plain_python_stands_in_for_numpy_and_says_so(context, site):
 
 @pytest.mark.long
 def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, site):
-    """Byte by byte, and in place of the one before; the report needs more
-    than this site holds, and says so.
-    """
+    """Byte by byte, and in place of the file before; the report says that it needs a download."""
     page = Page(context, site, "workbench.html")
     tagged = (
         "[...document.querySelectorAll('div.cell')].findIndex((cell) => "
@@ -546,9 +539,7 @@ def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, 
 
 @pytest.mark.long
 def test_hidden_code_runs_before_the_cell_below_it(context, site):
-    """As on a page with a cell that is tagged ``remove-cell``: the build
-    puts its code with the next one.
-    """
+    """On a page with a cell tagged ``remove-cell``, the build adds its code to the next one."""
 
     def with_hidden_code(route):
         page = route.fetch()
@@ -600,9 +591,7 @@ def test_typo(shared):
 
 @pytest.mark.long
 def test_failing_cell_keeps_its_printed_result(context, site):
-    """Beside an error stands what the book has printed; it comes
-    back alone with the book's code.
-    """
+    """The printed result remains beside an error, and is alone again with the book's code."""
     page = Page(context, site, QUIET)
     before = page.page.evaluate(RESULTS)[2]
     page.page.click("button.run-cell >> nth=2")
@@ -677,7 +666,7 @@ def test_orientation_and_coursework(shared):
 
 
 def solution(name):
-    """The instructors' code of one answer: the cell above its check."""
+    """Return the instructors' code of one answer: the cell above its check."""
     path = REPOSITORY / "tests" / "solutions" / f"{name.partition('/')[0]}.ipynb"
     codes = [
         cell.source for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == "code"
@@ -714,7 +703,7 @@ def test_exercise_is_checked_in_the_page(context, site):
 
 @pytest.mark.long
 def signed(code, who):
-    """The first cell as a student writes it who has an ID."""
+    """Return the first cell as a student with an ID writes it."""
     assert LEFT_OPEN in code
     return code.replace(LEFT_OPEN, f"student('{who}')")
 
@@ -728,7 +717,10 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
     page = Page(context, site, name)
     sealed = []
     page.page.on(
-        "response", lambda one: "/sealed-" in one.url and sealed.append((one.url, len(one.body())))
+        "response",
+        lambda response: (
+            "/sealed-" in response.url and sealed.append((response.url, len(response.body())))
+        ),
     )
     codes = page.codes()
     shown = next(k for k, code in enumerate(codes, 1) if question in code)
@@ -739,7 +731,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
         return page.below(shown)
 
     everybodys = run(page)
-    # Who learns alone meets nothing of it.
+    # A reader who learns alone sees nothing of this.
     assert sealed == [] and page.page.locator(".live-who").count() == 0
     assert "default" not in page.page.inner_text("main")
     own = max(students)
@@ -749,7 +741,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
     assert f"You are {students[own]}." in page.below(1)
     mine = run(page)
     assert mine != everybodys and page.errors == []
-    # One small file for each question above with variants, and no more than that.
+    # One small file for each question above with variants, and no others.
     assert any(
         address.endswith(f"/variants/simple-orientations-{own}.json") for address, _ in sealed
     )
@@ -758,7 +750,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
     opened.remove(page.page)
     page.page.close()
     again = Page(context, site, name)
-    # Before anything is run, one's own numbers are there, and everybody's are not.
+    # Before anything is run, the reader's own numbers are shown, and not the default ones.
     cell = f"document.querySelectorAll('div.cell')[{shown - 1}]"
     again.page.wait_for_function(
         f"{cell}.querySelector('.text_markdown') && !{cell}.querySelector('.live-known')"
@@ -772,7 +764,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
 
 @pytest.mark.long
 def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site):
-    """Without NumPy: what stands in for it there makes arrays of its own."""
+    """Without NumPy, its stand-in makes arrays of its own."""
     name = "exercises/simple-orientations.html"
     places = {cell["name"]: number for number, cell in enumerate(kinds(name), start=1)}
     page = Page(context, site, name)
@@ -780,7 +772,7 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
         "from orientation import dcm_from_axis_angle\n\nA_C_N = dcm_from_axis_angle((0, 1, 0), 0.3)"
     )
     check = places["check-simple-orientations-crank"]
-    page.page.click(f"button.run-cell >> nth={check - 1}")  # cells can be written in from now on
+    page.page.click(f"button.run-cell >> nth={check - 1}")  # cells can be edited from now on
     page.wait()
     page.write(places["simple-orientations-crank"], answer)
     page.page.click(f"button.run-cell >> nth={check - 1}")
@@ -790,9 +782,7 @@ def test_an_answer_made_with_the_books_module_is_right_on_the_page(context, site
 
 
 def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, site):
-    """Its outputs are those of nobody: everybody's numbers, and
-    questions that nobody has attempted.
-    """
+    """Its outputs contain the default numbers, and questions without an attempt."""
     name, question = "exercises/unit-quaternions.html", "unit-quaternions/dish"
     page = Page(context, site, name)
     codes = page.codes()
@@ -818,9 +808,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
 
 @pytest.mark.long
 def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(context, site):
-    """In any order of answers, names, a corrected name and reloads, the page says
-    with whose numbers one was right.
-    """
+    """After any answers, names, corrections and reloads, the page says whose numbers one had."""
     name, question = "exercises/simple-orientations.html", "simple-orientations/compass"
     count = notebook_questions("simple-orientations")[question].question.variants
     students = {
@@ -844,19 +832,22 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
 
     def reopened():
         page.page.reload()
-        # It asks for its scripts, since there are edits to bring back.
+        # It requests its scripts, since there are edits to restore.
         page.page.wait_for_selector(".cm-content")
         return page.below(check)
 
-    run()  # the editors come with Python
+    run()  # the editors arrive with Python
     page.write(check - 1, solution(question))
     assert "Correct" in run()
     assert "✓ Correct" in reopened() and reply.count() == 0
-    for who in (students[3], students[5]):  # the first one mistyped
-        said = call_oneself(who)
-        assert "✓ Right with the default numbers" in said and f"are those of {who} now" in said
+    for who in (students[3], students[5]):  # the first ID is mistyped
+        reply_text = call_oneself(who)
+        assert (
+            "✓ Right with the default numbers" in reply_text
+            and f"are those of {who} now" in reply_text
+        )
     run()
-    # The answer follows the numbers.
+    # The answer is compared with the new numbers.
     assert reply.get_attribute("data-outcome") == "correct", page.below(check)
     assert "default" not in page.below(check)
     assert "✓ Right with" not in reopened() and "✓ Correct" in page.below(check)
@@ -868,8 +859,8 @@ def test_what_was_right_with_everybodys_numbers_is_not_taken_for_ones_own(contex
         .get_attribute("open")
         is None
     )
-    said = call_oneself(students[5])
-    assert "✓ Correct" in said and "Right with" not in said
+    reply_text = call_oneself(students[5])
+    assert "✓ Correct" in reply_text and "Right with" not in reply_text
     page.page.goto(site + "appendix/my-progress.html")
     counted = page.page.locator(
         "tr:has(td[data-names*='simple-orientations/compass']) td[data-kind=checked]"
@@ -895,10 +886,10 @@ def test_tries_and_hints_of_a_page_outlive_it(context, site):
         page.write(blank, code)
         page.page.click(f"button.run-cell >> nth={check - 1}")
         page.wait()
-        said = page.below(check)
+        reply_text = page.below(check)
         opened.remove(page.page)
         page.page.close()
-    assert "2 answers so far" in said and "Hint:" in said
+    assert "2 answers so far" in reply_text and "Hint:" in reply_text
 
 
 OFFERED = """from IPython.display import HTML
@@ -925,8 +916,8 @@ def test_a_sibling_question_is_one_button_away(context, site):
     assert code.startswith(OFFERED.partition("\n")[0])
     assert "sibling = variant('simple-orientations/compass/sibling')" in code
     assert "check('simple-orientations/compass/sibling', other_compass)" in code
-    # That of nobody is the next. The page writes a minus where Python has a
-    # hyphen, and sets numbers one by one.
+    # Without an ID the sibling is the next variant. The page writes a minus where Python has a
+    # hyphen, and typesets numbers.
     own = notebook_questions("simple-orientations", 1)[
         "simple-orientations/compass"
     ].question.variant.shown
@@ -935,7 +926,7 @@ def test_a_sibling_question_is_one_button_away(context, site):
         own
     )
     assert page.errors == []
-    # It is the reader's own text now, and outlives the page; the book's code can be brought back.
+    # It is the reader's own text now and survives the page; the book's code can be restored.
     opened.remove(page.page)
     page.page.close()
     again = Page(context, site, name)
@@ -953,9 +944,7 @@ ONE_STEP = "print('begun')\nmax(range(10 ** 15))"  # one operation, in which Pyt
 
 
 def stop(page, number, code):
-    """Run endless code, press Stop once it has begun, and return
-    what stands below the cell then.
-    """
+    """Run endless code, press Stop once it has begun, and return the output."""
     page.try_code(number, code, wait=False)
     page.page.wait_for_function(
         "number => document.querySelectorAll('div.cell')[number - "
@@ -977,7 +966,7 @@ def test_stop_keeps_the_names_in_an_isolated_page(shared, code):
     assert "kept" in shared.try_code(3, "kept")
 
 
-# What Python does wherever it looks for an interrupt, with Stop pressed between its two steps.
+# Python's two steps of a check for an interrupt, with Stop pressed between them.
 LOOKS = """
 import time
 from js import Reflect
@@ -1014,7 +1003,7 @@ def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
     page.wait()
     text = stop(page, 4, ENDLESS)
     assert "Stopped." in text and "restarts" in text
-    # The cells above run again first, so that their names are there.
+    # The cells above run again first, so that their names are defined.
     text = page.try_code(4, "theta, kept if 'kept' in globals() else 'new'")
     assert "new" in text and page.errors == []
     opened.remove(page.page)
@@ -1025,7 +1014,7 @@ def test_stop_in_a_page_without_shared_memory(browser, not_isolated):
 def test_start_afresh(context, site):
     page = Page(context, site, QUIET)
 
-    # a figure that moves is where the reader has left it, or where its own dice put it
+    # A moving figure is where the reader has left it, or where its own random numbers put it.
     def results():
         return ["moves" if "data-figure=" in html else html for html in page.page.evaluate(RESULTS)]
 
@@ -1041,7 +1030,7 @@ def test_start_afresh(context, site):
 
 
 def words_of_a_failure(page, pattern, answer):
-    """What the page says when a file that Python needs does not come as it should."""
+    """Return the page's message when a file that Python needs does not arrive as it should."""
     page.page.route(pattern, lambda route: route.fulfill(**answer))
     page.page.click("button.run-cell >> nth=2")
     page.page.wait_for_function(
@@ -1053,7 +1042,7 @@ def words_of_a_failure(page, pattern, answer):
 
 
 def test_a_failure_is_named_and_the_next_run_tries_again(page_that_has_run):
-    """The cheapest of all of them, every day: the page of the other tests has met it first."""
+    """This is the cheapest of them, run every day: the shared page has met it first."""
     assert "500" in page_that_has_run.failure
 
 
@@ -1082,7 +1071,7 @@ def test_other_failures_are_named_and_the_next_run_tries_again(
 
 @pytest.mark.long
 def test_tab_that_is_older_than_the_pages_says_so(context, site):
-    """Its scripts are gone from the server, where by now the same page asks for others."""
+    """Its scripts are gone from the server, where the same page now requests others."""
     page = Page(context, site, QUIET)
     page.page.route("**/runtime/scripts-*/*.js*", lambda route: route.fulfill(status=404))
     text = re.sub(
@@ -1100,7 +1089,7 @@ def test_tab_that_is_older_than_the_pages_says_so(context, site):
 
 @pytest.mark.long
 def test_script_that_did_not_come_is_asked_for_again(context, site):
-    """Browsers remember a script that failed for as long as the page is open."""
+    """Browsers remember a failed script for as long as the page is open."""
     page = Page(context, site, QUIET)
     page.page.route("**/*", lambda route: route.abort())
     page.page.click("button.run-cell >> nth=2")
@@ -1112,7 +1101,7 @@ def test_script_that_did_not_come_is_asked_for_again(context, site):
 
 @pytest.mark.long
 def test_python_starts_where_the_storage_is_full(context, site):
-    """All sites of one address share it: it may be full before the book is opened."""
+    """All sites of one address share the storage, so it may be full before the book is opened."""
     page = Page(context, site, QUIET)
     page.page.evaluate("""() => {
       for (let size = 1 << 22; size; size >>= 1) try {
@@ -1154,9 +1143,7 @@ SLOW = "print('begun')\nimport time\nuntil = time.time() + 4\nwhile time.time() 
 
 @pytest.mark.long
 def test_page_asked_for_twice_runs_once_and_in_order(context, site):
-    """While Python loads, and in the midst of the run: cells above would
-    else run again after those below.
-    """
+    """While Python loads, and during the run; otherwise cells above would run again last."""
     page = Page(context, site, QUIET)
     page.page.evaluate("""() => {
       window.order = [];
@@ -1186,7 +1173,7 @@ def test_a_cell_that_runs_is_not_run_twice_nor_taken_for_what_is_written_meanwhi
 
 @pytest.mark.long
 def test_what_is_asked_for_right_after_stop_runs(shared):
-    """Here Python does not listen: it ends, and what stands above the cell runs again before it."""
+    """Here Python does not respond: it ends, and the cells above run again first."""
     shared.try_code(3, "above = 'there'")
     shared.try_code(4, ONE_STEP, wait=False)
     shared.page.wait_for_function(BEGUN, arg=4)
@@ -1346,7 +1333,7 @@ FIGURES = "chapters/simple-orientations.html"
 
 
 class FigurePage(Page):
-    """The page whose code calls its figure by a name."""
+    """The page whose code gives its figure a name."""
 
     def __init__(self, context, site):
         super().__init__(context, site, FIGURES)
@@ -1359,7 +1346,7 @@ class FigurePage(Page):
         self.asking = self.page.evaluate(find, "figure.angle") + 1
 
     def field(self):
-        """Where its angle is typed; another figure of the page may have one of the same name."""
+        """Return the input for its angle; another figure of the page may have one of the same name."""
         return self.cell(self.figure).get_by_label("theta in degrees")
 
     def turn(self, degrees):
@@ -1392,13 +1379,13 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     assert page.try_code(page.asking, "print(figure.angle)").startswith("1.5707963")
     page.turn(-30)
     assert page.try_code(page.asking, "print(figure.angle)").startswith("-0.5235987")
-    # The other way round, a matrix as well, and no word that is wrong.
+    # Python moves the figure as well, also by a matrix.
     page.try_code(page.asking, "figure.angle = 0.5")
     expect(page.field()).to_have_value("28.65")
     assert "0.479" in page.try_code(page.asking, "figure.dcm")
     assert "did you mean angle" in page.try_code(page.asking, "figure.angel = 0.5")
     assert "Angles are in radians" in page.try_code(page.asking, "figure.angle = 30")
-    # Observers, and their errors, are heard below the figure.
+    # Output and errors of observers appear below the figure.
     page.try_code(
         page.asking, "figure.observe(lambda change: print(f'now {change.new:.3f}'), 'angle')"
     )
@@ -1409,8 +1396,8 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
     )
     page.turn(60)
     page.says(page.figure, "ZeroDivisionError")
-    # Run below the figure itself makes it anew, as its code says, and a
-    # cell further down asks the new one.
+    # A run of the figure's own cell makes a new figure from its code, and a cell further down uses
+    # that.
     page.cell(page.figure).locator("summary").first.click()
     page.cell(page.figure).locator("button.run-cell").click()
     expect(page.field()).to_have_value(str(as_the_code_says))
@@ -1422,9 +1409,7 @@ def test_the_figure_that_the_reader_has_turned_is_the_one_that_code_asks(context
 
 
 def test_a_figure_stays_turned_where_the_page_has_to_be_loaded_once_more(browser, not_isolated):
-    """Where the server gives no shared memory, the first run loads the
-    page again, by a service worker.
-    """
+    """Without shared memory from the server, the first run reloads the page with a service worker."""
     context = browser.new_context()
     page = FigurePage(context, not_isolated)
     page.turn(90)

@@ -1,4 +1,4 @@
-"""The page of licences names every work of others that the site serves."""
+"""The page of licences names every third-party work that the site serves."""
 
 import re
 import sysconfig
@@ -17,7 +17,7 @@ OURS = {"notebook-pages", *(project.name for project in PROJECTS)}
 
 
 def owners():
-    """The names of the works that each file belongs to, by the file's size and path."""
+    """Return the names of the works that each file belongs to, by the file's size and path."""
     files = defaultdict(list)
     for package in [*NODE_MODULES.glob("[a-z]*"), *NODE_MODULES.glob("@*/*")]:
         for path in package.rglob("*"):
@@ -46,20 +46,20 @@ def test_every_file_that_is_served_as_others_made_it_is_covered():
     for path in HTML.rglob("*"):
         if path.suffix not in SERVED or not path.is_file() or path.stat().st_size < 200:
             continue
-        # A file that stands alike in several works is covered by any of them.
+        # A file that is identical in several works is covered by any of them.
         holders = {
             name
-            for other, name in files[path.stat().st_size]
-            if other.read_bytes() == path.read_bytes()
+            for candidate, name in files[path.stat().st_size]
+            if candidate.read_bytes() == path.read_bytes()
         }
         if path.is_relative_to(HTML / "lite" / "build"):
-            # JupyterLite brings this folder whole, packed, with the licences of what is in it.
+            # JupyterLite contains this folder, packed, with the licences of its parts.
             holders.add("jupyterlite-core")
         if holders and not {name.lower().replace("_", "-") for name in holders} & (named | OURS):
             missing[str(path.relative_to(HTML))] = holders
     assert missing == {}
     wheels = {path.name.split("-")[0].replace("_", "-").lower() for path in HTML.rglob("*.whl")}
-    # The stand-in for NumPy is ours; jupyterlite-pyodide-kernel brings the others.
+    # The stand-in for NumPy is ours; jupyterlite-pyodide-kernel contains the others.
     assert wheels <= named | OURS | {
         "plain-numpy",
         "piplite",

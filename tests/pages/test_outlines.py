@@ -1,4 +1,4 @@
-"""The outlines of letters in the book's plots, of which a page holds each once."""
+"""The outlines of letters in the book's plots, each of which is once on a page."""
 
 import re
 

@@ -1,6 +1,4 @@
-"""Previews: what a link leads to stands beside it for who points at
-it, or comes to it by the keyboard.
-"""
+"""Previews: the target of a link appears beside it for a pointer or the keyboard."""
 
 import re
 
@@ -10,8 +8,8 @@ from test_site import NARROW, PAGES, WIDE, Visit, text, violations
 
 from notebook_pages import previews
 
-#: How links of each kind begin, on the page itself and on another one,
-#: and what of their target is shown.
+# How links of each kind begin, on the page itself and on another one, and what of their target is
+# shown.
 LINKS = {
     "equation here": ("#equation-", ".katex math"),
     "equation elsewhere": (r"[\w./-]+\.html#equation-", ".katex math"),
@@ -24,7 +22,7 @@ LINKS = {
 
 
 def first_link(name):
-    """The lightest page that has such a link in its text, and the first one there."""
+    """Return the smallest page that has such a link in its text, and the first one there."""
     written = re.compile(rf'<a class="reference internal" href="({LINKS[name][0]}[^"]*)"')
     texts = {page: text(page).partition("<article")[2] for page in PAGES}
     page = min(
@@ -52,7 +50,7 @@ def test_a_preview_shows_what_the_link_leads_to_and_goes_with_escape(browser, si
         assert box.locator("[id]:not(svg [id])").count() == 0
         if "figure" in name:
             assert box.locator("svg[viewBox]").bounding_box()["height"] > 50
-        # The page around them is looked at in test_site.py.
+        # The page around them is checked in test_site.py.
         assert (
             violations(page, "{include: ['[role=tooltip]', 'a[aria-describedby]']}") == []
             and visit.faults == []
@@ -122,6 +120,6 @@ def test_what_is_previewed_is_whole():
 
 
 def test_previews_weigh_little():
-    """Each is fetched when somebody asks; a script of one page stays far below the page."""
+    """Each is fetched on request; a script of one page is far smaller than the page."""
     weights = {path.name: path.stat().st_size for path in (HTML / previews.FOLDER).iterdir()}
     assert len(weights) > 5 and max(weights.values()) < 100_000, weights

@@ -1,6 +1,4 @@
-"""What the built pages say of themselves to others, and what a published
-book adds when it knows its address.
-"""
+"""The metadata of the built pages, and those that a published book adds with its address."""
 
 import io
 import re
@@ -32,8 +30,8 @@ def head(path):
 
 
 def meta(text, name):
-    (found,) = re.findall(rf'<meta (?:name|property)="{name}" content="([^"]*)"', text)
-    return unescape(found)
+    (content,) = re.findall(rf'<meta (?:name|property)="{name}" content="([^"]*)"', text)
+    return unescape(content)
 
 
 def test_each_page_describes_itself():
@@ -63,8 +61,8 @@ def test_files_for_machines():
     assert "Allow: /" in (HTML / "robots.txt").read_text("utf8")
     outline = (HTML / "llms.txt").read_text("utf8")
     for page in pages()[1:]:
-        said = meta(head(HTML / f"{page}.html"), "description")
-        assert f"{page}.html): {said}" in outline, f"llms.txt lacks {page}"
+        description = meta(head(HTML / f"{page}.html"), "description")
+        assert f"{page}.html): {description}" in outline, f"llms.txt lacks {page}"
     assert all((HTML / address).is_file() for address in re.findall(r"\]\(([^)]*)\)", outline))
     missing = (HTML / "404.html").read_text("utf8")
     assert 'href="/index.html"' in missing and "_static" not in missing, (
@@ -73,7 +71,7 @@ def test_files_for_machines():
 
 
 def test_index_names_every_term_symbol_and_function():
-    """And leads from each of them to where it is explained, and to pages that speak of it."""
+    """It links from each of them to its explanation and to pages that mention it."""
     page = BeautifulSoup(
         (HTML / "appendix" / "subject-index.html").read_text("utf8"), "lxml"
     ).article
@@ -100,7 +98,7 @@ def test_index_names_every_term_symbol_and_function():
 
 
 def test_title_is_said_once():
-    """In the settings; what else names the book reads it there."""
+    """The title is in the settings, and everything else that names the book reads it there."""
     title = SETTINGS["title"]
     sources = REPOSITORY / "packages" / "notebook-pages" / "src" / "notebook_pages"
     programs = [path for kind in ("*.py", "*.js", "*.html") for path in sources.rglob(kind)]
@@ -148,9 +146,7 @@ def test_published_book_names_its_address_and_its_source(tmp_path, monkeypatch):
 
 
 def test_picture_of_a_page_is_its_first_figure():
-    """In the colours of the light page, as large as it fits, and
-    small enough for those who show it.
-    """
+    """In the colours of the light page, as large as it fits, and small enough for previews."""
     for name in ("index", "chapters/euler-angles", "chapters/orientation-from-sensors"):
         figure, box, words = pictures.first_figure((HTML / f"{name}.html").read_text("utf8"))
         content = pictures.drawn(figure, box)

@@ -79,8 +79,12 @@ def test_prediction_covers_what_follows_until_it_is_made(context, site):
     box.locator(f'input[value="{right}"]').check()
     box.get_by_role("button", name="That is my prediction").click()
     assert box.get_by_role("status").inner_text().startswith("Right.")
-    kept = page.evaluate(KEPT)["pages"][CHAPTER]["answers"][label]
-    assert kept["last"] == right and kept["right"] and not kept["rightAtFirst"]
+    stored_answer = page.evaluate(KEPT)["pages"][CHAPTER]["answers"][label]
+    assert (
+        stored_answer["last"] == right
+        and stored_answer["right"]
+        and not stored_answer["rightAtFirst"]
+    )
     page.reload()
     assert page.locator(f"#{label} .result.right").is_visible()
     assert page.locator(f'#{label} input[value="{right}"]').is_checked()
@@ -223,9 +227,7 @@ def test_progress_is_shown_exported_cleared_and_brought_back(context, site, tmp_
 
 
 def test_right_answer_of_the_checker_counts(context, site):
-    """The page's Python puts its reply into the article; here the reply is put
-    there by hand. It was the third try.
-    """
+    """The page's Python writes its reply into the article; here the test does, for a third try."""
     page = opened(context, site)
     reply = Reply("chapters/right-handed", "correct")
     reply.tries = 3  # with the record beside it, it is never 0

@@ -1,9 +1,8 @@
-"""The search: what readers type leads to the place that answers, from the
-third letter on and by the keyboard.
+"""The search: queries lead to the right place, from the third letter on and by the keyboard.
 
-The queries in ``queries`` were written down, with the places that answer, before the search was
-first run on them, and were never looked at while it was tuned: the head of each file says when it
-was gathered. Those in ``questions.txt`` are known to it.
+The queries in ``queries`` were written down, with the right places, before the search was first run
+on them, and were never used for tuning; the head of each file says when it was gathered. The search
+knows those in ``questions.txt``.
 """
 
 import json
@@ -22,7 +21,7 @@ from notebook_pages.paths import NODE
 from notebook_pages.search import SCRIPT, WORDS
 
 QUERIES = Path(__file__).with_name("queries")
-#: What was reached: the share of right places at the first rank, and among the first three.
+# The reached share of right places at the first rank, and among the first three.
 REACHED = {
     "questions": (0.99, 0.99),
     "held-out": (0.8, 0.92),
@@ -34,28 +33,28 @@ REACHED = {
     "typed-held-out": (0.95, 0.98),
     "typed-afresh": (0.78, 0.92),
 }
-FIRST_ANSWER = 150_000  # bytes before it
+FIRST_ANSWER = 150_000  # bytes before the first answer
 CHAPTER = "chapters/gimbal-lock.html"
 FOUND = "ul.found a"
 
 
 def queries(name):
-    """What is typed, and the places that answer it."""
+    """Iterate over the queries and their right places."""
     known = name == search.QUESTIONS.stem
     return search.questions(REPOSITORY / search.QUESTIONS if known else QUERIES / f"{name}.txt")
 
 
-def answers(place, wanted):
-    if wanted.startswith("!"):
+def answers(place, answer):
+    if answer.startswith("!"):
         return place.startswith("appendix/reference") and place.endswith(
-            f"#orientation.{wanted[1:]}"
+            f"#orientation.{answer[1:]}"
         )
-    return place == wanted.replace("@", "appendix/glossary#term-")
+    return place == answer.replace("@", "appendix/glossary#term-")
 
 
 @pytest.fixture(scope="module")
 def places_found():
-    """``places_found(typed)``: what the search of the built book answers to each of the queries."""
+    """``places_found(queries)``: the results of the built book's search for each query."""
 
     def find(typed):
         print(json.dumps(typed), file=node.stdin, flush=True)
@@ -71,17 +70,17 @@ def places_found():
 @pytest.mark.parametrize("name", REACHED)
 def test_right_place_comes_first_or_nearly(places_found, name):
     asked = list(queries(name))
-    found = places_found([text for text, _ in asked])
+    results = places_found([text for text, _ in asked])
     ranks = [
         next(
             (
                 rank
                 for rank, place in enumerate(places)
-                if any(answers(place, one) for one in wanted)
+                if any(answers(place, right_place) for right_place in right_places)
             ),
             None,
         )
-        for places, (_, wanted) in zip(found, asked, strict=True)
+        for places, (_, right_places) in zip(results, asked, strict=True)
     ]
     first, among_three = (
         sum(rank is not None and rank < most for rank in ranks) / len(ranks) for most in (1, 3)
@@ -101,13 +100,13 @@ def test_what_engineers_call_it_is_found(places_found):
 
 
 def written(script):
-    """The data with which a script of the built book begins."""
+    """Return the data with which a script of the built book begins."""
     text = (HTML / script).read_text("utf8")
     return json.loads(text.partition("=")[2].partition(";\n")[0].rstrip(";"))
 
 
 def known():
-    """The places of the index, by page and anchor."""
+    """Return the places of the index, by page and anchor."""
     index, later = written(SCRIPT), written(WORDS)
     return {
         (index["pages"][row[1] or 0][0], (row + ["", ""])[2])
@@ -116,13 +115,13 @@ def known():
 
 
 def test_places_that_answer_are_there():
-    """Whoever renames a section learns here which queries it answered."""
+    """After renaming a section, this shows which queries it answered."""
     places = {page + (f"#{name}" if name else "") for page, name in known()}
     lost = {
         typed
         for name in REACHED
-        for typed, wanted in queries(name)
-        if not any(answers(place, one) for one in wanted for place in places)
+        for typed, right_places in queries(name)
+        if not any(answers(place, right_place) for right_place in right_places for place in places)
     }
     assert lost == set()
 
@@ -132,12 +131,15 @@ def test_conversions_are_found_by_where_they_lead(places_found):
     spoken = {"dcm": "rotation matrix", "quaternion": "quaternion", "body_fixed": "Euler angles"}
     spoken |= {"axis_angle": "axis and angle", "rotation_vector": "rotation vector"}
     pairs = [
-        (one, other) for one in spoken for other in spoken if "dcm" in (one, other) and one != other
+        (source, target)
+        for source in spoken
+        for target in spoken
+        if "dcm" in (source, target) and source != target
     ]
     typed = [f"{spoken[source]} to {spoken[target]}" for target, source in pairs]
     typed += [f"how do I get {spoken[target]} from a {spoken[source]}?" for target, source in pairs]
-    found = places_found(typed)
-    for (target, source), places in zip(pairs * 2, found, strict=True):
+    results = places_found(typed)
+    for (target, source), places in zip(pairs * 2, results, strict=True):
         functions = [
             place.partition("#orientation.")[2] for place in places if "#orientation." in place
         ]
@@ -160,9 +162,7 @@ def test_figures_are_found_by_their_captions_and_numbers(places_found):
 
 
 def test_names_slips_and_words_of_programs_are_understood(places_found):
-    """What nobody wrote as the book does, and what a table of JavaScript
-    would take for something of its own.
-    """
+    """Queries in other words than the book's, and names that JavaScript objects have, too."""
     leads_to = {
         "constructor": None,
         "__proto__ toString": None,
@@ -174,28 +174,28 @@ def test_names_slips_and_words_of_programs_are_understood(places_found):
         "rotation between two ve": "chapters/axis-and-angle#from-one-direction-to-another",
         "slerp() takes the long way": "chapters/quaternions-in-full#half-way",  # no formula
     }
-    found = places_found(list(leads_to))
-    for (typed, place), places in zip(leads_to.items(), found, strict=True):
+    results = places_found(list(leads_to))
+    for (typed, place), places in zip(leads_to.items(), results, strict=True):
         assert place is None or place in places[:3], typed
 
 
 def test_an_unfinished_word_is_a_beginning(places_found):
-    """Two letters of the last word lead where the whole word does, nearly always."""
+    """Two letters of the last word nearly always lead to the place for the whole word."""
     few = [
-        (typed, wanted)
-        for typed, wanted in search.questions(REPOSITORY / search.QUESTIONS)
+        (typed, right_places)
+        for typed, right_places in search.questions(REPOSITORY / search.QUESTIONS)
         if re.fullmatch(r"\w+( \w+)* [a-z]{4,}", typed) and len(typed.split()) < 5
     ][::3]
-    found = places_found([re.sub(r"(?<= ..)\w+$", "", typed) for typed, _ in few])
+    results = places_found([re.sub(r"(?<= ..)\w+$", "", typed) for typed, _ in few])
     led = [
-        any(answers(place, one) for place in places[:1] for one in wanted)
-        for places, (_, wanted) in zip(found, few, strict=True)
+        any(answers(place, right_place) for place in places[:1] for right_place in right_places)
+        for places, (_, right_places) in zip(results, few, strict=True)
     ]
     assert sum(led) > 0.84 * len(led)
 
 
 def test_first_sentences_are_those_of_the_text():
-    """No line that only leads elsewhere; degrees as readers know them."""
+    """They are not mere references to other pages, and degrees have their sign."""
     index, later = written(SCRIPT), written(WORDS)
     about = [row[index["fields"].index("about")] for row in index["entries"] if len(row) > 5]
     about += [words for _, words in later["about"]]

@@ -1,6 +1,4 @@
-"""The built site as others serve it: no headers of ours, a path below the
-root, other types, a foreign frame.
-"""
+"""The built site on other servers: other headers and types, below a path, in a foreign frame."""
 
 import json
 import shutil
@@ -29,7 +27,7 @@ SIZE = (
 
 
 class Silent(SimpleHTTPRequestHandler):
-    """What ``python -m http.server`` is, but for its log."""
+    """``python -m http.server``, without its log."""
 
     added = {}
 
@@ -43,9 +41,7 @@ class Silent(SimpleHTTPRequestHandler):
 
 
 class LikeGitHubPages(Silent):
-    """The headers that GitHub Pages sends: every file may be kept for ten
-    minutes, and anybody may read it.
-    """
+    """The headers of GitHub Pages: files may be cached for ten minutes, and anybody may read them."""
 
     added = {
         "Access-Control-Allow-Origin": "*",
@@ -71,7 +67,7 @@ def serving(handler=Silent, folder=HTML):
 
 @pytest.fixture
 def page(browser):
-    """A page with the book's policy in force; what it forbids is an error on the console."""
+    """A page with the book's policy in force; violations are errors on the console."""
     context = browser.new_context(bypass_csp=False, viewport={"width": 1300, "height": 900})
     opened = context.new_page()
     opened.faults = []
@@ -84,8 +80,9 @@ def page(browser):
 
 
 def run_and_stop(page, address):
-    """Run a cell, stop an endless one, and find the names still there: Python
-    is isolated. Nothing is forbidden.
+    """Run a cell, stop an endless one, and check that the names are still defined.
+
+    So Python is isolated. Nothing is forbidden.
     """
     page.goto(address + QUIET)
     assert page.get_attribute("button.run-page", "data-size") == SIZE
@@ -108,9 +105,7 @@ def run_and_stop(page, address):
 
 @pytest.mark.long
 def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
-    """A server that sends nothing of its own: a service worker isolates the
-    page, and keeps the book by choice.
-    """
+    """Without special headers, a service worker isolates the page and keeps the book on request."""
     (tmp_path / "courses").mkdir()
     (tmp_path / "courses" / "book").symlink_to(HTML, target_is_directory=True)
     with serving(folder=tmp_path) as root:
@@ -128,8 +123,8 @@ def test_plain_server_below_a_path_and_then_no_network(page, tmp_path):
         page.wait_for_selector("#live-words:has-text('is stored in this browser')")
         assert page.faults == []
     # The server is gone.
-    for other in ("chapters/euler-angles.html", "", "exercises/index.html?from=elsewhere"):
-        page.goto(address + other)
+    for name in ("chapters/euler-angles.html", "", "exercises/index.html?from=elsewhere"):
+        page.goto(address + name)
         page.wait_for_selector("html:not(.settling, .in-parts)")
         assert page.locator("h1").first.is_visible()
         assert page.evaluate("getComputedStyle(document.body).fontFamily").startswith('"Source')
@@ -223,11 +218,9 @@ def test_every_page_names_a_strict_policy_and_versions():
 
 @pytest.mark.long
 def test_in_a_foreign_frame(page, tmp_path):
-    """As in the page of a course on another host: code runs there,
-    though the frame is not isolated.
-    """
+    """Code runs in the page of a course on another host, though the frame is not isolated."""
     with serving() as address:
-        # Another site than that around it.
+        # Use another site than that of the surrounding page.
         frame_of = address.replace("127.0.0.1", "localhost") + QUIET
         (tmp_path / "course.html").write_text(
             f'<link rel=icon href=data:,><iframe src="{frame_of}" width=1000 height=800></iframe>'
@@ -260,13 +253,13 @@ http {{
 
 @contextmanager
 def nginx(folder, added=""):
-    """Debian's nginx with its own table of types, which knows no ``.mjs``."""
+    """Start Debian's nginx with its own table of types, which lacks ``.mjs``."""
     program = shutil.which("nginx") or shutil.which("/usr/sbin/nginx")
     if program is None:
         reason = "nginx is not on this machine (on Debian: sudo apt install nginx-light)"
         pytest.fail(reason) if BROWSER_REQUIRED else pytest.skip(reason)
-    with serving() as free:  # a port that was free a moment ago
-        port = free.split(":")[-1].strip("/")
+    with serving() as free_address:  # a port that was free a moment ago
+        port = free_address.split(":")[-1].strip("/")
     settings = folder / "nginx.conf"
     settings.write_text(NGINX.format(folder=folder, port=port, site=HTML, added=added))
     process = subprocess.Popen([program, "-c", settings, "-p", folder, "-e", folder / "error.log"])
@@ -293,9 +286,7 @@ def test_nginx_as_debian_has_it(page, tmp_path):
 
 @pytest.mark.long
 def test_policy_as_a_header_lets_python_run(page, tmp_path):
-    """A header, other than a page's own words, binds its threads too:
-    Python starts under the same rules.
-    """
+    """Unlike a policy in the page, a header also applies to threads; Python must start under it."""
     text = (HTML / QUIET).read_text("utf8")
     rules = text.partition(f'{POLICY_HEADER}" content="')[2].partition('"')[0]
     added = f'add_header {POLICY_HEADER} "{rules}";'
@@ -305,7 +296,7 @@ def test_policy_as_a_header_lets_python_run(page, tmp_path):
 
 @pytest.mark.long
 def test_pythons_own_server():
-    """As the command line starts it."""
+    """Start it as the command line does."""
     command = [
         sys.executable,
         "-u",

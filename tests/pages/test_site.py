@@ -22,13 +22,13 @@ import orientation_recordings as recordings
 from notebook_pages import mathematics, page
 
 PAGES = html_pages()
-#: Of pages that are made alike: one with text, formulas and a figure, and one
-#: with questions and their drawings.
+# Representative pages: one with text, formulas and a figure, and one with questions and their
+# drawings.
 EVERY_DAY = ("chapters/reference-frames.html", "exercises/other-descriptions.html")
 WIDE, NARROW = {"width": 1300, "height": 900}, {"width": 380, "height": 760}
 NARROWEST = {"width": 320, "height": 640}  # a wide page at four times its size: WCAG 2.2, 1.4.10
 HEAVIEST = 450_000  # bytes over the wire, compressed
-HEAVIEST_PAGE, ESSAY = 372_000, 463_000  # bytes of the page itself, as it stands on the disk
+HEAVIEST_PAGE, ESSAY = 372_000, 463_000  # bytes of the page itself, on the disk
 LARGEST_SHIFT = 0.001
 # Bytes of a page's head and of its style sheets.
 MOST_AWAITED, MOST_AWAITED_PACKED = (100_000, 23_500)
@@ -39,7 +39,7 @@ new PerformanceObserver((list) => {
   for (const entry of list.getEntries()) window.shift += entry.value;
 }).observe({type: "layout-shift", buffered: true});
 """
-# What is wrong with the mathematics of a page: not set, not spoken, or left as TeX.
+# The faults of a page's mathematics: not typeset, not spoken, or left as TeX.
 MATHEMATICS = r"""() => {
   const faults = [];
   for (const formula of document.querySelectorAll(".katex")) {
@@ -53,18 +53,17 @@ MATHEMATICS = r"""() => {
   if (raw) faults.push("raw TeX: " + raw[0]);
   return faults;
 }"""
-# What lies beyond the edge of a box that scrolls or cuts: as good as not
-# there for who does not look for it.
+# Content beyond the edge of a box that scrolls or clips, which readers overlook.
 HIDDEN = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
   && getComputedStyle(box).overflowX !== "visible" && box.scrollWidth > box.clientWidth + 1
   && !box.closest("svg, input, select, textarea, .katex > :first-child, .unseen")).map((box) =>
   `${box.className} hides ${box.scrollWidth - box.clientWidth} px: ${box.textContent.trim().slice(0, 80)}`)"""
-# What scrolls sideways shows that it does, by a shadow at the edge.
+# A box that scrolls sideways shows it by a shadow at the edge.
 WITHOUT_SHADOW = """() => [...document.querySelectorAll(".bd-article *")].filter((box) => box.clientWidth
   && ["auto", "scroll"].includes(getComputedStyle(box).overflowX) && box.scrollWidth > box.clientWidth + 1
   && !getComputedStyle(box).backgroundImage.includes("gradient") && !box.closest("textarea")).map((box) =>
   `${box.tagName}.${box.className}: ${box.textContent.trim().slice(0, 80)}`)"""
-# A full stop, comma, bracket or ’s after a formula, or in the call of a function, that has come to begin a line.
+# Punctuation or brackets after a formula, or in the call of a function, at the beginning of a line.
 STRAY = """() => [...document.querySelectorAll(".bd-article :is(.katex, .sig-param)")].filter((formula) => {
   const after = formula.nextSibling?.firstChild ?? formula.nextSibling, last = [...formula.getClientRects()].at(-1);
   if (after?.nodeType !== Node.TEXT_NODE || !/^(?:[.,;:!?)]|['’]s)/.test(after.data) || !last?.width) return false;
@@ -73,8 +72,8 @@ STRAY = """() => [...document.querySelectorAll(".bd-article :is(.katex, .sig-par
   range.setEnd(after, 1);
   return range.getBoundingClientRect().left < last.left;
 }).map((formula) => (formula.querySelector("math") ?? formula).textContent)"""
-# Rules that the page's scripts bring, and that the page would have needed before them, or that name a file: it would be
-# looked for beside the page.
+# Rules that the page's scripts add, and that the page needs before them, or that name a file, which
+# would be looked up beside the page.
 TOO_LATE = r"""async () => {
   const page = new DOMParser().parseFromString(await (await fetch(location.href)).text(), "text/html");
   const flat = (rules) => [...rules].flatMap((rule) => rule.selectorText ? [rule] : flat(rule.cssRules ?? []));
@@ -97,21 +96,21 @@ def text(page):
 
 
 def violations(page, where="document"):
-    """What axe finds wrong, one line for each kind, with the first element."""
+    """Return the faults that axe finds, one line for each kind, with the first element."""
     page.evaluate(axe_source())
-    found = page.evaluate(
+    faults = page.evaluate(
         f"async () => (await axe.run({where}, {{resultTypes: ['violations']}})).violations"
     )
     return [
-        f"{v['id']}: {v['help']} ({len(v['nodes'])}): {v['nodes'][0]['html'][:200]}" for v in found
+        f"{v['id']}: {v['help']} ({len(v['nodes'])}): {v['nodes'][0]['html'][:200]}" for v in faults
     ]
 
 
 class Visit:
-    """A page opened in the browser, with everything it said and asked for."""
+    """A page opened in the browser, with its messages and requests."""
 
     def __init__(self, browser, site, name, theme, viewport):
-        # With the page's own policy: what that forbids is an error on the console.
+        # The page's own policy is in force: violations are errors on the console.
         self.context = browser.new_context(color_scheme=theme, viewport=viewport, bypass_csp=False)
         self.context.add_init_script(WATCH_SHIFTS)
         self.page = self.context.new_page()
@@ -123,21 +122,18 @@ class Visit:
         self.page.on("request", self.note_request)
         self.page.on("requestfinished", self.note_response)
         self.page.goto(site + name)
-        # The page is loaded. That nothing more comes is not always told, where
-        # many files were asked for at once.
+        # The page is loaded. Idleness is not always reported after many simultaneous requests.
         with suppress(TimeoutError):
             self.page.wait_for_load_state("networkidle", timeout=20_000)
         self.page.wait_for_selector("html:not(.settling, .in-parts)")
         if self.page.evaluate("document.documentElement.dataset.typefaces === 'late'"):
-            # a busy machine: now they are in the browser's cache, as on a reader's second page
+            # On a busy machine, they are in the browser's cache now, as on a reader's second page.
             self.page.reload()
             self.page.wait_for_selector("html:not(.settling, .in-parts)")
             self.page.evaluate("document.fonts.ready.then(() => true)")
 
     def shift(self):
-        """How far lines moved; where the typefaces came late once
-        more, their change is no fault.
-        """
+        """Return how far lines moved, without the change of typefaces that came late again."""
         late = self.page.evaluate("document.documentElement.dataset.typefaces === 'late'")
         return 0 if late else self.page.evaluate("window.shift")
 
@@ -153,7 +149,7 @@ class Visit:
             self.faults.append(f"{response.status}: {request.url}")
 
     def weights(self):
-        """The bytes over the wire, by address."""
+        """Return the bytes over the wire, by address."""
         return {
             url: len(gzip.compress(response.body(), 6)) for url, response in self.responses.items()
         }
@@ -210,8 +206,8 @@ def test_page_in_dark_and_narrow(browser, site, name):
             "only wide boxes are stops of the Tab key"
         )
         assert page.evaluate(WITHOUT_SHADOW) == []
-        # What is set of the formulas, thousands of elements, takes the colour of the text around
-        # it: the wide pages were looked at with all of them.
+        # The thousands of elements of formulas have the colour of the text around them, and were
+        # checked on the wide pages.
         page.evaluate(
             "document.querySelectorAll('.katex > [aria-hidden] > *').forEach((element) => "
             "element.remove())"
@@ -224,21 +220,19 @@ def test_page_in_dark_and_narrow(browser, site, name):
 
 
 def test_little_is_awaited_before_the_first_line_is_seen():
-    """On a slow telephone this is the time until something is seen:
-    styles in the head, and no script.
-    """
+    """On a slow telephone this determines the first view: styles in the head, and no script."""
     styles, weights = {}, {}
     for name in PAGES:
         head = text(name).partition("<body")[0]
         assert re.findall(r"<script(?![^>]* defer)[^>]* src=[^>]*>", head) == [], name
-        found = re.findall(r'<link rel="stylesheet" href="([^"?]*)', head)
-        assert found, name
-        for address in found:
+        sheets = re.findall(r'<link rel="stylesheet" href="([^"?]*)', head)
+        assert sheets, name
+        for address in sheets:
             path = (HTML / name).parent / address
             styles.setdefault(path, (path.stat().st_size, len(gzip.compress(path.read_bytes(), 6))))
         sizes = [
             (len(head), len(gzip.compress(head.encode(), 6))),
-            *(styles[(HTML / name).parent / a] for a in found),
+            *(styles[(HTML / name).parent / a] for a in sheets),
         ]
         weights[name] = [sum(column) for column in zip(*sizes)]
     assert max(plain for plain, _ in weights.values()) < MOST_AWAITED, weights
@@ -255,10 +249,10 @@ def test_little_is_awaited_before_the_first_line_is_seen():
 def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_it(
     browser, site, name, uses_few
 ):
-    """What the head names is what the first view uses, so that no typeface comes after the others.
+    """The typefaces in the head are those of the first view, so that none comes after the others.
 
-    Looked at twice, without a clock: while the script that lays out the rest does not come, the
-    typefaces in use are those named; when it comes, the others are asked for after these.
+    This is checked twice, without a clock: while the script that lays out the rest is held back,
+    the typefaces in use are those named; when it arrives, the others are requested after these.
     """
     named = set(re.findall(r'<link rel="preload" as="font"[^>]* href="\.\./([^"]*)"', text(name)))
     assert len(named) > 3
@@ -267,8 +261,10 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
         page.wait_for_selector("html:not(.settling) main", state="attached")
         page.evaluate("new Promise((drawn) => requestAnimationFrame(() => setTimeout(drawn)))")
         page.evaluate("document.fonts.ready.then(() => true)")
-        found = page.evaluate("performance.getEntriesByType('resource').map(({ name }) => name)")
-        return [address.removeprefix(site) for address in found if address.endswith(".woff2")]
+        addresses = page.evaluate(
+            "performance.getEntriesByType('resource').map(({ name }) => name)"
+        )
+        return [address.removeprefix(site) for address in addresses if address.endswith(".woff2")]
 
     page = browser.new_page(viewport=WIDE)
     # Held, not refused: a document that has ended before its first frame is laid out as a whole.
@@ -276,8 +272,7 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     page.route("**/_static/page-*.js*", lambda route: held.append(route))
     page.goto(site + name, wait_until="commit")
     assert set(asked(page)) == named
-    # What stands until they come is a typeface of the machine, if it
-    # has such a one: it is not counted.
+    # A typeface of the machine is shown until they arrive, if it has one, and does not count.
     loaded = (
         "[...document.fonts].filter((face) => face.status === 'loaded' && !face.family.includes(' "
         "for now'))"
@@ -289,7 +284,7 @@ def test_typefaces_of_the_first_view_are_asked_for_at_once_and_the_others_after_
     with Visit(browser, site, name, "light", WIDE) as visit:
         fetched = asked(visit.page)
     assert set(fetched[: len(named)]) == named, fetched
-    # What is set further down is laid out when the browser likes: it may ask for rarer signs.
+    # The browser decides when to lay out the rest, which may need rarer characters.
     assert len(fetched) > len(named) or uses_few, fetched
     assert not any(
         "KaTeX" in address
@@ -336,7 +331,7 @@ def test_letters_of_drawings_stand_once_on_a_page():
         ), name
 
 
-# Shows formulas and tells where each letter stands, from the corner of its box.
+# Show formulas, and return where each letter is, from the corner of its box.
 LETTERS = """async (html) => {
   document.body.innerHTML = html;
   // The boxes are laid out once, so that their typefaces are asked for.
@@ -359,12 +354,12 @@ LETTERS = """async (html) => {
 }"""
 
 
-#: A formula within a line; its TeX does not stand in the page.
+# A formula within a line; its TeX is not in the page.
 INLINE = re.compile(r"(?<![$\\`])\$([^$\n]+)\$(?!\$)")
 
 
 def written_cells():
-    """The text of the chapters' cells."""
+    """Iterate over the text of the chapters' cells."""
     for path in sorted((REPOSITORY / "chapters").glob("*.ipynb")):
         for cell in json.loads(path.read_text("utf8"))["cells"]:
             if cell["cell_type"] == "markdown":
@@ -372,7 +367,8 @@ def written_cells():
 
 
 def stand_as_katex_sets_them(run, within=1):
-    """Our shorter HTML of some formulas, letter by letter, against KaTeX's own;
+    """Compare our shorter HTML of formulas, letter by letter, with KaTeX's own.
+
     ``run`` runs a function in a page.
     """
     formulas = sorted(
@@ -396,8 +392,8 @@ def stand_as_katex_sets_them(run, within=1):
         assert [letter for letter, *_ in before] == [letter for letter, *_ in after], tex
         apart = max(
             abs(a - b)
-            for one, two in zip(before, after, strict=True)
-            for a, b in zip(one[1:], two[1:], strict=True)
+            for before_letter, after_letter in zip(before, after, strict=True)
+            for a, b in zip(before_letter[1:], after_letter[1:], strict=True)
         )
         assert apart < within, (tex, apart)
 
@@ -425,7 +421,7 @@ def test_a_formula_is_as_wide_in_the_list_of_sections_as_in_its_heading(browser,
 
 
 def test_a_box_that_does_not_scroll_has_no_stroke_at_its_edges(browser, site):
-    """Whose left edge stands between two pixels, too."""
+    """This includes a box whose left edge is between two pixels."""
     page = browser.new_page(viewport=WIDE, device_scale_factor=2)
     page.goto(f"{site}chapters/orientation-with-sympy.html")
     page.wait_for_selector("html:not(.settling, .in-parts)")
@@ -454,7 +450,7 @@ def test_a_box_that_does_not_scroll_has_no_stroke_at_its_edges(browser, site):
     "name", ["exercises/orientation-from-sensors.html", "appendix/reference-going-further.html"]
 )
 def test_no_line_begins_with_a_full_stop_however_wide_the_page_is(browser, site, name):
-    """Behind a formula that is so long that it may be broken; in the call of a function."""
+    """Check this after a formula that is long enough to be broken, and in the call of a function."""
     page = browser.new_page(viewport=NARROW)
     page.goto(site + name)
     page.wait_for_selector("html:not(.settling, .in-parts)")
@@ -572,8 +568,7 @@ def test_nothing_in_the_site_is_idle():
     everything = "\n".join(
         path.read_text("utf8") for path in HTML.rglob("*") if path.suffix in kinds
     )
-    # By a part of their name that a script puts together: what a page's links
-    # lead to, and a formula's languages.
+    # Scripts assemble these names: previews of links, and the languages of formulas.
     made = ("previews/", "formulas-")
     idle = [
         p.name for p in (HTML / "_static").rglob("*") if p.is_file() and p.name not in everything
@@ -589,13 +584,13 @@ def test_nothing_in_the_site_is_idle():
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_drawings_of_exercises_stand_on_the_papers_colour(browser, site, theme):
-    """They are pictures of their own, and were white boxes on a dark page."""
+    """They are separate pictures, and were once white boxes on a dark page."""
     with Visit(browser, site, "exercises/simple-orientations.html", theme, WIDE) as visit:
         picture = visit.page.locator(".bd-article img").first
         picture.scroll_into_view_if_needed()
         seen = Image.open(io.BytesIO(picture.screenshot())).convert("RGB")
         paper = visit.page.evaluate("getComputedStyle(document.body).backgroundColor")
         assert seen.getpixel((4, 4)) == tuple(map(int, re.findall(r"\d+", paper)))
-        # What is drawn can be seen on it, in colours between light and dark.
+        # The drawing is visible on it, in colours between light and dark.
         dark, light = seen.convert("L").getextrema()
         assert light - dark > 100

@@ -1,6 +1,4 @@
-"""What a browser keeps of the book is one store with one version: what
-a newer one has kept is left alone.
-"""
+"""The browser's data of the book are one store with one version; newer data are left alone."""
 
 import json
 import re
@@ -26,10 +24,10 @@ HERE = "() => bookStore.record()"
 pytestmark = pytest.mark.long
 
 
-def kept_before(page, site, kept):
-    """A browser that holds ``kept`` from before the page is opened."""
+def kept_before(page, site, stored):
+    """Return a browser that stores ``stored`` before the page is opened."""
     page.goto(f"{site}search.html")
-    page.evaluate(PUT, kept)
+    page.evaluate(PUT, stored)
 
 
 @pytest.mark.parametrize(
@@ -112,9 +110,7 @@ def test_three_tabs_that_type_in_one_cell_at_one_moment_lose_nothing(context, si
 
 
 def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
-    """Only what another tab has written meanwhile is joined: a mistake
-    that was looked at again is over.
-    """
+    """Only text that another tab has written meanwhile is joined; a reviewed mistake is gone."""
     page = opened(context, site)
     keep = (
         "([text, base]) => bookStore.keepTries(JSON.stringify(text), Date.now(), base && "
@@ -125,7 +121,7 @@ def test_what_a_run_takes_away_of_its_own_stays_away(context, site):
     after = {"q": {"outcome": "correct"}}
     page.evaluate(keep, [after, before])
     assert json.loads(page.evaluate("bookStore.tries().text")) == after
-    # Of a tab that began earlier.
+    # A tab that began earlier writes now.
     page.evaluate(keep, [{"q": {"outcome": "wrong", "answers": ["a"]}}, before])
     assert json.loads(page.evaluate("bookStore.tries().text"))["q"]["outcome"] == "correct"
 
@@ -179,10 +175,10 @@ def test_what_a_newer_edition_has_kept_is_left_alone_and_said(context, site):
     page.goto(f"{site}appendix/my-progress.html")
     assert page.locator(".said").inner_text().startswith("A newer edition")
     assert page.evaluate(ALL) == before
-    kept = page.evaluate(
+    stored_list = page.evaluate(
         "async () => (await (await caches.open('book /')).match('/kept.json')).json()"
     )
-    assert kept == NEWER_LIST
+    assert stored_list == NEWER_LIST
     assert tab.errors == []
 
 
@@ -197,9 +193,7 @@ def test_backup_of_a_newer_edition_is_refused_in_words(context, site, tmp_path):
 
 
 def test_no_other_script_asks_the_browser_to_keep_anything():
-    """But for what ends with the tab, and for the page's head, which
-    makes do where storage is forbidden.
-    """
+    """Exceptions are data that end with the tab, and the page's head, which works without storage."""
     asks = re.compile(r"\blocalStorage\b|\bindexedDB\b|\bcaches\.|document\.cookie")
     sources = [
         path
@@ -207,7 +201,7 @@ def test_no_other_script_asks_the_browser_to_keep_anything():
         if "node_modules" not in path.parts
     ]
     sources += (REPOSITORY / "packages" / "orientation-lab" / "src").rglob("*.js")
-    found = {
+    scripts = {
         path.name for path in sources if asks.search(re.sub(r"//.*", "", path.read_text("utf8")))
     }
-    assert found == {"store.js", "editions.js", "notebooks.js"}
+    assert scripts == {"store.js", "editions.js", "notebooks.js"}

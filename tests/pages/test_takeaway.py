@@ -1,4 +1,4 @@
-"""What readers take away: notebooks and scripts that run, with the prose, without solutions."""
+"""Downloads for readers: notebooks and scripts that run, with the prose, without solutions."""
 
 import ast
 import os
@@ -31,7 +31,7 @@ FOLDER = HTML / "take-away"
 SOURCES = {path.stem: path for path in all_notebooks(REPOSITORY)}
 CHAPTERS = [name for name, path in SOURCES.items() if path.parent.name == "chapters"]
 SOLUTIONS = SOURCES.get("solutions")
-# Signs of MyST that plain Markdown does not know.
+# Markup of MyST that plain Markdown lacks.
 MYST = re.compile(r"\{[a-z:-]+\}`|^ *(```+|:::+) *\{|^\([\w-]+\)=$|\$\$ *\([\w-]+\)", re.MULTILINE)
 
 
@@ -42,9 +42,9 @@ def built():
 
 
 def wheels():
-    found = sorted(FOLDER.glob("*.whl"))
-    assert len(found) == 3
-    return found
+    files = sorted(FOLDER.glob("*.whl"))
+    assert len(files) == 3
+    return files
 
 
 @cache
@@ -61,44 +61,41 @@ def prose(nb):
 
 
 def words(text):
-    """The text on one line, without the marks of quotations and comments, in plain quotes."""
+    """Return the text on one line, without the marks of quotations and comments, in plain quotes."""
     text = re.sub(r"^(# ?)?(> ?)*", "", text, flags=re.MULTILINE)
     return re.sub(r"\s+", " ", text.translate(str.maketrans("\u2018\u2019\u201c\u201d", "''\"\"")))
 
 
 def needed_by(names):
-    """The distributions that ``names`` lead to, themselves among
-    them, as this environment holds them.
-    """
-    found, waiting = {}, list(names)
+    """Return the distributions ``names`` and all their dependencies in this environment."""
+    distributions, waiting = {}, list(names)
     while waiting:
         name = canonicalize_name(waiting.pop())
-        if name not in found:
-            found[name] = distribution(name)
-            for requirement in map(Requirement, found[name].requires or []):
+        if name not in distributions:
+            distributions[name] = distribution(name)
+            for requirement in map(Requirement, distributions[name].requires or []):
                 if requirement.marker is None or requirement.marker.evaluate({"extra": ""}):
                     waiting.append(requirement.name)
-    return found
+    return distributions
 
 
 def requirements(wheel):
-    """What a wheel asks pip for."""
+    """Return a wheel's requirements."""
     with zipfile.ZipFile(wheel) as box:
         (about,) = [name for name in box.namelist() if name.endswith(".dist-info/METADATA")]
         lines = box.read(about).decode().splitlines()
-    found = [
+    requires = [
         Requirement(line.partition(": ")[2]) for line in lines if line.startswith("Requires-Dist: ")
     ]
-    return [requirement.name for requirement in found if requirement.marker is None]
+    return [requirement.name for requirement in requires if requirement.marker is None]
 
 
 @pytest.fixture(scope="module")
 def readers_python(tmp_path_factory):
-    """Python with the wheels that lie beside the downloads, what they ask
-    for, and Jupyter's kernel; no more.
+    """Python with the wheels beside the downloads, what they require, and Jupyter's kernel.
 
-    What pip would fetch is linked from here, which takes no time. That pip itself comes to the same
-    is what ``test_everything_runs_where_pip_installed_the_wheels`` shows.
+    Packages that pip would fetch are linked from here, which takes no time.
+    ``test_everything_runs_where_pip_installed_the_wheels`` shows that pip gives the same result.
     """
     folder = tmp_path_factory.mktemp("reader")
     venv.create(folder, symlinks=True)
@@ -107,22 +104,22 @@ def readers_python(tmp_path_factory):
         zipfile.ZipFile(wheel).extractall(site)
     ours = {canonicalize_name(wheel.name.partition("-")[0]) for wheel in wheels()}
     asked = {canonicalize_name(name) for wheel in wheels() for name in requirements(wheel)} - ours
-    for found in needed_by([*asked, "ipykernel"]).values():
-        for top in {file.parts[0] for file in found.files} - {"..", "__pycache__"}:
+    for package in needed_by([*asked, "ipykernel"]).values():
+        for top in {file.parts[0] for file in package.files} - {"..", "__pycache__"}:
             if not (site / top).exists():
-                (site / top).symlink_to(found.locate_file(top))
+                (site / top).symlink_to(package.locate_file(top))
     return folder / "bin" / "python"
 
 
 @pytest.fixture
 def readers_variables(tmp_path):
-    """What a reader's Python finds in its surroundings: nothing of this repository."""
-    kept = {
+    """The environment of a reader's Python, without this repository."""
+    variables = {
         name: value
         for name, value in os.environ.items()
         if name not in ("PYTHONPATH", "IPYTHONDIR")
     }
-    return kept | {"MPLBACKEND": "agg", "IPYTHONDIR": str(tmp_path / "ipython")}
+    return variables | {"MPLBACKEND": "agg", "IPYTHONDIR": str(tmp_path / "ipython")}
 
 
 def run_script(python, name, folder, variables):
@@ -149,7 +146,7 @@ def run_notebook(python, name, folder, variables):
 
 
 def plain_sentences(name):
-    """Lines of the chapter's prose that hold no markup, as they must appear word for word."""
+    """Iterate over the prose lines without markup, which must appear word for word."""
     for line in prose(nbformat.read(SOURCES[name], as_version=4)).splitlines():
         if len(line) > 40 and not re.search(r"[{}$\[\]*_`#|<>:=~\\]", line):
             yield line.strip().removeprefix("- ")
@@ -177,9 +174,9 @@ def test_the_wheels_hold_what_students_import_and_no_more(readers_python, reader
         "import orientation, sys; print(orientation.__version__, "
         "orientation.__file__.startswith(sys.prefix))"
     )
-    said = subprocess.check_output([readers_python, "-c", code], env=readers_variables, text=True)
+    output = subprocess.check_output([readers_python, "-c", code], env=readers_variables, text=True)
     (wheel,) = FOLDER.glob("orientation_of_reference_frames-*.whl")
-    assert said.split() == [wheel.name.split("-")[1], "True"]
+    assert output.split() == [wheel.name.split("-")[1], "True"]
 
 
 def test_the_packages_come_in_one_archive_that_says_how(tmp_path):
@@ -194,11 +191,11 @@ def test_students_have_the_command_that_updates_and_no_other(
     readers_python, readers_variables, tmp_path
 ):
     command = [readers_python, "-m", "coursework"]
-    told = subprocess.run(
+    help_run = subprocess.run(
         [*command, "--help"], env=readers_variables, capture_output=True, text=True, check=True
     )
-    assert re.findall(r"^    (\w\S*)", told.stdout, re.M) == ["update"]
-    assert "install coursework-tools" in told.stdout
+    assert re.findall(r"^    (\w\S*)", help_run.stdout, re.M) == ["update"]
+    assert "install coursework-tools" in help_run.stdout
     archive = FOLDER / "exercises.zip"
     done = subprocess.run(
         [*command, "update", archive], cwd=tmp_path, env=readers_variables, capture_output=True
@@ -207,8 +204,7 @@ def test_students_have_the_command_that_updates_and_no_other(
     assert (tmp_path / "euler-angles.ipynb").is_file()
 
 
-# All scripts run, and each notebook has the code of its script: two
-# show that a notebook runs as one.
+# All scripts run, and each notebook has the code of its script, so two notebooks suffice.
 @pytest.mark.sampled(1)
 @pytest.mark.parametrize("name", ["reference-frames", "convention-card"])
 def test_notebook_runs(name, tmp_path, readers_python, readers_variables):
@@ -223,7 +219,7 @@ def test_script_runs(name, tmp_path, readers_python, readers_variables):
 
 @pytest.fixture(scope="module")
 def installed_python(tmp_path_factory):
-    """Python with what pip installs for the wheels, from the pins, and Jupyter's kernel."""
+    """Python with the pinned packages that pip installs for the wheels, and Jupyter's kernel."""
     folder = tmp_path_factory.mktemp("installed")
     (archive,) = FOLDER.glob("orientation-lab-*.zip")
     zipfile.ZipFile(archive).extractall(folder)
@@ -272,8 +268,8 @@ def test_prose_is_inside(name):
 @pytest.mark.parametrize("name", SOURCES)
 def test_prose_is_plain_markdown(name):
     text = prose(notebook(name))
-    found = MYST.search(text)
-    assert found is None, text[max(0, found.start() - 60) : found.end() + 60]
+    match = MYST.search(text)
+    assert match is None, text[max(0, match.start() - 60) : match.end() + 60]
     assert "None" not in re.findall(r"(?:Figure|Exercise|Table) (\S+)", text)
 
 
@@ -293,7 +289,7 @@ def test_script_is_valid_python(name):
 
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_no_solution_is_inside(name):
-    """Neither in the download nor in the chapter that it was made from."""
+    """There is none in the download or in the chapter that it was made from."""
     if SOLUTIONS is None:
         pytest.fail("there are no worked solutions to look for")
     downloads = prose(notebook(name)) + script(name)

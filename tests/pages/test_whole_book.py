@@ -1,6 +1,4 @@
-"""The whole book to take away: what the PDF holds, and the zip as a reader
-opens it, from disk without a network.
-"""
+"""The downloads of the whole book: the content of the PDF, and the zip as opened from disk."""
 
 import io
 import math
@@ -39,9 +37,7 @@ MILLIMETRE = 72 / 25.4
 
 @pytest.fixture(autouse=True)
 def made(request):
-    """All files, made by `make take-away` from the site as it stands;
-    `make test` does not look at them.
-    """
+    """All files, made by `make take-away` from the present site; `make test` does not check them."""
     if request.node.get_closest_marker("long") and not all(
         path.exists() for path in (PDF, EPUB, ZIP)
     ):
@@ -51,7 +47,7 @@ def made(request):
 
 @cache
 def article(page):
-    """The text of a page of the site, without what stays on the screen."""
+    """Return the text of a page of the site, without the interactive parts."""
     soup = BeautifulSoup((HTML / f"{page}.html").read_text("utf8"), "lxml").select_one("article")
     for element in soup.select(pdf.ONLY_ON_SCREEN):
         element.decompose()
@@ -59,8 +55,8 @@ def article(page):
 
 
 def plain(text):
-    """Text on one line, without what typesetting does to it: lines, joined letters."""
-    text = re.sub("\ufffe\\s*", "-", text)  # how PDFium gives a hyphen at the end of a line
+    """Return text on one line, without the effects of typesetting: lines, ligatures."""
+    text = re.sub("\ufffe\\s*", "-", text)  # PDFium's form of a hyphen at the end of a line
     return re.sub(r"\s+", " ", unicodedata.normalize("NFKC", text))
 
 
@@ -72,21 +68,21 @@ def book():
 
 @pytest.fixture(scope="module")
 def texts():
-    """The text of each page of the PDF, as a viewer's search finds it."""
+    """Return the text of each page of the PDF, as a viewer's search finds it."""
     document = pdfium.PdfDocument(PDF)
-    found = []
+    page_texts = []
     for page in document:
         text = page.get_textpage()
-        found.append(plain(text.get_text_range()))
+        page_texts.append(plain(text.get_text_range()))
         text.close()
         page.close()
     document.close()
-    return found
+    return page_texts
 
 
 @pytest.fixture(scope="module")
 def places(book):
-    """The page, counted from 0, of every named place."""
+    """Return the page, counted from 0, of every named place."""
     numbers = {page.objgen: number for number, page in enumerate(book.pages)}
     return {
         name.removeprefix("/"): numbers[place[0].objgen] for name, place in book.Root.Dests.items()
@@ -95,28 +91,24 @@ def places(book):
 
 @pytest.fixture(scope="module")
 def chapter_texts(places, texts):
-    """The texts of the pages that each page of the site has in the PDF,
-    without what stands above and below.
-    """
+    """Return the texts of the pages of each chapter in the PDF, without headers and footers."""
     starts = [(name, places[pdf.place(name)]) for name in pages() if name != "index"]
     ends = [start for _, start in starts[1:]] + [len(texts)]
-    found = {}
+    by_page = {}
     for (name, start), end in zip(starts, ends):
         head = plain(pdf.heading(article(name).h1))
-        found[name] = [
+        by_page[name] = [
             texts[number].removeprefix(f"{head} {number + 1} ").rstrip()
             for number in range(start, end)
         ]
-    return found
+    return by_page
 
 
 def is_there(words, texts):
-    """Whether a page has ``words``, or a page has their beginning and
-    the next one begins with the rest.
-    """
+    """Whether a page contains ``words``, or they go on at the top of the next page."""
 
     def goes_on(here, there):
-        ends = [found.start() for found in re.finditer(" ", words)]
+        ends = [space.start() for space in re.finditer(" ", words)]
         return any(words[:end] in here and there.startswith(words[end + 1 :]) for end in ends)
 
     return any(words in text for text in texts) or any(
@@ -136,9 +128,9 @@ def test_words_may_go_on_over_the_edge_of_a_page():
 def test_it_says_what_it_is(book):
     assert str(book.docinfo.Title) == TITLE
     assert str(book.docinfo.Subject) == edition().words != ""
-    with book.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
-        assert (said["dc:title"], said["dc:description"]) == (TITLE, edition().words)
-        assert said["dc:date"] == [edition().date]
+    with book.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as metadata:
+        assert (metadata["dc:title"], metadata["dc:description"]) == (TITLE, edition().words)
+        assert metadata["dc:date"] == [edition().date]
     assert str(book.Root.Lang).startswith("en")
     assert book.Root.MarkInfo.Marked
     assert book.Root.PageMode == pikepdf.Name.UseOutlines
@@ -147,26 +139,26 @@ def test_it_says_what_it_is(book):
 @pytest.mark.long
 def test_bookmarks_are_the_parts_chapters_and_sections(book):
     with book.open_outline() as outline:
-        found = {item.title: item.children for item in outline.root}
+        bookmarks = {item.title: item.children for item in outline.root}
     headings = {
         page: [pdf.heading(h) for h in article(page).find_all(["h1", "h2"])] for page in pages()
     }
     for caption, names in parts():
-        children = found.pop(caption)
+        children = bookmarks.pop(caption)
         assert [child.title for child in children] == [headings[name][0] for name in names]
         for child, name in zip(children, names):
-            # Replies to questions, which a fold hides on the page, stand
-            # at the end of what is printed.
+            # Replies to questions, which a fold hides on the page, are at the end of the printed
+            # chapter.
             hidden = 'class="replies' in (HTML / f"{name}.html").read_text("utf8")
             assert [section.title for section in child.children] == headings[name][1:] + [
                 "Answers"
             ] * hidden
-    assert list(found) == [TITLE, "Contents", "About this book"]
+    assert list(bookmarks) == [TITLE, "Contents", "About this book"]
 
 
 @pytest.mark.long
 def test_links_lead_somewhere(book, places):
-    """Each link of the pages is a link of the PDF, and each of those has a place to go."""
+    """Each link of the pages is a link of the PDF, and each of those has a target."""
     inside, outside = set(), set()
     for page in book.pages:
         for note in page.get("/Annots", []):
@@ -201,7 +193,7 @@ def test_contents_list_has_the_right_page_numbers(places, texts):
 
 @pytest.mark.long
 def test_every_chapter_is_whole(chapter_texts):
-    """Its sentences can be searched for; its equations, figures and exercises have their numbers."""
+    """Its sentences can be found; its equations, figures and exercises have their numbers."""
     for name in pages()[1:]:
         text = " ".join(chapter_texts[name])
         for number in article(name).select(".eqno"):
@@ -215,13 +207,13 @@ def test_every_chapter_is_whole(chapter_texts):
         assert simple or name.startswith(("appendix/reference", "exercises/")), name
         for paragraph in simple:
             words = plain(paragraph.get_text()).strip()
-            # The lines of a table's cell stand between those of the cells beside it.
+            # The lines of a table's cell are between those of the cells beside it.
             parts = words.split() if paragraph.find_parent("td") else [words]
             assert all(is_there(part, chapter_texts[name]) for part in parts), (name, words)
 
 
 def structure(node):
-    """All elements of the PDF's structure, which screen readers follow."""
+    """Return all elements of the PDF's structure, which screen readers follow."""
     if isinstance(node, pikepdf.Array):
         for child in node:
             yield from structure(child)
@@ -233,45 +225,46 @@ def structure(node):
 
 @pytest.mark.long
 def test_every_figure_is_there_and_says_what_it_shows(book):
-    said = [str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node]
+    descriptions = [
+        str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if "/Alt" in node
+    ]
     shown = [
         svg["aria-label"] for name in pages() for svg in article(name).select("svg[aria-label]")
     ]
     assert len(shown) > 40
-    assert sorted(set(shown) - set(said)) == []
-    assert sum(text in set(shown) for text in said) == len(shown)
+    assert sorted(set(shown) - set(descriptions)) == []
+    assert sum(text in set(shown) for text in descriptions) == len(shown)
 
 
 @pytest.mark.long
 def test_formulas_are_there_and_are_read_in_words(book):
-    said = Counter(
+    spoken_formulas = Counter(
         str(node.Alt) for node in structure(book.Root.StructTreeRoot.K) if node.S == "/Formula"
     )
-    wanted = Counter(
+    expected = Counter(
         spoken(math) for name in pages() for math in article(name).select(".katex math")
     )
-    assert wanted - said == Counter()
-    assert not [words for words in said if re.search(r"[\\^_{}$]", words)]
+    assert expected - spoken_formulas == Counter()
+    assert not [words for words in spoken_formulas if re.search(r"[\\^_{}$]", words)]
 
 
 @pytest.mark.long
 def test_it_is_told_to_screen_readers_as_the_standard_says(book):
-    """The list of how a file can fail PDF/UA-1 finds nothing; that it
-    finds faults, test_tagged.py tries.
-    """
+    """The list of failures of PDF/UA-1 is empty; test_tagged.py checks that it finds faults."""
     assert faults(book) == []
 
 
 @pytest.mark.long
 def test_pictures_and_notes_are_not_of_what_was_never_tried(texts):
-    """A check that nobody has answered is no result."""
+    """A check that nobody has answered has no result to print."""
     assert not [number for number, text in enumerate(texts, 1) if "Not attempted" in text]
 
 
 @pytest.mark.long
 def test_no_page_is_nearly_empty_without_reason(places, texts):
-    """At most one in forty is less than half full, other than the last of a
-    chapter: what follows is in one piece.
+    """At most one page in forty is less than half full, other than the last of a chapter.
+
+    The content that follows is in one piece.
     """
     document = pdfium.PdfDocument(PDF)
     last = {places[pdf.place(name)] for name in pages()[1:]} | {len(document)}
@@ -290,9 +283,7 @@ def test_no_page_is_nearly_empty_without_reason(places, texts):
 
 @pytest.mark.long
 def test_no_glyph_comes_from_elsewhere(book):
-    """Where our typefaces have no glyph, the browser would take one
-    from the machine, or draw a box.
-    """
+    """Where our typefaces lack a glyph, the browser would take the machine's, or draw a box."""
     fonts = {}
     for page in book.pages:
         for font in page.get("/Resources", {}).get("/Font", {}).values():
@@ -344,9 +335,7 @@ def test_too_wide_a_line_stops_the_printing(browser):
 
 
 def test_a_still_tells_its_numbers():
-    """What stands beside a figure on the screen, for the figures
-    whose numbers one would read off.
-    """
+    """They are the numbers beside the interactive figure, if readers would read them off."""
     third = math.pi / 3
     assert pdf.as_drawn({"angles": [third, 0, -third / 2], "sequence": "zxy"}) == (
         r"\psi = 60^\circ,\ \theta = 0^\circ,\ \varphi = -30^\circ"
@@ -363,7 +352,7 @@ def test_a_still_tells_its_numbers():
         pdf.as_drawn({"matrix": [[1, 0], [0.5, -1]]})
         == r"\begin{bmatrix}1 & 0\\0.5 & -1\end{bmatrix}"
     )
-    # What a puzzle asks for is not given away, and a run has no number of its own.
+    # The answer to a puzzle is not given away, and a run has no number of its own.
     assert pdf.as_drawn({"given": [["z", 1.0]], "turns": []}) == pdf.as_drawn({"time": 6.0}) == ""
     figure = BeautifulSoup(
         '<figure data-figure="simple" data-state=\'{"angle": 1, "axis": "z"}\'></figure>', "lxml"
@@ -404,7 +393,7 @@ def test_offer_is_written_and_withdrawn():
 @pytest.fixture(scope="module")
 def chapters_of_epub():
     with zipfile.ZipFile(EPUB) as archive:
-        # All is text.
+        # All files are text.
         return {
             name.removeprefix("book/"): archive.read(name).decode() for name in archive.namelist()
         }
@@ -412,7 +401,7 @@ def chapters_of_epub():
 
 @pytest.mark.long
 def test_epub_is_valid():
-    """By the checker of those who write the standard."""
+    """The checker is that of the standard's authors."""
     checker = shutil.which("epubcheck")
     if not checker:
         pytest.fail("epubcheck is not installed") if BROWSER_REQUIRED else pytest.skip(
@@ -462,7 +451,7 @@ def test_zip_holds_the_site_once():
     names = [entry.filename.partition("/")[2] for entry in entries]
     assert names == sorted(set(names))
     site = {str(path.relative_to(HTML)) for path in HTML.rglob("*") if path.is_file()}
-    # What there is to keep for reading offline is whole already.
+    # The list of files for offline reading is already complete.
     assert set(names) == site - {f"take-away/{ZIP.name}", install.LIST} | {"README.txt", "serve.py"}
     assert [name for name in names if name.endswith((".pdf", ".zip"))].count(
         f"take-away/{PDF.name}"
@@ -472,15 +461,13 @@ def test_zip_holds_the_site_once():
 
 def test_same_files_give_the_same_zip(monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
-    one = offline.pack({"b/page.html": b"words", "a.txt": b"more"}, "book", "A Book")
-    other = offline.pack({"a.txt": b"more", "b/page.html": b"words"}, "book", "A Book")
-    assert one == other
+    first = offline.pack({"b/page.html": b"words", "a.txt": b"more"}, "book", "A Book")
+    second = offline.pack({"a.txt": b"more", "b/page.html": b"words"}, "book", "A Book")
+    assert first == second
 
 
 def test_pages_in_the_zip_ask_for_nothing_ahead():
-    """Of a typeface that is to be fetched ahead, Chromium says on every page
-    from a disk that it cannot use it.
-    """
+    """Chromium warns on every page from a disk that it cannot use a preloaded typeface."""
     page = (
         '<head>\n  <link rel="preload" as="font" crossorigin href="a.woff2">\n'
         "  <style></style></head>"
@@ -506,17 +493,17 @@ def test_front_page_in_the_zip_offers_what_is_not_the_zip(unpacked):
 
 @pytest.fixture
 def from_disk(browser, unpacked):
-    """A page without a network; all it says and asks for is noted, and none of it may fail."""
+    """A page without a network, with its messages and requests, none of which may fail."""
     context = browser.new_context(viewport={"width": 1300, "height": 900}, offline=True)
     page, faults = context.new_page(), []
 
     def note_failure(request):
-        # What a page still asked for when the reader left it.
+        # These requests were pending when the reader left the page.
         if request.failure != "net::ERR_ABORTED":
             faults.append(f"{request.failure}: {request.url}")
 
     def note_words(message):
-        # What the driver of the graphics says of its own pace is no fault of the page.
+        # Messages of the graphics driver about its speed are not faults of the page.
         if message.type in ("error", "warning") and "GL Driver Message" not in message.text:
             faults.append(message.text)
 
@@ -610,9 +597,7 @@ def test_run_says_what_to_do_from_disk(from_disk, unpacked):
 
 @pytest.mark.long
 def test_small_server_of_the_zip(unpacked, tmp_path):
-    """Started from anywhere, it serves its own folder, with the types
-    that modules and WebAssembly need.
-    """
+    """It can be started from anywhere, and has the types that modules and WebAssembly need."""
     process = subprocess.Popen(
         [sys.executable, "-I", unpacked / "serve.py", "0"],
         cwd=tmp_path,

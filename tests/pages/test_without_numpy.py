@@ -1,6 +1,4 @@
-"""One orientation in numbers where plain Python stands in for NumPy:
-the same answers, looking the same.
-"""
+"""A single orientation in numbers with NumPy's stand-in: the same answers in the same form."""
 
 import json
 import subprocess
@@ -89,7 +87,7 @@ def run(calls, how):
 
 
 def test_answers_and_their_looks_are_the_same():
-    """Also the errors: a reader who has no NumPy is told the same thing."""
+    """The errors are the same, too."""
     for call, without, with_numpy in zip(
         CALLS, run(CALLS, PYTHON), run(CALLS, "with"), strict=True
     ):
@@ -97,6 +95,6 @@ def test_answers_and_their_looks_are_the_same():
 
 
 def test_what_needs_numpy_says_so():
-    """The page fetches it then, and a notebook says how: the error names the module."""
-    ((kind, said),) = run(["simple_dcm('z', 0.1).cumprod()"], PYTHON)
-    assert kind == "ModuleNotFoundError" and "import numpy" in said
+    """The page then fetches it, and a notebook says how: the error names the module."""
+    ((kind, message),) = run(["simple_dcm('z', 0.1).cumprod()"], PYTHON)
+    assert kind == "ModuleNotFoundError" and "import numpy" in message
