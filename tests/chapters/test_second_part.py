@@ -162,7 +162,7 @@ def test_no_speed_is_clipped():
     [cell] = [
         cell
         for cell in cells("quaternions-in-full")
-        if "Speed of turning, in degrees" in cell.source
+        if "Speed of rotation, in degrees" in cell.source
     ]
     assert re.search(r"ylim=\(0, None\)", cell.source)
 

@@ -17,9 +17,9 @@ def aircraft_drawing(bank=np.radians(30)):
     drawing = Drawing(
         "An airliner seen from ahead and a little above, banked to the right by "
         f"{np.degrees(bank):.0f} degrees. "
-        "Its frame D has d x out of the nose, d y along the right wing, which points down and to "
-        "the left of the picture, and d z through the floor. "
-        "Beside it stands the frame N of the ground: x north, y east, z down.",
+        "In its frame D, d x points out of the nose, d y along the right wing, which points down "
+        "and to the left of the picture, and d z through the floor. "
+        "Beside it is the frame N of the ground: x north, y east, z down.",
         view_from(np.radians(-38), np.radians(16)),
         92,
     )
@@ -55,11 +55,11 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
     """
     drawing = Drawing(
         "A robot's wrist. "
-        "The forearm, frame F, comes from below; f z points along it. "
-        "On its end a first joint turns about f z through psi, a second one bends the wrist "
-        "through theta about an axis across, and a third turns the gripper about its own length "
-        "through phi. "
-        "The gripper, frame G, has two fingers; g z points out between them. "
+        "The forearm, frame F, comes from below, and f z points along it. "
+        "At its end a first joint turns about f z through psi, a second joint bends the wrist "
+        "through theta about a perpendicular axis, and a third turns the gripper about its own "
+        "length through phi. "
+        "The gripper, frame G, has two fingers, and g z points out between them. "
         "The three axes meet in one point.",
         view_from(np.radians(-48), np.radians(20)),
         104,
@@ -99,8 +99,8 @@ def star_cameras_drawing(apart=np.radians(102)):
     """Return a drawing of a satellite with two star cameras at an angle of ``apart`` (radians)."""
     drawing = Drawing(
         "A satellite with two wings of solar cells and two star cameras on its body. "
-        "Each camera is a short tube with a cone of view before it. "
-        "The camera S looks along s z to the upper right, with s x and s y across its view; the "
+        "Each camera is a short tube with a cone of view in front of it. "
+        "The camera S looks along s z to the upper right, with s x and s y across its view. The "
         "camera T looks along t z to the upper left. "
         "Small dots are stars.",
         view_from(np.radians(-90), np.radians(14)),
@@ -143,14 +143,14 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
     The phone is rotated by ``angles`` (radians, z-x-y).
     """
     drawing = Drawing(
-        "A phone lies inclined above the ground. "
-        "Its frame P: p x to the right across the screen, p y to its top edge, p z out of the "
-        "screen. "
-        "From its middle an arrow points straight up; it is what the accelerometer feels. "
-        f"Another one points north and {np.degrees(dip):.0f} degrees into the ground; it is the "
-        "magnetic field. "
+        "A tilted phone above the ground. "
+        "In its frame P, p x points to the right across the screen, p y to its top edge, and p z "
+        "out of the screen. "
+        "From its middle an arrow points straight up, which is what the accelerometer measures. "
+        f"Another arrow, the magnetic field, points north and {np.degrees(dip):.0f} degrees into "
+        "the ground. "
         "Up crossed with the field is level and points west. "
-        "Beside the phone stands the frame E: x north, y west, z up.",
+        "Beside the phone is the frame E: x north, y west, z up.",
         view_from(np.radians(-60), np.radians(22)),
         118,
     )
@@ -176,7 +176,7 @@ def leg_drawing(bend=np.radians(35)):
     """
     drawing = Drawing(
         "A leg seen from its right side, the knee bent. "
-        "On the thigh and on the shank sits a plate with four reflecting balls. "
+        "The thigh and the shank each carry a plate with four reflecting balls. "
         "The thigh's frame A and the shank's frame B are drawn beside the knee: x forwards, y up "
         "along the bone, z to the right, towards the reader. "
         "The angle between the two is theta.",
@@ -228,14 +228,14 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
     """Return a drawing of the Earth with its own frame and the two ground frames at one place."""
     drawing = Drawing(
         "The Earth as a sphere with its equator and one meridian. "
-        "From its middle: e z to the north pole, e x to where the meridian of Greenwich meets the "
-        "equator, e y to the east of it. "
+        "From its middle e z points to the north pole, e x to where the meridian of Greenwich "
+        "meets the equator, and e y to the east of it. "
         f"At a place {np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} "
-        "degrees north two triads stand on the ground. "
+        "degrees north there are two triads on the ground. "
         "G: g x east, g y north, g z straight up. "
         "N: n x north, n y east, n z down, into the Earth. "
-        "The angle lambda runs along the equator from e x to the meridian of the place, phi up the "
-        "meridian from there.",
+        "The angle lambda runs along the equator from e x to the meridian of the place, and phi "
+        "up the meridian from there.",
         view_from(np.radians(48), np.radians(22)),
         150,
     )

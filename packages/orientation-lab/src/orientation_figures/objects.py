@@ -75,9 +75,9 @@ def plane_drawing(axis, angle, first="N", second="A", name="theta", components=F
     )
     if components:
         alt += (
-            f" Dropped onto the arrows of {first}, the tip of {new} {right} has its feet at cosine "
-            f"{name} along {old} {right} and sine {name} along {old} {up}; the tip of {new} {up} "
-            f"at minus sine {name} along {old} {right} and cosine {name} along {old} {up}."
+            f" The shadows of {new} {right} on the arrows of {first} are cosine {name} along {old} "
+            f"{right} and sine {name} along {old} {up}. Those of {new} {up} are minus sine {name} "
+            f"along {old} {right} and cosine {name} along {old} {up}."
         )
     drawing = Drawing(alt, view, scale)
     symbol = r"\varphi" if name == "phi" else "\\" + name
@@ -117,15 +117,15 @@ TURNING_FRAMES_ALT = (
     "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed arrows, "
     "C green with dash-dotted arrows, D blue with dotted arrows. "
     "At first they are aligned, x towards the reader and to the left, y to the right, z up. "
-    "First B, C and D turn together through 50 degrees; the arrows marked z of B, C and D stay "
-    "where they are. "
-    "Then C and D turn together through 45 degrees; the arrows marked x of C and D stay where they "
-    "are. "
-    "Last, D turns alone through 40 degrees; the arrow marked z of D stays where it is, no longer "
-    "upright. "
+    "First B, C and D turn together through 50 degrees, while the arrows marked z of B, C and D "
+    "do not move. "
+    "Then C and D turn together through 45 degrees, while the arrows marked x of C and D do not "
+    "move. "
+    "Last, D turns alone through 40 degrees, while the arrow marked z of D, no longer upright, "
+    "does not move. "
     "Seen from the tip of the arrow that stays, each turn is counterclockwise. "
-    "The still picture is the end: with each frame a thin grey triad shows the frame before it in "
-    "the order A, B, C, D, and curved arrows lead from the grey arrows to the turned ones."
+    "The still picture is the end. With each frame a thin grey triad shows the frame before it in "
+    "the order A, B, C, D, and curved arrows lead from the grey arrows to the turned arrows."
 )
 
 

@@ -540,5 +540,5 @@ def test_no_speed_is_cut_off_in_silence():
     ) <= 720
     # Half a turn but a little: blended entries turn over all at once.
     words = repr(QuaternionFigure(view="way", first=(0, 0, 0), second=(3.1, 0.02, 0)))
-    assert "cut off at 720 degrees per second; the fastest is 871" in words
+    assert "cut off at 720 degrees per second (the highest is 871)" in words
     assert "cut off" not in repr(QuaternionFigure(view="way"))

@@ -307,7 +307,7 @@ def test_the_still_shows_and_tells(body, moments, time):
             body_fixed_from_dcm(dcm_from_quaternion(figure.run()["reference"]), "zxy"), "zxy"
         )
     )
-    assert f"at the least {margins.min():.0f} degrees" in plotted
+    assert f"at least {margins.min():.0f} degrees" in plotted
     assert figure.still() == MotionFigure(moments=moments, time=time).still()
 
 

@@ -74,11 +74,11 @@ def picture(sheet, angle, passed):
 def drawing(figure, Sheet):
     q = ", ".join(f"{entry:.2f}" for entry in figure.quaternion_at(1))
     sheet = Sheet(
-        "A wall on the left, a plate on the right, and between them a belt with one side red and "
-        "one blue. "
+        "A wall on the left, a plate on the right, and between them a belt with a red side and a "
+        "blue side. "
         f"The plate has been turned by {math.degrees(figure.angle):.0f} degrees about the line of "
         f"the belt, and the belt has been passed round it by {100 * figure.passed:.0f} per cent. "
-        f"Along the belt the quaternion goes from 1 at the wall to ({q}) at the plate.",
+        f"Along the belt the quaternion changes from 1 at the wall to ({q}) at the plate.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.angle, figure.passed)

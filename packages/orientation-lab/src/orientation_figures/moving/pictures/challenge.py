@@ -22,12 +22,9 @@ def picture(sheet, dcm, ghost=None):
 
 
 _TASKS = {
-    "match": "The box is to be turned until its matrix is a given one; where that is, is not "
-    "shown.",
-    "undo": "The box has been turned, and is to be turned back to where its triad lies on that of "
-    "N.",
-    "ghost": "A second box, E, shows where three turns of a ghost have led; the axes of its turns "
-    "are to be found.",
+    "match": "Turn the box until it has a given matrix. The goal is not shown.",
+    "undo": "The box has been turned. Turn it back until its triad lies on the triad of N.",
+    "ghost": "A second box, E, shows the result of three turns of a ghost. Find their axes.",
 }
 
 

@@ -66,9 +66,9 @@ def drawing(figure, Sheet):
         f"A sphere with the tips of the unit vectors b x and b z of {COUNT} orientations. Their "
         f"errors are {math.degrees(figure.large):.0f} degrees about {frame}, and "
         f"{math.degrees(figure.small):.0f} degrees across that axis (standard deviations). The "
-        "tips lie along arcs about this axis: bent clouds. Those of b x have a mean of the length "
-        f"{figure.mean_length:.2f}, inside the sphere. The arrows b x and b z are those of the "
-        "estimate; the triad N is the ground.",
+        "tips lie along arcs about this axis and form bent clouds. The mean of the b x has the "
+        f"length {figure.mean_length:.2f}, inside the sphere. The arrows b x and b z show the "
+        "estimate, and the triad N the ground.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.large, figure.small, figure.side == "body")

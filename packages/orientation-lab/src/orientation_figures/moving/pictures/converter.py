@@ -18,8 +18,8 @@ def drawing(figure, Sheet):
     ]
     scalar, *vector = (f"{part + 0:.4f}" for part in figure.quaternion)
     sheet = Sheet(
-        "The triad of frame N, and from the same origin the triad of A, in the orientation that is "
-        f"converted: its quaternion, scalar first, is ({scalar}, {', '.join(vector)}). "
+        "The triad of frame N, and from the same origin the triad of A in the converted "
+        f"orientation, whose quaternion, scalar first, is ({scalar}, {', '.join(vector)}). "
         f"Along N, a {', a '.join(rows)}. "
         f"It is read from the {figure.source['form']} of {figure.source['program']} and written as "
         f"the {figure.target['form']} of {figure.target['program']}.",

@@ -45,9 +45,9 @@ def drawing(figure, Sheet):
     ends = ", ".join(f"{curve[-1]:.0f}" for curve in walks["curves"])
     sheet = Sheet(
         "The error of a phone's heading over 37 seconds of a walk, for five walks. From 28 to 33 "
-        f"seconds the way leads past a car that adds {figure.steel} microtesla. The filter has "
+        f"seconds the route leads past a car that adds {figure.steel} microtesla. The filter has "
         f"{gate}. The five curves end at {ends} degrees. Of a hundred walks half end "
-        f"within {walks['middle']} degrees, and the worst {walks['worst']} degrees off; "
-        f"{100 * walks['rejected']:.0f} per cent of the looks at the field were rejected."
+        f"within {walks['middle']} degrees, and the worst {walks['worst']} degrees off. The filter "
+        f"rejected {100 * walks['rejected']:.0f} per cent of the measurements of the field."
     )
     return sheet.paint(picture, walks["curves"])

@@ -114,10 +114,10 @@ def drawing(figure, Sheet):
     )
     sheet = Sheet(
         "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each "
-        f"turned from the one before about an axis that both share: {spoken}. "
-        f"The axes of psi and phi are {math.degrees(figure.margin):.0f} degrees apart; at 0 the "
+        f"turned from the frame before it about a shared axis: {spoken}. "
+        f"The axes of psi and phi are {math.degrees(figure.margin):.0f} degrees apart. At 0 the "
         "gimbal is locked. "
-        "Beside it stand the triads of A and D.",
+        "Beside it are the triads of A and D.",
         view=view_from(math.radians(58), math.radians(22)),
         scale=SIZE,
     )

@@ -26,7 +26,7 @@ def drawing(figure, Sheet):
     where = "over" if figure.together else "beside"
     sheet = Sheet(
         f"The right-handed triad of N, and {where} it {image}, with the arrows m x, m y and m z. "
-        f"Along N they are {', '.join(rows).replace('-0.00', '0.00')}.",
+        f"Along N these arrows are {', '.join(rows).replace('-0.00', '0.00')}.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.rows, figure.together)

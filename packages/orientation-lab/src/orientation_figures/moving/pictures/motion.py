@@ -188,18 +188,18 @@ def drawing(figure, Sheet):
         figure.flips, f"has flipped {figure.flips} times"
     )
     sheet = Sheet(
-        f"A {figure.body} that spins freely about its {figure.axis} axis, with the moments of "
+        f"A {figure.body} that spins freely about its {figure.axis} axis, with moments of "
         f"inertia {', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, "
-        f"drawn with its triad A as its {_DESCRIPTIONS[figure.description]} says after "
+        f"drawn with its triad A from its {_DESCRIPTIONS[figure.description]} after "
         f"{run['time'][-1]:.1f} seconds, {restored}, with the {_METHODS[figure.method]} method in "
         f"steps of {1000 * figure.step:g} milliseconds. "
         f"It {times}. "
-        f"The unit vectors of A, which should be 1 long, are {lengths} long; the matrix is not "
-        f"orthogonal by {_words(fault)}, and the orientation is wrong by {_words(error)} radians. "
-        "Dashed: the reference, computed with steps ten times finer; the angular velocity of those "
-        "steps is given to every description. "
+        f"The unit vectors of A, which should have length 1, have lengths {lengths}. The matrix is "
+        f"not orthogonal by {_words(fault)}, and the orientation is wrong by {_words(error)} "
+        "radians. The dashed reference was computed with steps ten times finer, and every "
+        "description uses the angular velocity of those steps. "
         "The arrow H is the angular momentum, which keeps its direction. "
-        "In the corner stands the triad of N.",
+        "The triad of N is in the corner.",
         scale=SIZE,
     )
     reference = dcm_from_quaternion(run["reference"][-1])
@@ -235,12 +235,12 @@ def plot(figure, Sheet):
         for name, title in _DESCRIPTIONS.items()
     )
     sheet = Sheet(
-        f"Three plots over the {SECONDS:.0f} seconds of the run, which has come to {times[-1]:.1f} "
-        "seconds. "
-        "Above, on a logarithmic scale, by how much each description is not orthogonal; in the "
-        "middle, its error against the reference; below, the margin of the Euler angles to gimbal "
-        f"lock, at the least {margin.min():.0f} degrees. "
-        f"At the last: {last}."
+        f"Three plots over the {SECONDS:.0f} seconds of the run, which has reached "
+        f"{times[-1]:.1f} seconds. "
+        "The top plot shows, on a logarithmic scale, by how much each description is not "
+        "orthogonal. The middle plot shows its error against the reference. The bottom plot shows "
+        f"the margin of the Euler angles to gimbal lock, at least {margin.min():.0f} degrees. "
+        f"At the end: {last}."
     )
     sheet.paint(axes)
     for part, values in ((FAULT, faults), (ERROR, errors)):

@@ -61,14 +61,14 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", rows)
     )
     sheet = Sheet(
-        f"In the frame N three arrows that should be the unit vectors of a triad A: {arrows}. "
+        f"Three arrows in the frame N that should be the unit vectors of a triad A: {arrows}. "
         f"{figure.check() or 'They are a direction cosine matrix'}. "
         + (
             "Dotted arrows show the nearest triad."
             if nearest is not None
             else "Several triads are equally near."
         )
-        + (" Small circles show where tips at length 1 would be." if any(map(off, rows)) else "")
+        + (" Small circles mark where arrows of length 1 would end." if any(map(off, rows)) else "")
         + (
             " A further arrow shows a x cross a y, where a z should point."
             if mirrored(rows)

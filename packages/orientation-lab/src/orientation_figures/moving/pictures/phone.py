@@ -36,7 +36,7 @@ def drawing(figure, Sheet):
         f"The phone is turned by alpha {alpha}, beta {beta} and gamma {gamma} degrees, body fixed "
         "z-x-y. "
         f"Along N, b {', b '.join(rows)}. "
-        "b x points to the right across the screen, b y to its top, b z out of it.",
+        "b x points to the right across the screen, b y to its top, and b z out of it.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.dcm)

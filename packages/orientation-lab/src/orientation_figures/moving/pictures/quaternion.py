@@ -179,11 +179,11 @@ def _double(figure, Sheet):
         "The triad of N, and from the same origin the triad of A, turned from N through theta, "
         f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
         f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). "
-        "Beside it a circle of radius 1 with the scalar part of a quaternion to the right and its "
-        "part along e upwards. "
-        f"The point q stands at half the angle, {math.degrees(half):.0f} "
-        f"degrees{', and minus q opposite to it' if figure.more else ''}. "
-        f"q is ({q}), scalar first{'; minus q is the same orientation' if figure.more else ''}.",
+        "Beside it is a circle of radius 1, with the scalar part of a quaternion to the right and "
+        "its part along e upwards. "
+        f"The point q is at half the angle, {math.degrees(half):.0f} "
+        f"degrees{', and minus q is opposite' if figure.more else ''}. "
+        f"q is ({q}), scalar first{'. Minus q is the same orientation' if figure.more else ''}.",
         scale=SIZE,
     )
     return sheet.paint(double, figure.axis, figure.angle, figure.dcm, figure.more)
@@ -203,20 +203,20 @@ def _ways(figure, Sheet):
     ]
     highest, _, beyond = plotted(speeds)
     cut = (
-        f", cut off at {highest} degrees per second; the fastest is {beyond:.0f}" if beyond else ""
+        f", cut off at {highest} degrees per second (the highest is {beyond:.0f})" if beyond else ""
     )
     sheet = Sheet(
-        f"A sphere with three ways of the tip of a unit vector {figure.unit_vector} from the "
+        f"A sphere with three paths of the tip of a unit vector {figure.unit_vector} from the "
         f"orientation of A to that of B, a turn of {math.degrees(angle_between(*ends)):.0f} "
-        "degrees: of C by slerp, an even turn about one axis; of D by interpolated Euler angles "
-        "z-x-y; of E, the same way as C but at another pace, by the matrix nearest to interpolated "
-        "entries. "
-        "A straight dashed line inside the sphere shows where the blended entries lead before they "
-        "are repaired. "
-        f"Shown after {figure.share * SECONDS:.1f} of {SECONDS} seconds, when the speeds of C, D "
+        "degrees. C moves by slerp, a turn about one axis at constant speed. D moves by "
+        "interpolated Euler angles z-x-y. E moves by the matrix nearest to interpolated entries, "
+        "on the same path as C but at another speed. "
+        "A straight dashed line inside the sphere shows the blended entries before they are "
+        "repaired. "
+        f"After {figure.share * SECONDS:.1f} of {SECONDS} seconds, as shown, the speeds of C, D "
         f"and E are {now[0]}, {now[1]} and {now[2]} degrees per second, and the blended rows have "
         f"the lengths {', '.join(f'{size:.2f}' for size in map(length, raw))}. "
-        f"Below, the three speeds over time{cut}.",
+        f"Below are the three speeds over time{cut}.",
         scale=BALL,
     )
     return sheet.paint(

@@ -28,11 +28,11 @@ def drawing(figure, Sheet):
         for name, row in zip("xyz", figure.dcm)
     ]
     sheet = Sheet(
-        "The triad of frame N, and from the same origin the triad of A: turned from N through "
+        "The triad of frame N, and from the same origin the triad of A, turned from N through "
         f"theta, {math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the "
         f"components ({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. "
         f"Along N, a {', a '.join(rows)}. "
-        "Thin arcs show the way of each tip, all about e.",
+        "Thin arcs show the path of each tip about e.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.axis, figure.angle, figure.dcm)

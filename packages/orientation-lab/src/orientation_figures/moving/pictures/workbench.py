@@ -39,9 +39,9 @@ def drawing(figure, Sheet):
     )
     findings = " ".join(str(explanation).splitlines())
     sheet = Sheet(
-        "Two pairs of triads side by side, each the triad of the frame N and from the same origin "
-        "another: on the left that of A, as the first program's numbers are read, on the right "
-        "that of B, as the second's. "
+        "Two pairs of triads side by side. Each has the triad of the frame N and, from the same "
+        "origin, another: on the left the triad of A from the first program's numbers, on the "
+        "right the triad of B from the second's. "
         f"{findings}",
         scale=SIZE,
     )
