@@ -7,7 +7,7 @@ import shutil
 import sys
 from contextlib import contextmanager
 
-# The first is the same engine without windows, which opens a page with a third less work.
+# The first program is the same engine without windows, which opens a page with a third less work.
 NAMES = (
     "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome",
     "google-chrome-stable", "/Applications/Google "

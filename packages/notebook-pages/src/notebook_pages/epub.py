@@ -89,7 +89,7 @@ def as_mathml(formula):
     """Return the MathML of a formula, and its words for programs that do not support it."""
     math = formula.select_one("math").extract()
     math["alttext"] = spoken(math)
-    # Of the bold letters, reading programs know only those that are characters of their own.
+    # Reading programs know only the bold letters that are separate characters.
     for letter in math.select("[mathvariant=bold]"):
         letter.string = letter.get_text().translate(BOLD)
         del letter["mathvariant"]

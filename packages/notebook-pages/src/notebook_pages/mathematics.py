@@ -26,8 +26,8 @@ KATEX = NODE_MODULES / "katex" / "dist" / "katex.min.js"
 PUNCTUATION = tuple(".,;:!?)")
 #: Characters that a line break must not separate from a formula: after it, and before it.
 CLOSING, OPENING = ("’s", "'s", *PUNCTUATION), tuple("([“")
-# The length, in visible characters, of a formula that need not be broken: half a line of the
-# narrowest page.
+# A formula of at most this many visible characters, half a line of the narrowest page, need not
+# be broken.
 SHORT = 18
 # Commands that TeX needs but that show nothing, or show it above or around another character.
 UNSEEN = re.compile(

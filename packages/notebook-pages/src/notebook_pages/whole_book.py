@@ -29,10 +29,10 @@ from .paths import (
 NAME = REGISTERED.get("name", "book")
 FOLDER = HTML / "take-away"
 PDF, EPUB, ZIP = (FOLDER / f"{NAME}.{ending}" for ending in ("pdf", "epub", "zip"))
-# A fingerprint of their sources.
+# This file has a fingerprint of their sources.
 STAMPS = BUILD / "whole-book.json"
 FRONT = "index.html"
-# The place on the front page: a comment in its source, and the text between it and the second mark.
+# The place for the links on the front page: a comment, and the text up to the second comment.
 PLACE = re.compile(r"<!-- whole-book -->(?:.*?<!-- /whole-book -->)?", re.DOTALL)
 LINK = '<a href="take-away/{name}">{title}<small>{note}, {size:.1f} MB</small></a>'
 
