@@ -171,8 +171,11 @@ def digests_of_releases(only):
 
 
 def sources(only):
-    paths = notebooks_in(find_course(REPOSITORY).sources)
-    return [path for path in paths if not only or path.stem in only]
+    return [
+        path
+        for path in notebooks_in(find_course(REPOSITORY).sources)
+        if not only or path.stem in only
+    ]
 
 
 # --- in the Python of browsers ------------------------------------------------------------------

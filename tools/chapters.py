@@ -16,6 +16,8 @@ CONTENTS, INDEX = Path("_toc.yml"), Path("exercises/index.md")
 SOLUTIONS = (Path("appendix/solutions.ipynb"), Path("appendix/solutions-going-further.ipynb"))
 SOURCES = Path("tests/solutions")
 CHAPTERS_SOURCE = SOURCES / "chapters.ipynb"
+#: Three questions for each notebook of exercises, which a tutor asks aloud.
+SPOKEN = SOURCES / "spoken-questions.md"
 
 
 def source_of(name):
@@ -113,6 +115,11 @@ def faults():
                 f"{INDEX}:{len(index.splitlines())}: the exercises of the chapter {name} are not "
                 "listed"
             )
+    yield from (
+        f"{SPOKEN}:{number}: {text}"
+        for number, text in enumerate(SPOKEN.read_text("utf8").splitlines(), 1)
+        if TO_BE_WRITTEN in text
+    )
     for path in [*chapters, *SOLUTIONS, *sorted(SOURCES.glob("*.ipynb"))]:
         yield from (
             f"{line}: {line.text.strip()}" for line in lines(path) if TO_BE_WRITTEN in line.text

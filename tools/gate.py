@@ -37,8 +37,9 @@ def table(count=100):
     for steel in STEELS:
         walk, row = walks(count, 1, steel=steel), []
         for share in REJECTED:
-            gate = -2 * np.log(share) if share else np.inf
-            estimate, predictions, looks = names["follow"](walk, gate)
+            estimate, predictions, looks = names["follow"](
+                walk, (-2 * np.log(share) if share else np.inf)
+            )
             errors = names["of_the_filter"](walk, estimate, predictions)
             ends = np.sqrt((errors[:, -round(3 / STEP) :] ** 2).mean(axis=1))
             accepted = np.array([look.accepted for look in looks])

@@ -14,7 +14,7 @@ import nbformat
 
 from notebook_pages.notebooks import METADATA, normalise
 
-from .chapters import CHAPTERS_SOURCE, INDEX, SOLUTIONS, TO_BE_WRITTEN, source_of
+from .chapters import CHAPTERS_SOURCE, INDEX, SOLUTIONS, SPOKEN, TO_BE_WRITTEN, source_of
 
 NAME = r"[a-z][a-z0-9]*(-[a-z0-9]+)*"
 
@@ -120,8 +120,8 @@ def code(text, **metadata):
 def question_cells(name, kind):
     """Return the two cells of a question: the answer, and its check with the author's facts."""
     example = EXAMPLES[kind]
-    symbols = "theta = sm.symbols('theta')\n" if "theta" in example.code else ""
-    arguments = ", ".join(part for part in (f"kind={kind!r}", example.arguments) if part)
+    symbols = "theta = sm.symbols('theta')\n" * ("theta" in example.code)
+    arguments = ", ".join(filter(None, [f"kind={kind!r}", example.arguments]))
     return [
         code(f"{symbols}### BEGIN SOLUTION\n{example.code}\n### END SOLUTION"),
         code(
@@ -138,12 +138,6 @@ def asked(kind):
 
 
 def chapter_cells(name, title):
-    figure = {
-        "tags": ["hide-input"],
-        "mystnb": {
-            "figure": {"name": f"figure-{name}", "caption": f"{TO_BE_WRITTEN}: what to see here."}
-        },
-    }
     return [
         markdown(
             f"(chapter-{name})=\n# {title}",
@@ -166,7 +160,13 @@ def chapter_cells(name, title):
             f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does not see "
             "it.')\n"
             "drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', np.radians(30)))",
-            **figure,
+            tags=["hide-input"],
+            mystnb={
+                "figure": {
+                    "name": f"figure-{name}",
+                    "caption": f"{TO_BE_WRITTEN}: what to see here.",
+                }
+            },
         ),
         markdown(
             "## Exercises",
@@ -193,11 +193,14 @@ def exercise_cells(notebook, question, title, kind):
     number = 1 + sum(
         cell.cell_type == "markdown" and cell.source.startswith("## ") for cell in notebook.cells
     )
-    text = (
-        f"{TO_BE_WRITTEN}: the question, with the symbols, the frames and their order, the unit of "
-        "each angle."
-    )
-    return [markdown(f"## {number}. {title}", text, asked(kind)), *question_cells(question, kind)]
+    return [
+        markdown(
+            f"## {number}. {title}",
+            f"{TO_BE_WRITTEN}: the question, with symbols, frames in order, units of angles.",
+            asked(kind),
+        ),
+        *question_cells(question, kind),
+    ]
 
 
 def add_cells(path, cells):
@@ -215,9 +218,25 @@ def add_line(path, after, line):
             f"{path}:1: the line `{after}`, which `{line}` should follow, occurs {len(places)} "
             "times, not once"
         )
-    indent = lines[places[0]][: len(lines[places[0]]) - len(lines[places[0]].lstrip())]
-    lines.insert(places[0] + 1, indent + line)
+    lines.insert(places[0] + 1, lines[places[0]].replace(after, line))
     path.write_text("\n".join(lines) + "\n", "utf8")
+
+
+#: One of the questions to ask aloud, by its number.
+ASKED_ALOUD = (
+    f"\n### {{number}}. {TO_BE_WRITTEN}\n\n{TO_BE_WRITTEN}: a question for a minute, without a "
+    f"formula.\n\n**A good answer**: {TO_BE_WRITTEN}: what it contains.\n\n"
+    + f'- **"{TO_BE_WRITTEN}: a usual wrong answer."** The idea that is missing.\n'
+    * 3
+)
+
+
+def add_spoken(name, after):
+    """Leave a place for three questions to ask aloud, after those of another notebook."""
+    new = f"\n## {name}\n" + "".join(ASKED_ALOUD.format(number=number) for number in (1, 2, 3))
+    own = rf"\n## {after}\n(?:.*\n)*?(?=\n## |\Z)"
+    text = re.sub(own, lambda section: section[0] + new, SPOKEN.read_text("utf8"))
+    SPOKEN.write_text(text, "utf8")
 
 
 def new_chapter(name, title, after):
@@ -238,6 +257,7 @@ def new_chapter(name, title, after):
     add_line(Path("_toc.yml"), f"- file: chapters/{after}", f"- file: chapters/{name}")
     add_line(Path("_toc.yml"), f"- file: exercises/{after}", f"- file: exercises/{name}")
     add_line(INDEX, f"- {{doc}}`{after}`", f"- {{doc}}`{name}`")
+    add_spoken(name, after)
     exercises = nbformat.v4.new_notebook(metadata=METADATA)
     exercises.cells = [
         markdown(
@@ -271,6 +291,7 @@ def new_chapter(name, title, after):
         f"added to _toc.yml and {INDEX}: both pages, after those of {after}",
         f"added to {CHAPTERS_SOURCE}: the question chapters/{name}, which the chapter asks",
         f"added to {SOLUTIONS[-1]}: its worked solution",
+        f"added to {SPOKEN}: a place for three questions to ask aloud",
     ]
 
 

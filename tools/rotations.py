@@ -12,10 +12,12 @@ FILE = rotations.FOLDER / "scenes.json"
 
 def written(*arguments):
     """Return the output of ``js/stills.js`` as text."""
-    stills = rotations.FOLDER / "js" / "stills.js"
-    script = esbuild("--bundle", "--platform=node", "--log-level=error", stills)
-    run = [NODE, "-", *arguments]
-    return subprocess.run(run, input=script, capture_output=True, text=True, check=True).stdout
+    script = esbuild(
+        "--bundle", "--platform=node", "--log-level=error", rotations.FOLDER / "js" / "stills.js"
+    )
+    return subprocess.run(
+        [NODE, "-", *arguments], input=script, capture_output=True, text=True, check=True
+    ).stdout
 
 
 def main():

@@ -119,9 +119,10 @@ def test_a_notebook_of_exercises_that_is_not_there(book):
 
 
 def make(*arguments):
-    environment = os.environ | {"PYTHONPATH": str(REPOSITORY)}
     command = [sys.executable, "-m", "tools.new", *arguments]
-    return subprocess.run(command, env=environment, capture_output=True, text=True)
+    return subprocess.run(
+        command, env=os.environ | {"PYTHONPATH": str(REPOSITORY)}, capture_output=True, text=True
+    )
 
 
 def test_a_new_chapter_has_all_its_parts(book):
@@ -133,6 +134,11 @@ def test_a_new_chapter_has_all_its_parts(book):
     shutil.copy("tests/solutions/chapter-of-the-tests.ipynb", "exercises")
     faults = list(chapters.faults())
     assert faults and all("TO BE WRITTEN" in fault for fault in faults), faults
+    assert re.search(
+        r"\n## quaternions-in-full\n(?:(?!## ).*\n)*## chapter-of-the-tests\n\n### 1. TO BE WRITTEN"
+        r"(?:(?!## ).*\n)*### 3. TO BE WRITTEN",
+        (book / "tests/solutions/spoken-questions.md").read_text("utf8"),
+    )
     pages = re.findall(r"file: (\S+)", (book / "_toc.yml").read_text("utf8"))
     for folder in ("chapters", "exercises"):
         place = pages.index(f"{folder}/chapter-of-the-tests")
