@@ -266,7 +266,10 @@ def test_the_preview_shows_all_that_stands_above_a_question(tmp_path):
 
 def test_variants_with_one_answer_are_refused(tmp_path):
     made = made_in(tmp_path)
-    before = [("code", "student('')"), ("code", DRAWN)]
-    sources(made.sources, before=before, text="Of {{n}} apples, give `answer`.")
+    sources(
+        made.sources,
+        before=[("code", "student('')"), ("code", DRAWN)],
+        text="Of {{n}} apples, give `answer`.",
+    )
     with pytest.raises(AuthorError, match="trial/one: all of its 3 variants have the same answer"):
         release(made, run=False)

@@ -288,10 +288,9 @@ def test_where_nothing_can_be_written_the_selftest_says_so_first(
     course = shutil.copytree(statics, tmp_path / "course", ignore=shutil.ignore_patterns("build"))
     (course / "build").write_text("in the way")
     monkeypatch.chdir(course)
-    with pytest.raises(SystemExit, match="cannot write .*selftest.html.*--page"):
-        main(["selftest"])
-    with pytest.raises(SystemExit, match="cannot write .*try.html.*--page"):
-        main(["try", "first-steps"])
+    for command in (["selftest"], ["try", "first-steps"]):
+        with pytest.raises(SystemExit, match=f"^coursework {command[0]}: File exists: .*build"):
+            main(command)
     for command in ("new", "wheels"):
         with pytest.raises(SystemExit, match=f"^coursework {command}: Not a directory: .*build"):
             main([command, "build/inside"])

@@ -240,8 +240,11 @@ def test_a_right_answer_opens_hints_for_later_questions(desk):
     place, other = Place(1, "k"), Place(2, "l")
     after = {SAW: ("Think of it.",), WORDS: ("And of that.",)}
     for at, answer in ((None, "right"), (place, "wrong"), (place, "right"), (other, "right")):
-        outcome = "correct" if answer == "right" else "wrong"
-        desk.judged[answer] = (outcome, "", {"opened": Locker(after=after, place=at)})
+        desk.judged[answer] = (
+            ("correct" if answer == "right" else "wrong"),
+            "",
+            {"opened": Locker(after=after, place=at)},
+        )
         check(ARM, answer)
         if at is None or answer == "wrong":
             assert kept(SAW) == Entry()
@@ -275,8 +278,9 @@ def test_a_right_answer_opens_hints_for_later_questions(desk):
 
 def test_the_hints_of_the_last_mistake_come_first(desk):
     place, known = Place(1, "k"), KnownAnswer("mistake", hints=("Twice?",))
-    case = {"outcome": "mistake", "hints": ["Twice?"]}
-    desk.pages = {place: {"cases": [{"outcome": "mistake"}, case]}}
+    desk.pages = {
+        place: {"cases": [{"outcome": "mistake"}, {"outcome": "mistake", "hints": ["Twice?"]}]}
+    }
     desk.judged["half"] = ("wrong", "half", {"opened": Locker(place=place), "known": known})
     check(ARM, "half 1")
     assert kept().page == place
@@ -460,8 +464,7 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
 
 
 def test_what_is_right_with_other_numbers_is_told_apart(desk):
-    other = Entry("correct", variant=1, numbers="one", whose="bob")
-    put(saw=other, arm=Entry("correct"))
+    put(saw=Entry("correct", variant=1, numbers="one", whose="bob"), arm=Entry("correct"))
     desk.numbers = {SAW: (2, "two")}
     told = [f"Right with other numbers, and not with yours yet: `{SAW}`."]
     assert check_module.progress().messages[2:] == told

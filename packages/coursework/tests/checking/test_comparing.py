@@ -41,8 +41,9 @@ CORRECT = KnownAnswer("correct")
 
 def said(question, lockers, answer, for_others=None):
     """The outcome, the note and the words of a reply."""
-    find = None if lockers is None else lockers.get
-    reply = compare("a/b", question, to_plain(answer), find, for_others)
+    reply = compare(
+        "a/b", question, to_plain(answer), (None if lockers is None else lockers.get), for_others
+    )
     assert reply.question == "a/b"
     if reply.outcome in ("correct", "wrong", "recorded") and reply.note != "other numbers":
         text = text_of(question, answer)
@@ -220,8 +221,9 @@ def test_large_decimal_fractions_are_as_exact_as_their_digits():
 
 def test_numbers_that_nearly_fit_together_may_be_rounded():
     unit = Question("vector", salt="s", tolerance=1e-6, unit_vector=True)
-    third = [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
-    right, coarse, wrong = (said(unit, {}, answer) for answer in third)
+    right, coarse, wrong = (
+        said(unit, {}, answer) for answer in [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
+    )
     assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
     assert coarse[2].startswith("The numbers nearly fit together. If you rounded, ")
     assert "0.999" in coarse[3]
@@ -379,8 +381,10 @@ def locked(question, answer, outcome, *notes, **more):
 
 def test_lockers_and_pages_of_a_question_are_opened():
     page_key = bytes(range(8))
-    differs = sealing.shorten("Two.", "One.")
-    told = {"cases": [CORRECT.as_json()], "solution": [1, "00" * 8, differs]}
+    told = {
+        "cases": [CORRECT.as_json()],
+        "solution": [1, "00" * 8, sealing.shorten("Two.", "One.")],
+    }
     pages = (
         sealing.seal(told, page_key),
         sealing.seal({"words": "One."}, bytes(8)),
@@ -455,8 +459,7 @@ def folder(tmp_path, monkeypatch):
 
     write("levers.json", {"levers/arm": first, "levers/plain": plain})
     for number, other in enumerate(others, 1):
-        own = {"levers/arm": questions.beside(other, first)}
-        write(f"variants/levers-{number}.json", own)
+        write(f"variants/levers-{number}.json", {"levers/arm": questions.beside(other, first)})
     write("later.json", {}, 5)
     write("third.json", {"third/a": plain})
     (sealed / "notes.txt").write_text("")
@@ -468,8 +471,11 @@ def folder(tmp_path, monkeypatch):
 
 
 def student_with(number):
-    names = (f"s{k}" for k in range(99))
-    return next(one for one in names if questions.own_numbers("levers/arm", one)[0] == number)
+    return next(
+        one
+        for one in (f"s{k}" for k in range(99))
+        if questions.own_numbers("levers/arm", one)[0] == number
+    )
 
 
 def test_questions_are_found_in_the_variant_of_a_student(folder):

@@ -267,8 +267,9 @@ def entries(matrix):
 
 
 def numbers(rows, columns, seed):
-    chance = np.random.default_rng(seed)
-    return sm.ImmutableMatrix(rows, columns, chance.integers(-9, 10, rows * columns).tolist())
+    return sm.ImmutableMatrix(
+        rows, columns, np.random.default_rng(seed).integers(-9, 10, rows * columns).tolist()
+    )
 
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4])
@@ -588,8 +589,7 @@ def test_borders_of_what_is_read():
         assert is_read(data) == is_plain(data)
     for count in (60_000, 60_001):
         assert is_read({"value": ["blank"], "nodes": NODES[:1] * count}) == (count == 60_000)
-        node = ["Add", *[0] * (count - 1)]
-        data = {"value": ["blank"], "nodes": [NODES[0], node]}
+        data = {"value": ["blank"], "nodes": [NODES[0], ["Add", *[0] * (count - 1)]]}
         assert is_read(data) == (count == 60_000)
 
 

@@ -410,14 +410,19 @@ def test_the_cells_around_an_answer_hold_all_that_is_as_near(question, near):
                     offset = absolute / relative
                     scaled = (size + offset) * (growth if outward > 0 else 1 / growth) - offset
                     if scaled < 0:  # through zero
-                        passed = MP.log((size + offset) / offset) / relative
-                        scaled = -offset * (MP.exp((reach - passed) * relative) - 1)
+                        scaled = -offset * (
+                            MP.exp(
+                                (reach - (MP.log((size + offset) / offset) / relative)) * relative
+                            )
+                            - 1
+                        )
                     new = scaled * (1 if number >= 0 else -1)
                 moved.append(new)
             own = []
             for new in (number, *moved):
-                changed = [*numbers[:order], new, *numbers[order + 1 :]]
-                told = reading.fingerprint(question, Reading([changed]), near)
+                told = reading.fingerprint(
+                    question, Reading([[*numbers[:order], new, *numbers[order + 1 :]]]), near
+                )
                 own.append(told.removeprefix("near ").split()[order])
             cells.append(set(own))
         expected = {" ".join(chosen) for chosen in itertools.product(*cells)}

@@ -74,8 +74,7 @@ def test_a_page_holds_its_content_as_short_as_it_gets():
     for content in (CONTENT, words, ""):
         data = base64.b85decode(sealing.seal(content, KEY))[: -sealing.PAGE_TAG]
         plain = sealing._mask(data, KEY, "page")
-        text = json.dumps(content, ensure_ascii=False, sort_keys=True)
-        packed = zlib.compress(text.encode(), 9)
+        packed = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode(), 9)
         packed = len(packed).to_bytes(4, "big") + packed
         assert plain.rstrip(b"\0") == packed.rstrip(b"\0")
         assert len(plain) % sealing.BLOCK == 0 <= len(plain) - len(packed) < sealing.BLOCK
@@ -168,8 +167,7 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
         f'src="data:image/svg+xml;base64,{data}"></p>, `2` 2 $F$ {{{{leg}}}}'
     )
     with pytest.raises(Misread, match="^A picture should be a list of two"):
-        packed = base64.b85encode(zlib.compress(b"[1]")).decode()
-        variants.text_of(Variant(picture=packed))
+        variants.text_of(Variant(picture=base64.b85encode(zlib.compress(b"[1]")).decode()))
     given = variants.Given(text, {"arm": 2, "_leg": 3})
     assert repr(given) == 'See Up & "on", 2 2 F {{leg}}' and given._repr_markdown_() == text
     assert given.arm == given["arm"] == 2 and not hasattr(given, "_leg")

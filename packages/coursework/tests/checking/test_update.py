@@ -240,8 +240,7 @@ def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):
     files["manifest.json"] = manifest(
         {"one.ipynb": files["one.ipynb"], "README.txt": b"one"}
     ).encode()
-    archive = zipped(tmp_path / "exercises.zip", files)
-    update(archive, work)
+    update(zipped(tmp_path / "exercises.zip", files), work)
     assert "one.ipynb" in contents(work) and "._one.ipynb" not in contents(work)
 
 

@@ -60,8 +60,9 @@ def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
     free: set[sympy.Expr] = set()
     for entry in map(sympy.sympify, entries):
         functions = entry.atoms(AppliedUndef)
-        times = {argument for function in functions for argument in function.args}
-        free |= functions | (entry.free_symbols - times)
+        free |= functions | (
+            entry.free_symbols - {argument for function in functions for argument in function.args}
+        )
     return sorted(free, key=str)
 
 

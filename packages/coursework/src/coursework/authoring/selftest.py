@@ -9,6 +9,7 @@ import base64
 import contextlib
 import html
 import io
+import itertools
 import json
 import random
 import re
@@ -137,8 +138,9 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
         if there
         else None
     )
-    expected = "recorded" if question.public.exam else "correct"
-    if sealed and judge(question.name, sealed, question.plain).outcome != expected:
+    if sealed and judge(question.name, sealed, question.plain).outcome != (
+        "recorded" if question.public.exam else "correct"
+    ):
         faults.append(
             "The right answer does not open the sealed question. Run `coursework release` again."
         )
@@ -217,8 +219,11 @@ def _try_mistakes(
             )
             continue
         known = [note for answer in entry.answers for note in answer.notes]
-        covered = mistake.note in GENERAL and known
-        if reply.outcome != "wrong" or not covered and (mistake.note, mistake.details) not in known:
+        if (
+            reply.outcome != "wrong"
+            or not (mistake.note in GENERAL and known)
+            and (mistake.note, mistake.details) not in known
+        ):
             faults.append(
                 f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its '
                 "own message."
@@ -244,12 +249,13 @@ def secrets_of(source: Source) -> Secrets:
             for region in HIDDEN.findall(cell.source):
                 texts += [("a line of a hidden test", line) for line in region.splitlines()]
     for name, question in source.questions.items():
-        for line in question.solution.splitlines():
-            texts.append((f"the worked solution of {name}", line))
-        for step in [
-            step for steps in [*question.hints.values(), *question.after.values()] for step in steps
-        ]:
-            texts.append((f"a hint of {name}", step))
+        texts += [
+            (f"the worked solution of {name}", line) for line in question.solution.splitlines()
+        ]
+        texts += [
+            (f"a hint of {name}", step)
+            for step in itertools.chain(*question.hints.values(), *question.after.values())
+        ]
         if kinds()[question.public.kind].entries:
             texts += [(f"the answer of {name}", text) for text in _writings(question.answer)]
     given = {
@@ -310,8 +316,9 @@ def _judge_code(question: AuthoredQuestion, code: str) -> str:
     """The outcome of a piece of code as the answer to a question; empty where it gives none."""
     symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.symbols}
     with contextlib.suppress(Exception):  # whatever is wrong with it, it is no answer then
-        names = {**vars(sympy), "sm": sympy, **symbols}
-        return _judge(question, eval(code.partition("=")[2] or code, names)).outcome
+        return _judge(
+            question, eval(code.partition("=")[2] or code, {**vars(sympy), "sm": sympy, **symbols})
+        ).outcome
     return ""
 
 

@@ -506,9 +506,11 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
     if isinstance(last, ast.Expr):
         tree.body.pop()
     exec(compile(tree, where, "exec"), namespace)
-    if isinstance(last, ast.Expr):
-        return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
-    return None
+    return (
+        eval(compile(ast.Expression(last.value), where, "eval"), namespace)
+        if isinstance(last, ast.Expr)
+        else None
+    )
 
 
 def cells_needed(

@@ -16,8 +16,7 @@ from .question import Note, Question
 
 def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
     """What a student is told of a mistake."""
-    said = kind_of_values(question).messages.get(note) or MESSAGES[note]
-    return said(question, **details)
+    return (kind_of_values(question).messages.get(note) or MESSAGES[note])(question, **details)
 
 
 def by_short_name(question: Question) -> dict[bytes, Note]:
@@ -48,8 +47,9 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
         for note, words in messages.items():
             needed = list(inspect.signature(words).parameters)[1:]
             if note != "authored":
-                choices = ((own or details).get(name, ()) for name in needed)
-                for values in itertools.product(*choices):
+                for values in itertools.product(
+                    *((own or details).get(name, ()) for name in needed)
+                ):
                     one = Note(note, dict(zip(needed, values, strict=True)))
                     if found.setdefault(short_name(*one), one) != one:
                         raise RuntimeError(

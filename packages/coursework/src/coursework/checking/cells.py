@@ -45,7 +45,6 @@ def watch() -> None:
     """Follow the cells of the kernel in which this runs, if it is one."""
     # Without a kernel there may be no IPython, or only something in its place.
     get_shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)
-    shell = get_shell()
-    if events := getattr(shell, "events", None):
+    if events := getattr(get_shell(), "events", None):
         events.register("pre_run_cell", begins)
         events.register("post_run_cell", ends)

@@ -139,8 +139,7 @@ def hint(name: str) -> Reply:
         _note_help(name, student, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
     for other, place in entry.after:
-        opens = _page(other, student, place).after
-        lines += [f"Hint: {step}" for step in opens.get(name, ())]
+        lines += [f"Hint: {step}" for step in _page(other, student, place).after.get(name, ())]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]
@@ -168,8 +167,13 @@ def worked_solution(name: str, code: str) -> Reply:
             ["This code opens no solution. Your instructor gives the code out when it is time."],
         )
     entry = _note_help(name, student, "solution")
-    said = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
+    reply = Reply(
+        name,
+        "hints",
+        "",
+        ["Read it, close it, and write it out for yourself."],
+        solution_on(sealed, locker.solution),
+    )
     _offer_sibling(reply, sealed.question, entry.help)
     return reply
 
@@ -249,10 +253,9 @@ def progress() -> Reply:
     the record beside this notebook.
     """
     kept, student = Progress.read(), identity()
-    known = {name: _entry(kept, name, student) for name in kept.entries}
     record = {
         name: entry
-        for name, entry in known.items()
+        for name, entry in {name: _entry(kept, name, student) for name in kept.entries}.items()
         if entry.outcome and not without_sibling(name)[1]
     }
     others = _right_for_others(kept, student)
@@ -277,8 +280,9 @@ def progress() -> Reply:
 def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) -> str:
     questions: dict[str, float] = {name: 1 for name in record if name.startswith(f"{notebook}/")}
     with suppress(RuntimeError):  # of another release
-        known = notebook_questions(notebook)
-        questions = {name: sealed.worth for name, sealed in known.items()} or questions
+        questions = {
+            name: sealed.worth for name, sealed in notebook_questions(notebook).items()
+        } or questions
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {
@@ -353,11 +357,17 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
         answers = entry.answers
         if reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers = *answers, reply.answer
-        has_hints = reply.known is not None and reply.known.hints
-        page = reply.opened.place if has_hints and reply.opened else None
-        mistake = reply.note or "another value"
+        page = (
+            reply.opened.place
+            if (reply.known is not None and reply.known.hints) and reply.opened
+            else None
+        )
         entry = replace(
-            entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time())
+            entry,
+            answers=answers,
+            page=page,
+            mistake=(reply.note or "another value"),
+            mistake_at=int(time.time()),
         )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
         entry = replace(entry, mistake="")  # looked at again, and right

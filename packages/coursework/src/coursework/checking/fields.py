@@ -138,6 +138,8 @@ def written(value: object) -> Json:
     """What a reader gave, as JSON: for a tuple a list."""
     if isinstance(value, (tuple, list)):
         return [written(part) for part in value]
-    if isinstance(value, dict):
-        return {name: written(part) for name, part in value.items()}
-    return cast(Json, value)
+    return (
+        {name: written(part) for name, part in value.items()}
+        if isinstance(value, dict)
+        else cast(Json, value)
+    )

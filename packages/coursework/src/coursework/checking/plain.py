@@ -292,9 +292,11 @@ class _Writer:
         if isinstance(answer, (Iterator, KeysView, ValuesView)):
             kind = type(answer).__name__[:40]
             raise NotPlain(f"This is of type `{kind}`: write `list(...)` around it.")
-        if isinstance(answer, (list, tuple, set, frozenset)):
-            return self.parts(_in_order(answer), depth)
-        return self.of_sympy(answer, depth)
+        return (
+            self.parts(_in_order(answer), depth)
+            if isinstance(answer, (list, tuple, set, frozenset))
+            else self.of_sympy(answer, depth)
+        )
 
     def parts(self, answer: Sequence[object], depth: int) -> Value:
         if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
@@ -314,8 +316,12 @@ class _Writer:
             raise NotPlain(
                 f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large."
             )
-        entries = [self.number(entry) for row in answer.tolist() for entry in row]
-        return ["matrix", answer.rows, answer.cols, entries]
+        return [
+            "matrix",
+            answer.rows,
+            answer.cols,
+            [self.number(entry) for row in answer.tolist() for entry in row],
+        ]
 
     def of_frames(self, answer: FrameGraph, depth: int) -> Value:
         """The frames of the book's own graph: the matrix of every pair that is connected."""
@@ -410,9 +416,11 @@ class _Writer:
         try:
             with contextlib.redirect_stdout(printed):
                 returned = function(*arguments)
-            if _is_blank(returned) and printed.getvalue().strip():
-                return ["printed", printed.getvalue()[:300]]
-            return self.value(returned, 0)
+            return (
+                ["printed", printed.getvalue()[:300]]
+                if _is_blank(returned) and printed.getvalue().strip()
+                else self.value(returned, 0)
+            )
         except NotPlain:
             raise
         except (Exception, SystemExit) as error:
@@ -452,8 +460,14 @@ class _Writer:
             ]
             return functools.reduce(self._product, factors)
         if isinstance(answer, sympy.MatAdd):
-            terms = [self.matrix(part)[2] for part in answer.args]
-            return rows, columns, [self.node("Add", *entries) for entries in zip(*terms)]
+            return (
+                rows,
+                columns,
+                [
+                    self.node("Add", *entries)
+                    for entries in zip(*[self.matrix(part)[2] for part in answer.args])
+                ],
+            )
         if isinstance(answer, sympy.Transpose):
             return self._transposed(self.matrix(answer.arg))
         if isinstance(answer, sympy.matrices.expressions.matpow.MatPow) and answer.exp.is_Integer:
@@ -559,8 +573,9 @@ class _Writer:
         of_mpmath = _module(type(number)).startswith("mpmath")
         if isinstance(number, numbers.Complex) and not isinstance(number, numbers.Real):
             real, imaginary = self.number(number.real), self.number(number.imag)
-            unit = self.node("constant", "ImaginaryUnit")
-            return self.node("Add", real, self.node("Mul", unit, imaginary))
+            return self.node(
+                "Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary)
+            )
         if of_mpmath and hasattr(number, "_mpf_"):
             return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, numbers.Rational):
@@ -575,9 +590,11 @@ class _Writer:
                     f"The answer holds an integer of about {int(part.bit_length() * 0.30103)} "
                     "digits. No question needs one."
                 )
-        if denominator == 1:
-            return self.node("integer", str(numerator))
-        return self.node("rational", str(numerator), str(denominator))
+        return (
+            self.node("integer", str(numerator))
+            if denominator == 1
+            else self.node("rational", str(numerator), str(denominator))
+        )
 
     def expression(self, root: sympy.Basic) -> int:
         """Write an expression, children first, without recursion: a chain may be very deep."""

@@ -97,5 +97,8 @@ def folders_of(names: Iterable[str]) -> list[str]:
 
 def sealed_folders() -> list[Traversable]:
     """The folders of sealed questions that plug-ins bring."""
-    folders = [resources.files(plugin) / "sealed" for plugin in plugins()]
-    return [folder for folder in folders if folder.is_dir()]
+    return [
+        folder
+        for folder in [resources.files(plugin) / "sealed" for plugin in plugins()]
+        if folder.is_dir()
+    ]

@@ -150,8 +150,13 @@ class Entry:
         known = [replace(self, others=()), *self.others]
         own = next((one for one in self.others if one.has(variant, numbers)), Entry())
         others = tuple(one for one in known if one is not own)
-        after = tuple(dict.fromkeys((*own.after, *self.after)))
-        return replace(own, variant=variant, numbers=numbers, after=after, others=others)
+        return replace(
+            own,
+            variant=variant,
+            numbers=numbers,
+            after=tuple(dict.fromkeys((*own.after, *self.after))),
+            others=others,
+        )
 
 
 FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"others", "more"} | {

@@ -95,8 +95,7 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
     found = {}
     try:
         questions = _file(notebook)
-        chosen = _file(notebook, variant) if variant else questions
-        for name, about in chosen.items():
+        for name, about in (_file(notebook, variant) if variant else questions).items():
             about = _on_the_first(questions[name], about) if variant else about
             found[name] = Sealed.from_json(about, f"The sealed question {name}")
     except ValueError as error:
@@ -146,8 +145,11 @@ def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[st
         if isinstance(found := one.get("pages"), list)
         for page in found
     ]
-    whole_of_it = {**first, **own, "pages": pages or None}
-    return {name: value for name, value in whole_of_it.items() if value is not None}
+    return {
+        name: value
+        for name, value in {**first, **own, "pages": pages or None}.items()
+        if value is not None
+    }
 
 
 def places() -> list[Traversable]:
@@ -212,8 +214,9 @@ def find_question(name: str, student: str) -> Sealed:
         )
     import difflib  # needed here alone
 
-    named = questions or notebook_questions(notebook.lower())
-    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], cutoff=0.5)
+    near = difflib.get_close_matches(
+        name.lower(), [*(questions or notebook_questions(notebook.lower())), *notebooks], cutoff=0.5
+    )
     raise NoSuchQuestion(
         f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
     )
@@ -316,8 +319,9 @@ def rung_key(question: Question, number: int) -> bytes:
     """The key of a step of the ladder of hints: no secret, it only keeps the
     step from being read in passing.
     """
-    seed = f"step {number} for {question.kind}"
-    return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
+    return hashlib.sha256(f"step {number} for {question.kind}".encode()).digest()[
+        : sealing.PAGE_KEY
+    ]
 
 
 def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
@@ -485,10 +489,12 @@ def _known_in(question: Question, reading: Reading, locker: Locker | None) -> Kn
 
 
 def _far(question: Question, reading: Reading, known: KnownAnswer) -> Number:
-    if not known.numbers:
-        return MP.zero
-    return distance(
-        question, canonical(question, reading), [MP.mpf(number) for number in known.numbers]
+    return (
+        MP.zero
+        if not known.numbers
+        else distance(
+            question, canonical(question, reading), [MP.mpf(number) for number in known.numbers]
+        )
     )
 
 
@@ -591,8 +597,9 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
 
 
 def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
-    exact = question.tolerance is None and reading.text is None
-    if not exact or not any(node[0] == "float" for node in plain["nodes"]):
+    if not (question.tolerance is None and reading.text is None) or not any(
+        node[0] == "float" for node in plain["nodes"]
+    ):
         return ""
     exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return (

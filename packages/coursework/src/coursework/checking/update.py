@@ -61,9 +61,8 @@ def digest_of(name: str, data: bytes) -> str:
     """
     if name.endswith(".ipynb"):
         try:
-            cells = json.loads(data)["cells"]
             data = json.dumps(
-                [[cell["cell_type"], "".join(cell["source"])] for cell in cells]
+                [[cell["cell_type"], "".join(cell["source"])] for cell in json.loads(data)["cells"]]
             ).encode()
         except (ValueError, KeyError, TypeError):
             pass  # no notebook: its bytes count
@@ -224,8 +223,7 @@ def _order(number: str) -> tuple[list[int], bool, int]:
     True
     """
     release, in_development, moment = number.partition(".dev")
-    parts = [int(part) for part in re.findall(r"\d+", release)]
-    return parts, not in_development, int(moment or 0)
+    return [int(part) for part in re.findall(r"\d+", release)], not in_development, int(moment or 0)
 
 
 def _older(folder: Path, name: str) -> list[Path]:

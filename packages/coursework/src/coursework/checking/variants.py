@@ -60,8 +60,9 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
     """
     names: list[str] = []
     for one in variants:
-        said = {**one.shown, **one.given}
-        name = hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:12]
+        name = hashlib.sha256(
+            json.dumps({**one.shown, **one.given}, sort_keys=True).encode()
+        ).hexdigest()[:12]
         while name in names:  # two that differ in nothing that is shown
             name += "+"
         names.append(name)

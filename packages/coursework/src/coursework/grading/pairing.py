@@ -133,13 +133,15 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            why = "No question of any assignment is named in it."
-            refused.append(Refused(notebook.file, notebook.student, why))
+            refused.append(
+                Refused(
+                    notebook.file, notebook.student, "No question of any assignment is named in it."
+                )
+            )
         elif not graded:
             left_alone[answered[0]] += 1
         for assignment in graded:
-            group = term.group_of(notebook.student)
-            handed_in.setdefault((group, assignment), []).append(notebook)
+            handed_in.setdefault((term.group_of(notebook.student), assignment), []).append(notebook)
     work = [
         attempt
         for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
@@ -214,8 +216,9 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         for notebook, why in zip(
             (*one.notebooks, *one.superseded), (*((unless,) * len(one.notebooks)), *one.why)
         ):
-            known = notebook.matched, notebook.says, why
-            rows[one.student, one.assignment, notebook.file, *known] = None
+            rows[
+                one.student, one.assignment, notebook.file, *(notebook.matched, notebook.says, why)
+            ] = None
     header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
     write(folder / WHOSE, lines(header, rows))
     around = {
@@ -249,12 +252,14 @@ def _say_absent(
     show: TextIO,
 ) -> None:
     people = set(term.roster.people) if term.roster else set()
-    came = {*graded, *(one.student for one in handed_in.work)}
-    present = {member for name in came for member in term.members(name)}
+    present = {
+        member
+        for name in {*graded, *(one.student for one in handed_in.work)}
+        for member in term.members(name)
+    }
     damaged = {one.student for one in (*handed_in.refused, *before)} & people - present
-    missing = sorted(people - present - damaged)
     for names, what in (
-        (missing, "handed in nothing"),
+        (sorted(people - present - damaged), "handed in nothing"),
         (sorted(damaged), "handed in what cannot be graded"),
     ):
         if names:
