@@ -159,8 +159,7 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
     cluster = cluster_of(out, SUM, "ben")
     place = [record.student for record in cluster.members].index("ben")
     with Served(out.folder, grader="Ann") as served:
-        words = f"I am right {SCRIPT}"
-        raised = form(form="appeal", state="raised", only=place, words=words)
+        raised = form(form="appeal", state="raised", only=place, words=f"I am right {SCRIPT}")
         assert served.decide(cluster.id, raised).status == 303
         assert served.decide(cluster.id, raised).status == 409  # nothing twice
         long = form(form="appeal", state="raised", only=place, words="x" * 4_001)
@@ -258,8 +257,9 @@ def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
 
 def test_appeals_go_with_a_student_whom_a_roster_calls_something_else(begun, out, tmp_path):
     record, journal = out.read("ben", "essays"), Journal(out.folder)
-    first = journal.appeal(record, SUM, "Right!", who="Ann")
-    one = journal.decision(record, SUM, 1, who="Ann", appeal=first.id)
+    one = journal.decision(
+        record, SUM, 1, who="Ann", appeal=journal.appeal(record, SUM, "Right!", who="Ann").id
+    )
     journal.append([one], collisions=True)
     journal.append([journal.decision(record, SUM, 0.5, who="Ben", after=one.id)], collisions=True)
     (tmp_path / "roster.csv").write_text("student,name\nada,ada\nbenjamin,ben\ncem,cem\n")
@@ -377,8 +377,11 @@ def test_a_line_whose_worth_changes_scores_anew_what_used_it(begun, out, tmp_pat
     # In the source: what it says last is newer than what the page said; nobody has
     # more than all, or less than nothing.
     mended = write_essays(tmp_path / "mended", {names: 3, says: 0.25, forgets: -3})
-    found = regrade(out.folder, solutions=mended, dry_run=True)
-    changes = [change for move in found.moves for change in move.changes]
+    changes = [
+        change
+        for move in regrade(out.folder, solutions=mended, dry_run=True).moves
+        for change in move.changes
+    ]
     assert {one.student: (one.before, one.after) for one in changes} == {
         "ada": (2.5, 3), "ben": (1, 0), "cem": (1.5, 1.25)
     }  # fmt: skip

@@ -278,8 +278,7 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
         cluster_keys.worker(keys, "tls://192.0.2.7:8786", 2),
     ):
         assert command[command.index("--protocol") + 1] == "tls" and "--tls-ca-file" in command
-    solutions = write_sources(tmp_path / "solutions")
-    options = {"solutions": solutions, "show": io.StringIO()}
+    options = {"solutions": write_sources(tmp_path / "solutions"), "show": io.StringIO()}
     with cluster(tmp_path, keys=[*cluster_keys.options(keys), "--protocol", "tls"]) as (address, _):
         assert address.startswith("tls://")
         with pytest.raises(OSError):

@@ -105,8 +105,9 @@ def test_an_exam_counts_as_run_where_nbgrader_looks_for_errors(exam, monkeypatch
 
 
 def test_the_selftest_is_content_and_finds_nothing_to_guess(exam):
-    source = release.read_source(exam.sources / "trial.ipynb")
-    found = selftest.try_question(source.questions["trial/about-x"])
+    found = selftest.try_question(
+        release.read_source(exam.sources / "trial.ipynb").questions["trial/about-x"]
+    )
     assert found.faults == [] and found.possible is None
     assert [note for note, _ in found.mistakes if note == "transposed"]
 

@@ -158,8 +158,12 @@ def marks_of(folder, **identities):
     for student, about in identities.items():
         called = {kind: value for kind, value in about.items() if kind != "own"}
         identity = Identity(called, tuple(about["own"]) if "own" in about else None)
-        marks = {"t/q": Mark("correct", points=6, worth=6)}
-        give(store, Record(student, "t", identity=identity, marks=marks))
+        give(
+            store,
+            Record(
+                student, "t", identity=identity, marks={"t/q": Mark("correct", points=6, worth=6)}
+            ),
+        )
     return gradebooks.Marks(store)
 
 

@@ -1295,9 +1295,11 @@ def canvas_takes(name, uploads):
     """
     parts = name.rpartition("/")[2].split("_")
     numbers = [part for part in parts if re.fullmatch("[0-9]+", part)][:2]
-    if len(numbers) < 2 or parts[-1].startswith("link") or name.startswith("._"):
-        return None
-    return uploads.get(tuple(map(int, numbers)))
+    return (
+        None
+        if len(numbers) < 2 or parts[-1].startswith("link") or name.startswith("._")
+        else uploads.get(tuple(map(int, numbers)))
+    )
 
 
 def moodle_takes(name, participants):
@@ -1388,8 +1390,7 @@ def test_for_nbgrader_and_gradescope(course, tmp_path, capsys):
     assert list(rows["right"]) == list(gradebooks.NBGRADER)
     mistaken = rows["mistaken"]
     assert [mistaken[name] for name in ("assignment", "score", "max_score")] == ["turns", "4", "6"]
-    marks = gradebooks.Marks(Store(out))
-    gradebooks.write_gradescope(tmp_path / "results.json", marks, "mistaken")
+    gradebooks.write_gradescope(tmp_path / "results.json", gradebooks.Marks(Store(out)), "mistaken")
     results = json.loads((tmp_path / "results.json").read_text())
     assert results["score"] == 4 and [test["score"] for test in results["tests"]] == [1, 0, 3]
     assert (

@@ -67,9 +67,7 @@ def ordinary(dice, depth=0):
             return sm.Mul(*parts)
         if way == 2:
             return sm.Pow(*parts)
-        if way == 3:
-            return sm.atan2(*parts)
-        return dice.choice(unary)(parts[0])
+        return sm.atan2(*parts) if way == 3 else dice.choice(unary)(parts[0])
 
 
 def judged(answers, questions, folder):
@@ -146,8 +144,7 @@ def test_hostile_answers_leave_every_other_mark(questions, tmp_path):
     dice = random.Random("hostile")
     hostile = [_tower(dice, what) for what in HOSTILE for _ in range(2)]
     honest = [to_plain(sm.sin(alpha + beta)), to_plain(-sm.sin(alpha + beta))]
-    answers = [one for bad in hostile for one in (bad, *honest)]
-    found = list(judged(answers, questions, tmp_path))
+    found = list(judged([one for bad in hostile for one in (bad, *honest)], questions, tmp_path))
     assert [mark.outcome for mark in found[1::3]] == ["correct"] * len(hostile)
     assert [mark.note for mark in found[2::3]] == ["opposite"] * len(hostile)
     assert not any(mark.points for mark in found[::3])

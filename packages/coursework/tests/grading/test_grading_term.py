@@ -378,8 +378,7 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
 
 def test_every_number_leads_to_the_answers_behind_it(out, rules):
     write_course(Store(out), rules())
-    statistics = (out / "course" / "statistics.html").read_text()
-    links = re.findall(r'href="([^"]+)"', statistics)
+    links = re.findall(r'href="([^"]+)"', (out / "course" / "statistics.html").read_text())
     assert len(links) >= 10
     for link in links:
         place, _, anchor = link.partition("#")
@@ -484,8 +483,7 @@ def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
 
 def test_a_decision_is_handed_on_once_it_is_in_the_marks(late, tmp_path, capsys):
     (late.folder / "term.toml").unlink()
-    found = late.read("ann", "turns")
-    Journal(late.folder).add(found, "turns/sum", 0.5, who="Ann")
+    Journal(late.folder).add(late.read("ann", "turns"), "turns/sum", 0.5, who="Ann")
     assert filled(late)[0] == "6" and "is not in the marks yet" in capsys.readouterr().out
     with pytest.raises(SystemExit, match="Decisions on 1 records are not in the pages yet"):
         main(["export", str(late.folder), "--feedback", str(tmp_path / "pages.zip")])

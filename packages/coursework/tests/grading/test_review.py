@@ -87,8 +87,7 @@ class Served:
             asyncio.set_event_loop(asyncio.new_event_loop())
             sockets = netutil.bind_sockets(0, "127.0.0.1")
             self.port = sockets[0].getsockname()[1]
-            graded = Class(folder)
-            made = application(graded, options.pop("grader", "Ann"), self.port, **options)
+            made = application(Class(folder), options.pop("grader", "Ann"), self.port, **options)
             self.secret = made.settings["secret"]
             self.server = httpserver.HTTPServer(made)
             self.server.add_sockets(sockets)

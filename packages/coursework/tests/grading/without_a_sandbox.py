@@ -12,8 +12,9 @@ def run_without_a_sandbox(jobs, finish, *others):
     """
 
     def answer(job, name, about):
-        code = "\n".join(cell["source"] for cell in job["cells"])
-        found = re.search(rf"check\('{name}', (.*)\)", code)
+        found = re.search(
+            rf"check\('{name}', (.*)\)", "\n".join(cell["source"] for cell in job["cells"])
+        )
         if found is None or found[1] in ("...", "load", "why"):
             return {"outcome": "missing"}
         if not about["calls"]:

@@ -89,8 +89,9 @@ class Course:
             stack.enter_context(contextlib.chdir(self.place))
             stack.enter_context(contextlib.redirect_stdout(said))
             stack.enter_context(contextlib.redirect_stderr(said))
-            monkeypatch = stack.enter_context(pytest.MonkeyPatch.context())
-            monkeypatch.setattr(sys, "stdin", io.StringIO(stdin))
+            stack.enter_context(pytest.MonkeyPatch.context()).setattr(
+                sys, "stdin", io.StringIO(stdin)
+            )
             try:
                 main([*map(str, words)])
             except SystemExit as ended:
@@ -117,8 +118,7 @@ class Course:
         with subprocess.Popen(
             command, cwd=self.place, stdout=subprocess.PIPE, text=True, preexec_fn=hears
         ) as page:
-            address = page.stdout.readline().split()[-1]
-            decide(address)
+            decide(page.stdout.readline().split()[-1])
             page.send_signal(signal.SIGINT)
             return page.stdout.read()
 
@@ -132,8 +132,7 @@ class Course:
         }
 
     def table(self, name):
-        text = (self.marks / name).read_text("utf8")
-        return list(csv.DictReader(text.splitlines()))
+        return list(csv.DictReader((self.marks / name).read_text("utf8").splitlines()))
 
     def write_table(self, name, rows):
         path = self.place / name

@@ -93,8 +93,9 @@ def test_the_page_of_moves_is_there_when_it_is_named(course):
     course.hands_in(EARLY, "hw1", why=None)
     course.grade()
     course.change("hw1", sum=(6, 4))
-    said = course.grade(fails=True)
-    (line,) = [line for line in said.splitlines() if line.startswith("Each of them: ")]
+    (line,) = [
+        line for line in course.grade(fails=True).splitlines() if line.startswith("Each of them: ")
+    ]
     page = (course.place / line.removeprefix("Each of them: ")).read_text()
     assert "Who would lose" in page and "ada" in page
 

@@ -3,12 +3,14 @@ mistakes that people make on the way.
 """
 
 import contextlib
+import csv
 import io
 import json
 
 import pytest
 
 from coursework.__main__ import main
+from coursework.grading import sitting
 
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 RIGHT = {
@@ -119,3 +121,75 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
     run("term marks-2027 --earlier marks/course/counts.json")
     assert "my-course" in (folder / "marks-2027" / "course" / "statistics.html").read_text()
     assert "6 points" not in run("why eva first-steps --marks marks-2027")
+
+
+def ticked(table, **ticks):
+    """Fill in the column `tick` as a spreadsheet would: for each question, by a student's name."""
+    with open(table, encoding="utf8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        row["tick"] = ticks[row["question"].partition("/")[2]](row["student"])
+    with open(table, "w", encoding="utf8", newline="") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
+    """Printed, ticked, merged, appealed and exported, beside homework on the same questions."""
+    folder = tmp_path / "my-course"
+    place = folder / "marks" / "sittings" / "quiz"
+    (folder / "roster.csv").write_text("student\n" + "".join(f"s-{n:02}\n" for n in range(30)))
+    edited(
+        folder / "solutions" / "first-steps.ipynb", "worth=1", "worth=1, credit={'authored': 0.5}"
+    )
+    run("term new marks --roster roster.csv")
+    hand_in(folder, "handed-in/s-00/first-steps.ipynb")
+    run("grade handed-in --out marks")
+    assert "first-steps/mean on paper" in run("sitting marks no --questions first-steps/mean", True)
+    command = "sitting marks quiz --questions first-steps/area first-steps/slope"
+    assert "quiz/sheets." in run(command)
+    monkeypatch.setattr(sitting, "BROWSERS", ())
+    assert "print the pages from your browser" in run("sitting marks quiz --paper letter")
+    sheets, markers = ((place / f"{name}.html").read_text() for name in ("sheets", "markers"))
+    assert "size: letter" in sheets and sheets.count("<section") == markers.count("<section") == 30
+    assert "check(" not in sheets and "rectangle" not in sheets and "rectangle" in markers
+    # A letter that no box has enters nothing. Each box is worth what it says.
+    merge = "merge marks marks/sittings/quiz/ticks.csv --grader Ann"
+    ticked(place / "ticks.csv", area=lambda student: "Q", slope=lambda student: "A")
+    assert "a number from 0 to 1, and this is 'Q'" in run(merge, fails=True)
+    ticked(
+        place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
+    )
+    assert "taken in: 60." in run(merge) and "taken in: 0." in run(merge)
+    assert "quiz: 2.5 of 3 points" in run("why s-00 quiz")
+    # Printed once more, the table keeps its ticks, and the answers their decisions.
+    run(command)
+    assert "taken in: 0." in run(merge)
+    (folder / "appeals.csv").write_text("student,question,words\ns-01,first-steps/area,Why?\n")
+    run("merge marks appeals.csv")
+    page = folder / "marks" / "feedback" / "s-01" / "quiz.html"
+    assert "area of the rectangle" in page.read_text() and "Your appeal" in page.read_text()
+    ticked(
+        place / "ticks.csv", area=lambda name: "b" if name == "s-00" else "A", slope=lambda _: "A"
+    )
+    assert "9 students would gain" in run(merge, fails=True)
+    run("regrade marks --yes")
+    # Work handed in after it is graded as ever, and the sheets stay what they are.
+    hand_in(folder, "handed-in/s-01/first-steps.ipynb")
+    assert "28 handed in nothing" in run("grade handed-in --out marks")
+    # Homework on the same questions counts what the sitting shows, and a little more.
+    (folder / "book.csv").write_text(BOOK.replace("ada", "s-00").replace("ben", "s-01"))
+    columns = "column = 'First steps'\nhomework-cap = 0.25\n"
+    edited(
+        folder / "marks" / "term.toml", '"quiz"]\n', f'"quiz"]\n{columns}homework-factor = 0.5\n'
+    )
+    assert "has both: choose one" in run("term marks", fails=True)
+    edited(folder / "marks" / "term.toml", "homework-factor = 0.5\n", "")
+    run("regrade marks")
+    run("term marks")
+    assert "plus 25 % of the points" in (folder / "marks" / "report.html").read_text()
+    run("export marks --lms book.csv --assignment first-steps")
+    assert '"Lee, Ada",1,,s-00,x,5.75' in (folder / "book-filled.csv").read_text()
+    run("export marks --lms book.csv --assignment quiz")
+    assert '"Moe, Ben",2,,s-01,x,6' in (folder / "book-filled.csv").read_text()

@@ -66,8 +66,7 @@ def own_weight(worker, name):
     """The rule, written down a second time; which weight a number has is drawn."""
     digest = hashlib.sha256(f"\n{name}/load\n{worker}".encode()).digest()
     rule = Rule(f"{name}/load", len(WEIGHTS), {"weight": WEIGHTS})
-    number = int.from_bytes(digest[:8], "big") % len(WEIGHTS)
-    return rule.parameters(number)["weight"]
+    return rule.parameters(int.from_bytes(digest[:8], "big") % len(WEIGHTS))["weight"]
 
 
 class Story:
@@ -208,8 +207,11 @@ class Story:
             if isinstance(event, Given):
                 for question, part in event.marks.items():
                     own = question.partition("/")[2]
-                    marks = (part.points, part.worth, part.outcome)
-                    found[event.student, event.assignment, own] = marks
+                    found[event.student, event.assignment, own] = (
+                        part.points,
+                        part.worth,
+                        part.outcome,
+                    )
         return found
 
     # -- what must come of it
@@ -230,14 +232,15 @@ class Story:
 
     def comes_to(self, worker, name, attempt, marks):
         """What an attempt earns, or may yet, lateness included."""
-        first = MEMBERS[0] if worker == TEAM else worker
-        excused = self.extended.get((first, name)) == "excused"
+        excused = self.extended.get(((MEMBERS[0] if worker == TEAM else worker), name)) == "excused"
         points = sum(points + waits * worth for points, worth, waits in marks.values())
         return round(points * (1 - (0 if excused else self.lost(worker, name, attempt))), 4)
 
     def hours_late(self, worker, name, attempt):
-        members = MEMBERS if worker == TEAM else (worker,)
-        more = [self.extended.get((member, name), 0) for member in members]
+        more = [
+            self.extended.get((member, name), 0)
+            for member in (MEMBERS if worker == TEAM else (worker,))
+        ]
         extra = max([hours for hours in more if hours != "excused"], default=0)
         return (attempt.when - DUE[name]) / datetime.timedelta(hours=1) - extra
 
@@ -312,8 +315,9 @@ class Story:
     def snapshot(self, worker, name, attempt):
         """An attempt as it is judged now."""
         answers = {question: getattr(attempt, question) for question in QUESTIONS}
-        machine = self.machine(worker, name, answers)
-        return SimpleNamespace(answers=answers, when=attempt.when, machine=machine)
+        return SimpleNamespace(
+            answers=answers, when=attempt.when, machine=self.machine(worker, name, answers)
+        )
 
     def regrade(self, yes, crash=None):
         words = [self.place / "marks", "--solutions", self.place / "solutions", *yes]
@@ -470,8 +474,7 @@ class Story:
         for key in self.dice.sample(sorted(self.given), min(2, len(self.given))):
             question, credit = self.dice.choice(QUESTIONS), self.dice.choice([0, 0.25, 1])
             record = Store(self.place / "marks").read(*key)
-            name = f"{key[1]}/{question}"
-            Journal(folder).add(record, name, credit, who="Cem")
+            Journal(folder).add(record, f"{key[1]}/{question}", credit, who="Cem")
             self.decided[(*key, question)] = SimpleNamespace(
                 answer=self.graded[key].answers[question], credit=credit, who="Cem"
             )
@@ -500,8 +503,9 @@ class Story:
                 after=there.id if there else "",
             )
             journal.append([decision], collisions=True)
-            answer = self.graded[key].answers[question]
-            self.decided[(*key, question)] = SimpleNamespace(answer=answer, credit=1, who="Ben")
+            self.decided[(*key, question)] = SimpleNamespace(
+                answer=self.graded[key].answers[question], credit=1, who="Ben"
+            )
 
     def act_page(self, crash, yes):
         """A tutor decides on the page, and stops it."""
@@ -514,8 +518,9 @@ class Story:
         def serve(out, grader, **more):
             journal, record = Journal(self.place / "marks"), Store(out).read(*key)
             there = journal.standing().decisions.get((*key, name))
-            after = there.id if there else ""
-            decision = journal.decision(record, name, credit, who=grader, after=after)
+            decision = journal.decision(
+                record, name, credit, who=grader, after=(there.id if there else "")
+            )
             journal.append([decision], collisions=True)
             raise KeyboardInterrupt
 
@@ -539,8 +544,7 @@ class Story:
             with open(self.place / "book.csv", "w", newline="") as file:
                 csv.writer(file).writerows(rows)
         book = self.place / "book.csv"
-        words = ["--lms", book, "--filled", book]
-        self.run("export", self.place / "marks", *words, crash=crash)
+        self.run("export", self.place / "marks", *["--lms", book, "--filled", book], crash=crash)
         for student in STUDENTS:
             for name in graded:
                 cell = student, name
@@ -557,8 +561,7 @@ class Story:
 
     def column(self, student, name):
         """What is written for a student; nothing where a person has still to decide."""
-        worker = TEAM if student in MEMBERS else student
-        key = worker, name
+        key = (TEAM if student in MEMBERS else student), name
         if self.extended.get((student, name)) == "excused":
             return None
         if key not in self.given:

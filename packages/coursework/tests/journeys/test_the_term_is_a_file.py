@@ -217,8 +217,7 @@ def test_more_time_is_for_whom_it_is(course):
 
 def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     collected(course, "ada", "hw1")
-    damaged = collected(course, "ben", "hw1")
-    (damaged / "hw1.ipynb").write_text("no notebook")
+    (collected(course, "ben", "hw1") / "hw1.ipynb").write_text("no notebook")
     course.grade()
     # Another assignment in another folder forgets nothing of it.
     other = course.place / "later"
@@ -237,8 +236,7 @@ def test_a_mark_tells_its_life(course):
     course.grade()
     course.change("hw2", load=(6, 8))
     course.regrade("--yes")
-    book = book_of(course)
-    course.export(book, "--assignment", "hw2")
+    course.export(book_of(course), "--assignment", "hw2")
     said = course.run("why", "ada", "hw2")
     lines = said.splitlines()
     assert lines[0] == "ada, hw2: 8 of 8 points." and len(lines) <= 10
@@ -341,8 +339,7 @@ def test_gradescopes_own_lists_are_understood(tmp_path):
 
 def test_who_has_no_mark_is_told_why(course):
     collected(course, "ada", "hw1")
-    damaged = collected(course, "ben", "hw1")
-    (damaged / "hw1.ipynb").write_text("no notebook")
+    (collected(course, "ben", "hw1") / "hw1.ipynb").write_text("no notebook")
     write_term(course, "[extensions.dan]", "hw1 = 'excused'")
     course.grade()
     said = course.run("why", "ben", "hw1")

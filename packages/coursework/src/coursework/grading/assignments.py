@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import json
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -56,9 +57,13 @@ class Course:
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")
-        known = {name: about.notebooks for name, about in (term or Term()).assignments.items()}
-        known = known or {stem: (stem,) for stem in self.sources}
-        used = {stem for stems in known.values() for stem in stems}
+        of_term = (term or Term()).assignments
+        known = {name: about.notebooks for name, about in of_term.items()}
+        #: The questions of those that are answered on paper: no notebook answers them.
+        self.sittings = {name: one.questions for name, one in of_term.items() if one.questions}
+        homework = [name for name in known if name not in self.sittings] or list(self.sources)
+        known |= {stem: (stem,) for stem in homework if stem not in known}
+        used = {stem for name in homework for stem in known[name]}
         if unknown := sorted(used - set(self.sources)):
             raise NothingToGrade(
                 f"There is no notebook with solutions {', '.join(map(repr, unknown))} in {folder}; "
@@ -68,13 +73,20 @@ class Course:
             raise NothingToGrade(
                 f"There is no assignment {strangers[0]!r}; there are {', '.join(known)}."
             )
-        self.assignments = {name: known[name] for name in known if not only or name in only}
+        self.assignments = {name: known[name] for name in known if name in (only or homework)}
         known = (
             self.assignments | known | {stem: (stem,) for stem in self.sources if stem not in used}
         )
         asked = {stem: list(names_asked(path)) for stem, path in self.sources.items()}
+        there = list(itertools.chain(*asked.values()))
+        if lost := set(itertools.chain(*self.sittings.values())).difference(there):
+            raise NothingToGrade(
+                f"There is no question {min(lost)!r}; there are {', '.join(there)}."
+            )
         self.names = {
-            name: [question for stem in stems for question in asked[stem]]
+            name: list(
+                self.sittings.get(name, [question for stem in stems for question in asked[stem]])
+            )
             for name, stems in known.items()
         }
 
@@ -84,7 +96,11 @@ class Course:
         """
         by_cell = {name.replace("/", "-"): name for name in self.all_questions}
         named = {by_cell.get(name.removeprefix("check-"), name) for name in notebook.named}
-        counts = {assignment: len(named & set(names)) for assignment, names in self.names.items()}
+        counts = {
+            assignment: len(named & set(names))
+            for assignment, names in self.names.items()
+            if assignment not in self.sittings
+        }
         # The one it names most of; and any other of which it names half:
         # some work in a single notebook.
         first = max(counts, key=lambda name: counts[name])
@@ -95,7 +111,7 @@ class Course:
                 if name == first or 2 * count >= len(self.names[name]) > 0
             ]
         for place in (notebook.folder, notebook.file.rpartition("/")[2]):
-            if fitting := [name for name in self.names if name in place]:
+            if fitting := [name for name in counts if name in place]:
                 return [max(fitting, key=len)]
         if notebook.of_assignment:
             return [notebook.of_assignment]
@@ -108,9 +124,11 @@ class Course:
         stems = sorted(
             {stem for assignment in assignments for stem in self.assignments[assignment]}
         )
-        secret = secret_beside(self.folder)
         questions = marking.load_questions(
-            [self.sources[stem] for stem in stems], results, secret, self.edition
+            [self.sources[stem] for stem in stems],
+            results,
+            secret_beside(self.folder),
+            self.edition,
         )
         return {
             assignment: {name: questions[name] for name in self.names[assignment]}

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import getpass
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -110,6 +112,29 @@ ARGUMENTS = {
             YES,
         ],
     ),
+    "sitting": (
+        "print questions to answer on paper, each student's own, and pages for markers",
+        [
+            OUT,
+            _argument("name", metavar="NAME", help="the assignment's name, such as quiz-1"),
+            _argument(
+                "--questions",
+                nargs="+",
+                default=[],
+                metavar="NOTEBOOK/QUESTION",
+                help="the questions (default: those in term.toml)",
+            ),
+            _argument("--roster", metavar="FILE.csv", help="the students, if not in term.toml"),
+            _argument(
+                "--paper",
+                choices=["a4", "letter"],
+                default="a4",
+                help="size of the paper (default: %(default)s)",
+            ),
+            SOLUTIONS,
+            YES,
+        ],
+    ),
     "merge": (
         "add another grader's decisions, or a table of decisions or appeals",
         [
@@ -119,8 +144,8 @@ ARGUMENTS = {
                 nargs="+",
                 metavar="FILE",
                 help="the journal.jsonl in their folder of marks; a copy of undecided.csv with "
-                "credit filled in; or a table of appeals with the columns student, question and "
-                "words",
+                "credit filled in, or the ticks.csv of a sitting; or a table of appeals with the "
+                "columns student, question and words",
             ),
             GRADER,
             DRY_RUN,
@@ -269,7 +294,6 @@ def grade(
     from .execution.sandbox import WeakIsolation, WorkerDied
     from .grade import grade as grade_class
     from .running import Running
-    from .store import InUse
     from .workers import processors
 
     try:
@@ -286,8 +310,7 @@ def grade(
             ),
             agree=_agree(out, yes),
         )
-    except (InUse, WeakIsolation, WorkerDied, ValueError) as error:
-        # NothingToGrade and BadRoster are such.
+    except (WeakIsolation, WorkerDied) as error:
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
         sys.exit("\nStopped. The same command goes on from here.")
@@ -321,11 +344,10 @@ def _agree(out: str, yes: bool) -> Agree:
 def _bring_in_decisions(out: str, yes: bool) -> None:
     """Bring what was decided, and is kept already, into the marks."""
     from .grade import bring_in_decisions
-    from .store import InUse
 
     try:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
-    except (InUse, ValueError) as error:
+    except ValueError as error:
         sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
 
 
@@ -342,47 +364,56 @@ def regrade(
     yes: bool,
 ) -> None:
     from .grade import regrade as regrade_class
-    from .store import InUse
 
-    try:
-        laboratory = regrade_class(
-            out, solutions=solutions, dry_run=dry_run, agree=_agree(out, yes)
-        )
-    except (InUse, ValueError) as error:  # NothingToGrade and BadPolicy are such
-        sys.exit(f"coursework regrade: {error}")
+    laboratory = regrade_class(out, solutions=solutions, dry_run=dry_run, agree=_agree(out, yes))
     if dry_run:
-        said = [*laboratory.lines(), *laboratory.first_decided()]
-        print(*said, f"{len(laboratory.moves)} would move.", sep="\n")
+        print(
+            *[*laboratory.lines(), *laboratory.first_decided()],
+            f"{len(laboratory.moves)} would move.",
+            sep="\n",
+        )
     else:
         _say_moved(laboratory)
 
 
 def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool) -> None:
-    import getpass
-
     from .review import review as serve
 
     def say(address: str) -> None:
         print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
 
     try:
-        serve(
-            out,
-            grader or getpass.getuser(),
-            hide_names=hide_names,
-            port=port,
-            say=say,
-        )
-    except ValueError as error:
-        sys.exit(f"coursework review: {error}")
+        serve(out, grader or getpass.getuser(), hide_names=hide_names, port=port, say=say)
     except KeyboardInterrupt:
         print("\nThe decisions are brought into the marks and pages.")
         _bring_in_decisions(out, yes)
 
 
-def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes: bool) -> None:
-    from pathlib import Path
+def sitting(
+    out: str,
+    name: str,
+    questions: Sequence[str],
+    roster: str | None,
+    paper: str,
+    solutions: str | None,
+    yes: bool,
+) -> None:
+    from .sitting import sitting as prepare
 
+    made = prepare(
+        out,
+        name,
+        questions,
+        paper=paper,
+        roster=roster,
+        solutions=solutions,
+        agree=_agree(out, yes),
+    )
+    for what, path in zip(("For students", "For markers", "The table of ticks"), made):
+        print(f"{what}: {path}")
+
+
+def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes: bool) -> None:
     from .judging.journal import Journal
     from .store import Store
 
@@ -393,24 +424,19 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
             "journal: leave it out."
         )
     journal, store = Journal(Path(out), dry_run), Store(out)
-    try:
-        for path in files:
-            if path.endswith(".jsonl"):
-                _merge_journal(journal, store, path, dry_run)
-            else:
-                entered, unused = journal.take_in_table(Path(path), store.all(), grader)
-                print(f"From {path}, {'would be ' * dry_run}taken in: {entered}.")
-                for line in unused:
-                    print(f"  not used: {line}")
-    except ValueError as error:
-        sys.exit(f"coursework merge: {error}")
+    for path in files:
+        if path.endswith(".jsonl"):
+            _merge_journal(journal, store, path, dry_run)
+        else:
+            entered, unused = journal.take_in_table(Path(path), store.all(), grader)
+            print(f"From {path}, {'would be ' * dry_run}taken in: {entered}.")
+            for line in unused:
+                print(f"  not used: {line}")
     if not dry_run:
         _bring_in_decisions(out, yes)
 
 
 def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> None:
-    from pathlib import Path
-
     from .judging.journal import Decision, digest_of_answer
     from .tables import in_a_line
 
@@ -452,24 +478,22 @@ def term(
     roster: str | None,
     earlier: Sequence[str],
 ) -> None:
-    from pathlib import Path
-
     from .judging.term import FILE, new_term, read_term
     from .reporting.course_pages import FOLDER, write_course
     from .store import Store
 
-    try:
-        if new:
-            from ..authoring.course import find_course
+    if new:
+        from ..authoring.course import find_course
 
-            print(new_term(out, Path(solutions or find_course().sources), roster))
-            return
-        if roster:
-            sys.exit("coursework term: --roster is for term new; it stands in term.toml then.")
-        said = write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier)
-    except ValueError as error:
-        sys.exit(f"coursework term: {error}")
-    print(*said, f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it", sep="\n")
+        print(new_term(out, Path(solutions or find_course().sources), roster))
+        return
+    if roster:
+        sys.exit("coursework term: --roster is for term new; it stands in term.toml then.")
+    print(
+        *write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier),
+        f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it",
+        sep="\n",
+    )
 
 
 def export(
@@ -488,43 +512,34 @@ def export(
 
     if not (lms or feedback or nbgrader):
         sys.exit("coursework export: name what to write: --lms, --feedback or --nbgrader.")
-    try:
-        store, book = Store(out), lms or ""
-        target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
-        for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
-            marks = gradebooks.Marks(store, one, as_of=as_of)
-            print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
-            # The next column is filled where this one was.
-            book = book if dry_run else target
-        if dry_run:
-            return
-        marks = gradebooks.Marks(store, assignment, as_of=as_of)
-        if feedback:
-            written = gradebooks.write_feedback(feedback, marks, store)
-            print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
-        if nbgrader:
-            gradebooks.write_nbgrader(nbgrader, marks)
-    except ValueError as error:  # CannotExport, BadTerm and BadRoster are such
-        sys.exit(f"coursework export: {error}")
+    store, book = Store(out), lms or ""
+    target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
+    for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
+        marks = gradebooks.Marks(store, one, as_of=as_of)
+        print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
+        # The next column is filled where this one was.
+        book = book if dry_run else target
+    if dry_run:
+        return
+    marks = gradebooks.Marks(store, assignment, as_of=as_of)
+    if feedback:
+        written = gradebooks.write_feedback(feedback, marks, store)
+        print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
+    if nbgrader:
+        gradebooks.write_nbgrader(nbgrader, marks)
 
 
 def why(student: str, assignment: str, marks: str) -> None:
     from .reporting.life import life_of
     from .store import Store
 
-    try:
-        print(*life_of(Store(marks), student, assignment), sep="\n")
-    except ValueError as error:
-        sys.exit(f"coursework why: {error}")
+    print(*life_of(Store(marks), student, assignment), sep="\n")
 
 
 def gradescope(marks: str, out: str, solutions: str | None, assignment: str) -> None:
     from .export.gradescope import write_autograder
 
-    try:
-        stems = write_autograder(out, marks, assignment, solutions=solutions)
-    except (OSError, ValueError) as error:
-        sys.exit(f"coursework gradescope: {error}")
+    stems = write_autograder(out, marks, assignment, solutions=solutions)
     print(
         f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and "
         "show it to nobody."
@@ -536,7 +551,6 @@ def cluster(
 ) -> None:
     import os
     from importlib.util import find_spec
-    from pathlib import Path
 
     from .execution import cluster_keys
     from .workers import processors
@@ -544,30 +558,27 @@ def cluster(
     folder = Path(keys).absolute()
     if find_spec("distributed") is None:
         sys.exit("coursework cluster: install what it needs: python -m pip install distributed")
-    try:
-        if worker:
-            command = cluster_keys.worker(folder, worker, workers or processors())
-        else:
-            if not host:
-                sys.exit(
-                    "coursework cluster: say at which address of this machine the others reach it: "
-                    "--host 192.0.2.7."
-                )
-            made = cluster_keys.make_keys(folder)
-            command = cluster_keys.scheduler(folder, host, port)
-            address = f"tls://{host}:{port}"
-            print(
-                f"{'New keys are' if made else 'The keys are'} in {folder}: whoever has them runs "
-                "code on this cluster.\n"
-                f"On each machine that is to work, with a copy of that folder:\n"
-                f"  coursework cluster --keys {folder.name} --worker {address}\n"
-                f"Then, where the notebooks are:\n"
-                f"  coursework grade ... --scheduler {address} --keys {folder.name}\n"
-                "Stop it with Ctrl+C.",
-                flush=True,
+    if worker:
+        command = cluster_keys.worker(folder, worker, workers or processors())
+    else:
+        if not host:
+            sys.exit(
+                "coursework cluster: say at which address of this machine the others reach it: "
+                "--host 192.0.2.7."
             )
-    except cluster_keys.NoKeys as error:
-        sys.exit(f"coursework cluster: {error}")
+        made = cluster_keys.make_keys(folder)
+        command = cluster_keys.scheduler(folder, host, port)
+        address = f"tls://{host}:{port}"
+        print(
+            f"{'New keys are' if made else 'The keys are'} in {folder}: whoever has them runs "
+            "code on this cluster.\n"
+            f"On each machine that is to work, with a copy of that folder:\n"
+            f"  coursework cluster --keys {folder.name} --worker {address}\n"
+            f"Then, where the notebooks are:\n"
+            f"  coursework grade ... --scheduler {address} --keys {folder.name}\n"
+            "Stop it with Ctrl+C.",
+            flush=True,
+        )
     os.execv(command[0], command)
 
 
@@ -575,6 +586,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "grade": grade,
     "regrade": regrade,
     "review": review,
+    "sitting": sitting,
     "merge": merge,
     "term": term,
     "export": export,

@@ -132,8 +132,7 @@ class Desk:
                     line: one for line, one in asked.contract.rubric.items() if one is not None
                 },
             )
-            judged = replace(case.own, judged=asked.contract.version)
-            cases[name] = replace(case, own=judged)
+            cases[name] = replace(case, own=replace(case.own, judged=asked.contract.version))
         return with_decisions(replace(record, cases=cases, marks=marks), self.standing)
 
     def candidate(self, record: Record, judged: Callable[[Record], Record]) -> Record:
@@ -147,9 +146,11 @@ class Desk:
             for one in self.store.attempts(record.student, record.assignment).values()
             if handed_in.issuperset(notebook.sha256 for notebook in one.notebooks)
         ]
-        if self.term.attempts != BEST or len(attempts) < 2:
-            return judged(record)
-        return self.best([judged(one) for one in attempts])
+        return (
+            judged(record)
+            if self.term.attempts != BEST or len(attempts) < 2
+            else self.best([judged(one) for one in attempts])
+        )
 
     def best(self, attempts: Sequence[Record]) -> Record:
         """The attempt that comes to most, or may yet, lateness included; it says why the others do
@@ -271,7 +272,12 @@ def grade(
         foreign = say(
             handed_in,
             desk.term,
-            {one.student for one in desk.journal.events if isinstance(one, Given)},
+            {
+                event.student
+                for event in desk.journal.events
+                # Everybody has a sheet of a sitting: that is no work handed in.
+                if isinstance(event, Given) and event.assignment not in desk.term.sittings
+            },
             desk.store.folder,
             desk.show,
         )
@@ -457,8 +463,11 @@ def regrade(
             raise NothingToGrade(f"There are no records in {desk.store.folder}.")
         course = Course(solutions, desk.term, names)
         desk.ask(course, names, closing)
-        candidates = (desk.candidate(record, desk.marked) for record in desk.store.all())
-        laboratory = desk.settle(candidates, REJUDGED, dry_run)
+        laboratory = desk.settle(
+            (desk.candidate(record, desk.marked) for record in desk.store.all()),
+            REJUDGED,
+            dry_run,
+        )
         if not dry_run and laboratory.agreed:
             desk.report(course)
     return laboratory
@@ -473,7 +482,8 @@ def bring_in_decisions(
         def decided(record: Record) -> Record:
             return with_decisions(record, desk.standing)
 
-        candidates = (desk.candidate(record, decided) for record in desk.store.all())
-        laboratory = desk.settle(candidates, DECIDED)
+        laboratory = desk.settle(
+            (desk.candidate(record, decided) for record in desk.store.all()), DECIDED
+        )
         desk.report()
     return laboratory

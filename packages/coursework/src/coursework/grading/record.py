@@ -19,10 +19,11 @@ class Answer(AsJson):
     Attributes
     ----------
     outcome : str
-        ``"recorded"``, ``"unreadable"``, ``"missing"``, or how reading it was stopped.
+        ``"recorded"``, ``"unreadable"``, ``"missing"``, ``"on paper"``, or how reading it was
+        stopped.
     plain : Plain or None
     why : str or None
-        It is unreadable.
+        It is unreadable; or whose paper it is on.
     error : str or None
         With which reading it was stopped.
     source : str or None
@@ -349,8 +350,9 @@ def read_result(result: Result, file: str) -> tuple[RunNotebook, dict[str, Answe
     ------
     Misread
     """
-    ran = RunNotebook.from_json({**result, "file": file, "sha256": ""}, file)
-    return ran, Fields(result, file).get("answers", by_name(Answer.from_json))
+    return RunNotebook.from_json({**result, "file": file, "sha256": ""}, file), Fields(
+        result, file
+    ).get("answers", by_name(Answer.from_json))
 
 
 #: An answer of which the sandbox says nothing.

@@ -127,9 +127,14 @@ class Marks:
         moment = as_of or datetime.datetime.now(datetime.UTC)
         for student in sorted(people | set(self.students)):
             own = {record.assignment: record for record in self.students.get(student, ())}
+            sat = {
+                name: self.given[student, name].marks
+                for name in term.sittings
+                if (student, name) in self.given
+            }
             for name in self.assignments:
                 self.results[student, name] = result_of(
-                    student, name, own.get(name), term, worth, moment
+                    student, name, own.get(name), term, worth, moment, sat
                 )
         self.unknown = unknown_times(self.results.values(), term)
 
@@ -168,18 +173,18 @@ class Marks:
 
     def mark(self, student: str) -> Given:
         """What was given for the one assignment."""
-        return self.given[self.term.group_of(student), self.assignment]
+        return self.given[self.term.group_of(student, self.assignment), self.assignment]
 
     def points(self, student: str) -> float:
-        penalty = self.results[student, self.assignment].penalty
-        return self.mark(student).points * (1 - penalty)
+        result = self.results[student, self.assignment]
+        return (self.mark(student).points - result.held_back) * (1 - result.penalty)
 
     def appeals(self, student: str) -> list[str]:
         """The questions of a student against whose marks an appeal is open."""
         return [
             question
             for (whose, assignment, question), appeals in self.standing.appeals.items()
-            if whose == self.term.group_of(student)
+            if whose == self.term.group_of(student, assignment)
             and assignment in self.assignments
             and any(appeal.is_open for appeal in appeals)
         ]
@@ -575,8 +580,7 @@ def _is_number(there: str) -> bool:
 
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Of those without a record: who handed in only what was refused, and who nothing."""
-    refused = refused_of(store)
-    known = {_signs(one.student) for one in refused if one.student}
+    known = {_signs(one.student) for one in refused_of(store) if one.student}
     damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
@@ -753,11 +757,18 @@ def write_nbgrader(path: str | Path, marks: Marks) -> None:
     """Write nbgrader's table of grades."""
     rows = []
     for (student, assignment), result in sorted(marks.results.items()):
-        given = marks.given.get((marks.term.group_of(student), assignment))
+        given = marks.given.get((marks.term.group_of(student, assignment), assignment))
         if given or (result.state == "missing" and result.due):
-            raw, worth = (given.points, given.worth) if given else (0, result.worth)
-            lost = round(raw * result.penalty, 4)
-            points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
+            raw, worth = (
+                (given.points - result.held_back if given else 0),
+                given.worth if given else result.worth,
+            )
+            points = (
+                raw,
+                round(raw * result.penalty, 4),
+                round(raw * (1 - result.penalty), 4),
+                worth,
+            )
             rows.append((assignment, "", "", student, "", "", "", *points))
     write(path, table(NBGRADER, rows), private=True)
 

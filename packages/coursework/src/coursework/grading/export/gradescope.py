@@ -215,9 +215,14 @@ def run(home: Path = HOME) -> None:
             return _say(results, str(error))
         store = Store(out)
         if store.read(student, assignment) is None:
-            refused = [f"{Path(one.file).name}: {one.why}" for one in refused_of(store)]
             return _say(
-                results, "\n".join(["There was no notebook that could be graded.", *refused])
+                results,
+                "\n".join(
+                    [
+                        "There was no notebook that could be graded.",
+                        *[f"{Path(one.file).name}: {one.why}" for one in refused_of(store)],
+                    ]
+                ),
             )
         write_gradescope(results, Marks(store), student)
 
@@ -236,8 +241,7 @@ def prepare(home: Path = HOME) -> None:
     from ..assignments import Course
 
     term = term_of(home / "source")
-    course = Course(home / "source" / "solutions", term)
-    course.questions(term.assignments, home)
+    Course(home / "source" / "solutions", term).questions(term.assignments, home)
 
 
 if __name__ == "__main__":

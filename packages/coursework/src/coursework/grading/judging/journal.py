@@ -538,8 +538,9 @@ class Journal:
                 if state == RAISED
                 else "Say why it is rejected."
             )
-        first = of.id if of else ""
-        one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
+        one = Appeal(
+            **_on(record, question) | more, state=state, words=words, appeal=(of.id if of else "")
+        )
         self.append([one], collisions=True)
         return one
 
@@ -715,9 +716,9 @@ class Journal:
         Parameters
         ----------
         path : path
-            A copy of ``undecided.csv``, with the column ``credit`` filled in: each line is bound
-            to the answer that it was written for. Or a table of appeals, with the columns
-            ``student``, ``question`` and ``words``.
+            A copy of ``undecided.csv``, with the column ``credit`` filled in, or the table of a
+            sitting, with the column ``tick``: each line is bound to the answer that it was written
+            for. Or a table of appeals, with the columns ``student``, ``question`` and ``words``.
         records : iterable of Record
 
         Returns
@@ -756,7 +757,11 @@ class Journal:
             f"from {path.name}",
         )
         for number, row in rows:
-            credit = _credit(row["credit"], f"{path}, line {number}")
+            # The cell of a box says its share of the points, and then its words.
+            share, _, words = row.get(row.get("tick", "").casefold() or "-", "").partition(": ")
+            credit = _credit(
+                (row["credit"] or share or row.get("tick", "")), f"{path}, line {number}"
+            )
             if credit is None:
                 continue
             where = f"line {number}, {as_written(row.get('student', '')) or row['id']}"
@@ -769,7 +774,11 @@ class Journal:
                 if there.who != who:
                     unused.append(f"{where}: {there.who} has decided, and gave {there.credit}")
                     continue
-                if (there.credit, there.comment) == (credit, row.get("comment", "")):
+                if (there.credit, there.comment, there.rubric) == (
+                    credit,
+                    row.get("comment", ""),
+                    (words,) if words else there.rubric,
+                ):
                     continue
             wanted.append(
                 self.decision(
@@ -778,6 +787,7 @@ class Journal:
                     credit,
                     who=who,
                     comment=row.get("comment", ""),
+                    rubric=[words] if words else [],
                     why=why,
                     contract=row["version"],
                 )
@@ -888,8 +898,12 @@ def _is_cut(line: bytes) -> bool:
 
 def _line(one: Event) -> bytes:
     said = {"event": type(one).__name__.lower(), **one.as_json()}
-    line = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
-    return line.encode("utf8", "backslashreplace") + b"\n"
+    return (
+        json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False).encode(
+            "utf8", "backslashreplace"
+        )
+        + b"\n"
+    )
 
 
 def _sum(said: Mapping[str, Json]) -> str:

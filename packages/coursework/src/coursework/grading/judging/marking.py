@@ -136,8 +136,10 @@ def of_student(
             if before and contracts:
                 case = case_of(name, [variants, *before], identity, contracts, shows)
         others = [one for one in case.others if one.variant != today.own.variant]
-        by_others = replace(case, others=(*others, today.own))
-        own[name], cases[name] = asked_of(name, variants, by_others, contracts), case
+        own[name], cases[name] = (
+            asked_of(name, variants, replace(case, others=(*others, today.own)), contracts),
+            case,
+        )
     return own, cases
 
 
@@ -210,8 +212,10 @@ def load_questions(
         places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
-        found = questions_of(path, secret, edition)
-        as_json = {name: [one.as_json() for one in those] for name, those in found.items()}
+        as_json = {
+            name: [one.as_json() for one in those]
+            for name, those in questions_of(path, secret, edition).items()
+        }
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
@@ -229,10 +233,11 @@ def load_questions(
                 [AuthorError],
             )
         )
-    questions: dict[str, tuple[Contract, ...]] = {}
-    for place in places.values():
-        questions.update(questions_in(place))
-    return questions
+    return {
+        name: variants
+        for place in places.values()
+        for name, variants in questions_in(place).items()
+    }
 
 
 #: Of each question with variants, all lists of them by which this class was graded.
@@ -247,8 +252,9 @@ def earlier_variants(
     """
     path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
     if path.exists():
-        read_lists = by_name(many(many(Contract.from_json)))
-        lists |= read_lists(json.loads(path.read_text("utf8")), str(path))
+        lists |= by_name(many(many(Contract.from_json)))(
+            json.loads(path.read_text("utf8")), str(path)
+        )
     earlier: dict[str, list[Sequence[Contract]]] = {}
     before = dict(lists)
     for name, variants in questions.items():
@@ -454,8 +460,11 @@ def mark_with_siblings(
     found = mark(name, question, answers.get(name, MISSING), finished, limited)
     found, had = replace(found, tries=known.tries if known else None), known.help if known else ""
     for sibling, other in question.second_chances.items():
-        helped = sibling in remembered and remembered[sibling].help
-        if sibling in answers and not helped and (had or found.outcome != "correct"):
+        if (
+            sibling in answers
+            and not (sibling in remembered and remembered[sibling].help)
+            and (had or found.outcome != "correct")
+        ):
             if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
                 return _by_a_sibling(question.contract, found, sibling)
     if found.outcome == "correct" and had and (question.siblings or question.second_chances):
@@ -485,9 +494,12 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
         f"`{sibling}` was solved without help, and the question itself was not answered right: a "
         "person decides."
     )
-    messages = (*found.messages, said)
     return replace(
-        found, outcome="undecided", note="by a sibling alone", points=0, messages=messages
+        found,
+        outcome="undecided",
+        note="by a sibling alone",
+        points=0,
+        messages=(*found.messages, said),
     )
 
 
@@ -515,6 +527,8 @@ def judge(
             f" under the name `{question.contract.variable}`" if question.contract.variable else ""
         )
         return Reply(name, "not attempted", "missing", [f"No answer was found{variable}."]), ""
+    if state == "on paper":
+        return _undecided(name, "on paper", "A person marks this sheet."), ""
     if state == "unreadable" and answer.why not in CUT_SHORT:
         return Reply(name, "invalid", "unreadable", [answer.why or ""]), ""
     if state != "recorded":

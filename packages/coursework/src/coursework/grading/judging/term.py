@@ -18,9 +18,10 @@ from typing import NamedTuple, TypeVar
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from ..reading import from_table
-from ..record import Record
+from ..record import Mark, Record
 from ..submissions.intake import Notebook, as_time
 from ..submissions.roster import Roster
+from .journal import Part
 from .laboratory import Policies
 
 FILE = "term.toml"
@@ -38,6 +39,8 @@ TIMES = (
     "submission time",
 )
 DAY = datetime.timedelta(days=1)
+#: The marks of a student's sittings, by assignment and question.
+Sat = Mapping[str, Mapping[str, Mark | Part]]
 #: Until when, or `EXCUSED`; or by how much all time is longer.
 Extension = datetime.datetime | str | float
 
@@ -53,6 +56,10 @@ class Times(NamedTuple):
     times: Mapping[str, datetime.datetime]
 
 
+#: What is no more than all of it.
+SHARE = {"most": 1}
+
+
 @dataclass(frozen=True)
 class Assignment:
     """What the term says of an assignment.
@@ -66,6 +73,11 @@ class Assignment:
     column : str
         Of the system's gradebook, or how its name begins.
     times : Times or None
+    questions : tuple of str
+        Those of a sitting, which are answered on paper.
+    homework_cap, homework_factor : float or None
+        What homework on the same questions counts once the sitting is marked: at most what the
+        sitting shows plus this share of the points, or this share of what it earned.
     """
 
     notebooks: tuple[str, ...] = ()
@@ -74,10 +86,30 @@ class Assignment:
     weight: float = 1
     column: str = ""
     times: Times | None = None
+    questions: tuple[str, ...] = ()
+    homework_cap: float | None = field(default=None, metadata=SHARE)
+    homework_factor: float | None = field(default=None, metadata=SHARE)
 
+    @property
+    def says(self) -> str:
+        """What a sitting does to homework on the same questions, in a sentence."""
+        if self.homework_cap is not None:
+            return (
+                "Homework on these questions counts at most the share that a student shows here, "
+                f"plus {100 * self.homework_cap:g} % of the points."
+            )
+        if self.homework_factor is not None:
+            share = f"{100 * self.homework_factor:g} %"
+            return f"Once this is marked, homework on these questions counts {share} of its points."
+        return "Homework on these questions counts in full beside it." * bool(self.questions)
 
-#: What is no more than all of it.
-SHARE = {"most": 1}
+    def most(self, mark: Mark | Part, seen: Mark | Part) -> float:
+        """The points that homework on a question counts at most, by what the sitting showed."""
+        if seen.outcome != "decided" or not seen.worth:
+            return mark.points
+        if self.homework_cap is not None:
+            return mark.worth * (seen.points / seen.worth + self.homework_cap)
+        return mark.points * (1 if self.homework_factor is None else self.homework_factor)
 
 
 @dataclass(frozen=True)
@@ -170,9 +202,29 @@ class Term:
     regrading: Policies = Policies()
     gradebook: Mapping[str, str] = field(default_factory=dict)
 
-    def group_of(self, student: str) -> str:
-        """The group that a student works in, or the student."""
-        return next((name for name, members in self.groups.items() if student in members), student)
+    def group_of(self, student: str, assignment: str = "") -> str:
+        """The group that a student works in, or the student, who sits alone in a sitting."""
+        return (
+            student
+            if assignment in self.sittings
+            else next(
+                (name for name, members in self.groups.items() if student in members), student
+            )
+        )
+
+    @property
+    def sittings(self) -> list[str]:
+        """The assignments that are answered on paper."""
+        return [name for name, about in self.assignments.items() if about.questions]
+
+    def held_back(self, assignment: str, marks: Mapping[str, Mark | Part], sat: Sat) -> float:
+        """The points of an assignment that do not count, by the marks of the student's sittings."""
+        lost = 0.0
+        for question, mark in marks.items() if assignment not in self.sittings else ():
+            shown = [(name, seen[question]) for name, seen in sat.items() if question in seen]
+            most = [self.assignments[name].most(mark, seen) for name, seen in shown]
+            lost += mark.points - min([mark.points, *most])
+        return round(lost, 4)
 
     def members(self, name: str) -> tuple[str, ...]:
         """The students of a group, or the one student."""
@@ -260,15 +312,18 @@ class _File:
             return self.moment(where, value)
         if kind is datetime.tzinfo:
             return self.zone
-        if kind is Times:
-            return _times(self.path.parent / self.of(str, "a text", where, value), self.zone)
-        return value
+        return (
+            _times(self.path.parent / self.of(str, "a text", where, value), self.zone)
+            if kind is Times
+            else value
+        )
 
     def unknown(self, where: str, name: str, known: Iterable[str]) -> BadTerm:
         there = f" in {where}" if where else ""
         listed = ", ".join(sorted(known))
-        place = f"{where}.{name}".strip(".")
-        return self.bad(place, f"what is {name!r}{there}? There are {listed}.")
+        return self.bad(
+            f"{where}.{name}".strip("."), f"what is {name!r}{there}? There are {listed}."
+        )
 
     def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
         if not isinstance(value, kind) or isinstance(value, bool):
@@ -325,6 +380,12 @@ attempts = "newest in time"
 # nothing-after-days = 7  # after this, no points
 # marked = 0.1            # the cost if a system says "late", but not when it came
 {assignments}
+# A sitting: questions that students answer on paper; `coursework sitting` writes and prints one.
+# [assignments.quiz]
+# questions = ["{first}/question"]
+# homework-cap = 0.25    # homework on them counts at most the share shown here, plus this, or:
+# homework-factor = 0.5  # once this is marked, homework on them counts this share of its points
+
 # The lowest of these marks does not count for the course:
 # [[drop]]
 # lowest = 1
@@ -430,6 +491,7 @@ def read_term(path: str | Path) -> Term:
         known = f"{IN_TIME!r}, {BEST!r} or {LAST!r}"
         raise file.bad("attempts", f"attempts are {known}, not {term.attempts!r}.")
     _demand_order(file, term)
+    _demand_one_rule(file, term)
     _demand_droppable(file, term)
     _demand_members(file, term)
     extensions = {
@@ -437,7 +499,7 @@ def read_term(path: str | Path) -> Term:
         for student, until in term.extensions.items()
     }
     assignments = {
-        name: replace(about, notebooks=about.notebooks or (name,))
+        name: replace(about, notebooks=about.notebooks or notebooks_of(name, about.questions))
         for name, about in term.assignments.items()
     }
     drop = tuple(replace(rule, of=rule.of or tuple(assignments)) for rule in term.drop)
@@ -447,11 +509,31 @@ def read_term(path: str | Path) -> Term:
     return replace(term, assignments=assignments, drop=drop, extensions=extensions, roster=roster)
 
 
+def notebooks_of(name: str, questions: Iterable[str]) -> tuple[str, ...]:
+    """The notebooks of an assignment: those of the questions of a sitting, or the one of its name.
+
+    >>> notebooks_of("quiz", ["levers/see-saw", "levers/plain"]), notebooks_of("levers", ())
+    (('levers',), ('levers',))
+    """
+    return tuple(dict.fromkeys(question.partition("/")[0] for question in questions)) or (name,)
+
+
 def _demand_order(file: _File, term: Term) -> None:
     for name, about in term.assignments.items():
         if about.opens and about.due and about.opens >= about.due:
             where = f"assignments.{name}"
             raise file.bad(f"{where}.opens", f"{where} is due before it opens.")
+
+
+def _demand_one_rule(file: _File, term: Term) -> None:
+    for name, about in term.assignments.items():
+        rules = [about.homework_cap, about.homework_factor]
+        if rules.count(None) == 0 or rules.count(None) == 1 and not about.questions:
+            why = "is no sitting" if not about.questions else "has both: choose one"
+            raise file.bad(
+                f"assignments.{name}.homework-cap",
+                f"homework-cap and homework-factor are rules of a sitting, and {name} {why}.",
+            )
 
 
 def _demand_droppable(file: _File, term: Term) -> None:
@@ -507,8 +589,10 @@ def in_zone(
     """
     if moment.tzinfo:
         return moment
-    both = [moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1)]
-    return (max if later else min)(both, key=lambda one: one.astimezone(datetime.UTC))
+    return (max if later else min)(
+        [moment.replace(tzinfo=zone, fold=fold) for fold in (0, 1)],
+        key=lambda one: one.astimezone(datetime.UTC),
+    )
 
 
 def delay(
@@ -578,6 +662,8 @@ class Result:
         The share of the points that lateness cost.
     undecided : int
         How many answers wait for a person.
+    held_back : float
+        The points that do not count, since a sitting on the same questions showed less.
     """
 
     assignment: str
@@ -589,11 +675,12 @@ class Result:
     late: bool
     penalty: float
     undecided: int
+    held_back: float = 0
 
     @property
     def counts(self) -> float:
         """The points that count."""
-        return self.points * (1 - self.penalty)
+        return (self.points - self.held_back) * (1 - self.penalty)
 
     @property
     def share(self) -> float:
@@ -627,8 +714,10 @@ def results_of(
     total : float or None
         From 0 to 1; ``None`` as long as nothing counts.
     """
+    sat = {name: records[name].marks for name in term.sittings if name in records}
     results = [
-        result_of(student, name, records.get(name), term, worth, now) for name in term.assignments
+        result_of(student, name, records.get(name), term, worth, now, sat)
+        for name in term.assignments
     ]
     dropped = _dropped(results, term)
     results = [
@@ -644,9 +733,10 @@ def result_of(
     term: Term,
     worth: Mapping[str, float],
     now: datetime.datetime,
+    sat: Sat | None = None,
 ) -> Result:
-    """What one assignment comes to for a student."""
-    about, group = term.assignments.get(name, Assignment()), term.group_of(student)
+    """What one assignment comes to for a student, by the marks of the student's sittings."""
+    about, group = term.assignments.get(name, Assignment()), term.group_of(student, name)
     due = term.due(group, name)
     state, points, late, penalty, when = "counted", 0.0, False, 0.0, None
     if record is None:
@@ -663,8 +753,18 @@ def result_of(
     if term.is_excused(student, name):
         state, late, penalty = EXCUSED, False, 0.0
     full = record.worth if record else worth.get(name, 0)
+    held_back = term.held_back(name, record.marks, sat or {}) if record else 0.0
     return Result(
-        name, state, points, full, due, when, late, penalty, record.undecided if record else 0
+        name,
+        state,
+        points,
+        full,
+        due,
+        when,
+        late,
+        penalty,
+        (record.undecided if record else 0),
+        held_back,
     )
 
 
@@ -708,9 +808,10 @@ def _handed_in(
         found, _ = about.times.roster.find(keys)
         if found is not None and found in about.times.times:
             return about.times.times[found]
-    said = [notebook.handed_in for notebook in record.notebooks]
     moments = (
-        in_zone(datetime.datetime.fromisoformat(one), zone, later=False) for one in said if one
+        in_zone(datetime.datetime.fromisoformat(one), zone, later=False)
+        for one in [notebook.handed_in for notebook in record.notebooks]
+        if one
     )
     return max(moments, key=lambda moment: moment.astimezone(datetime.UTC), default=None)
 

@@ -102,7 +102,7 @@ def write_course(
         records = {
             name: found
             for name in term.assignments
-            if (found := store.read(term.group_of(student), name)) is not None
+            if (found := store.read(term.group_of(student, name), name)) is not None
         }
         results, total = results_of(student, records, term, worth, now)
         _write_student(folder, student, records, results, total, term)
@@ -160,7 +160,7 @@ def _write_student(
     term: Term,
 ) -> None:
     links = {
-        name: f"../../feedback/{file_name(term.group_of(student))}/{file_name(name)}.html"
+        name: f"../../feedback/{file_name(term.group_of(student, name))}/{file_name(name)}.html"
         for name in records
     }
     content = page(

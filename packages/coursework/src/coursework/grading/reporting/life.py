@@ -18,7 +18,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         There are none.
     """
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
-    whose = term.group_of(student)
+    whose = term.group_of(student, assignment)
     key = whose, assignment
     record, given = store.read(*key), (keys := journal.standing().given).get(key)
     expected = term.roster and student in term.roster.people and assignment in term.assignments
@@ -34,16 +34,18 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
     said = [f"{named}, {assignment}: {comes_to}."]
     refused = [one for one in refused_of(store) if one.student in (student, whose)]
-    for one in refused:
-        said.append(f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}")
+    said += [f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}" for one in refused]
     cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():
         when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
         said.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
-    for other in record.superseded if record else ():
-        said.append(f"  does not count: {in_a_line(other.file, 120)}, since {other.why}")
-    now = datetime.datetime.now(datetime.UTC)
-    result = of_term.result_of(student, assignment, record, term, {assignment: 0}, now)
+    said += [
+        f"  does not count: {in_a_line(other.file, 120)}, since {other.why}"
+        for other in (record.superseded if record else ())
+    ]
+    result = of_term.result_of(
+        student, assignment, record, term, {assignment: 0}, datetime.datetime.now(datetime.UTC)
+    )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
     in_time = "in time" if result.handed_in else "nothing says when it came"
     late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time

@@ -21,7 +21,7 @@ from ...checking.reply import OUTCOMES
 from ...checking.writing import answer_as_text
 from ..judging.journal import case_id
 from ..judging.laboratory import PAGE, Laboratory
-from ..judging.term import Term, result_of, term_of
+from ..judging.term import Assignment, Sat, Term, result_of, term_of
 from ..record import Cell, Mark, Record, RunNotebook
 from ..store import Store, file_name, write
 from ..submissions.intake import Refused, refused_of
@@ -86,8 +86,8 @@ class _Assignment:
     What is kept grows with the number of different answers, not with the class.
     """
 
-    def __init__(self) -> None:
-        self.students = self.waiting = 0
+    def __init__(self, says: str = "") -> None:
+        self.says, self.students, self.waiting = says, 0, 0
         self.worth: float = 0
         self.points: Counter[float] = Counter()
         self.titles: dict[str, str] = {}
@@ -119,8 +119,14 @@ class _Assignment:
             if mark.outcome == "undecided":
                 self.waiting += 1
                 if len(self.undecided) < MOST_UNDECIDED:
-                    answer = answer_as_text(record.answer(name).plain)
-                    self.undecided.append((record.student, name, mark.messages, answer))
+                    self.undecided.append(
+                        (
+                            record.student,
+                            name,
+                            mark.messages,
+                            answer_as_text(record.answer(name).plain),
+                        )
+                    )
         for kind in _oddities(record):
             number, names = self.odd.get(kind, (0, []))
             self.odd[kind] = (
@@ -154,8 +160,13 @@ def write_all(store: Store) -> None:
             / file_name(record.student)
             / f"{file_name(record.assignment)}.html"
         )
-        _write_if_new(place, feedback(record, links, term))
-        classes.setdefault(record.assignment, _Assignment()).add(record)
+        sittings = {name: store.read(record.student, name) for name in term.sittings}
+        sat = {name: sheet.marks for name, sheet in sittings.items() if sheet}
+        _write_if_new(place, feedback(record, links, term, sat))
+        classes.setdefault(
+            record.assignment,
+            _Assignment(term.assignments.get(record.assignment, Assignment()).says),
+        ).add(record)
         names.update(dict.fromkeys(record.marks))
     refused = refused_of(store)
     write(store.folder / "grades.csv", grades(store.all(), list(names)))
@@ -234,16 +245,21 @@ def _grades_of(record: Record, names: Sequence[str]) -> list[object]:
 
 
 def feedback(
-    record: Record, links: Mapping[str, str] | None = None, term: Term | None = None
+    record: Record,
+    links: Mapping[str, str] | None = None,
+    term: Term | None = None,
+    sat: Sat | None = None,
 ) -> str:
-    """The page that a student gets; ``links`` are addresses as a course has them."""
+    """The page that a student gets; ``links`` are addresses as a course has them, and ``sat`` the
+    marks of the student's sittings.
+    """
     term = term or Term()
     now = datetime.datetime.now(datetime.UTC)
     (member, *_) = term.members(record.student)
     return page(
         "feedback.html",
         record=record,
-        result=result_of(member, record.assignment, record, term, {}, now),
+        result=result_of(member, record.assignment, record, term, {}, now, sat),
         questions=[
             (
                 name,
@@ -278,21 +294,24 @@ def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
     """
     plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
-    if (
-        not plain
-        or record.marks[name].outcome == "not attempted"
-        or plain["value"][0] == "function"
-    ):
-        return None
-    return plain, answer_as_text(plain)
+    return (
+        None
+        if (
+            not plain
+            or record.marks[name].outcome == "not attempted"
+            or plain["value"][0] == "function"
+        )
+        else (plain, answer_as_text(plain))
+    )
 
 
 def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:
     """The cells of a notebook that did not come to their end, with their numbers."""
-    cells = enumerate(notebook.cells, 1)
-    return [(order, cell) for order, cell in cells if cell.outcome not in ("done", "not run")][
-        :MOST_STOPPED
-    ]
+    return [
+        (order, cell)
+        for order, cell in enumerate(notebook.cells, 1)
+        if cell.outcome not in ("done", "not run")
+    ][:MOST_STOPPED]
 
 
 # --- for the instructor -------------------------------------------------------------------------

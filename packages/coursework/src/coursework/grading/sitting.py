@@ -1,0 +1,260 @@
+"""A sitting: students answer a few questions on paper, each in the student's own variants.
+
+A sitting is an assignment of the term. Its answers are on paper, so all of them wait for a person,
+and what a marker ticks comes back as a decision in the journal, like every other one.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+import shutil
+import string
+import subprocess
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple, TextIO
+
+from markupsafe import Markup
+
+from ..authoring.author import to_page
+from ..checking.catalogue import message
+from ..checking.plain import Plain, Value, parts_of
+from ..checking.reply import plain_text
+from ..checking.variants import text_of
+from ..checking.writing import LONGEST, answer_as_tex, answer_as_text
+from .assignments import Course
+from .grade import Desk, at_desk
+from .judging.contract import Contract
+from .judging.journal import case_id
+from .judging.laboratory import Agree
+from .judging.term import FILE, Assignment, BadTerm, notebooks_of
+from .record import Answer, Record
+from .reporting import pages
+from .reporting.templates_of_pages import page
+from .store import file_name, write
+from .submissions.roster import Roster, cells_in
+from .tables import number, table
+
+FOLDER, TICKS = "sittings", "ticks.csv"
+#: The page size of each paper, as CSS calls it.
+PAPERS = {"a4": "A4", "letter": "letter"}
+#: Browsers that print a page without opening a window.
+BROWSERS = (
+    "chromium-headless-shell",
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+)
+#: More boxes than these nobody reads while marking.
+MOST_BOXES = 8
+#: A row of a formula with more signs than these is wider than half a page.
+WIDE = 32
+
+
+class Box(NamedTuple):
+    """A box that a marker may tick: its letter, the share of the points, and what it says."""
+
+    letter: str
+    share: float
+    says: str
+
+
+class Asked(NamedTuple):
+    """A question of a sitting in one variant, as it is printed."""
+
+    title: str
+    worth: float
+    text: Markup
+    right: Markup
+    wide: bool
+    boxes: list[Box]
+
+
+def sitting(
+    out: str | Path,
+    name: str,
+    questions: Sequence[str],
+    *,
+    paper: str = "a4",
+    roster: str | None = None,
+    solutions: str | Path | None = None,
+    show: TextIO | None = None,
+    agree: Agree = lambda laboratory: True,
+) -> list[Path]:
+    """Print a sitting for everybody in the course, and return the files: one for students, one for
+    markers, and the table of ticks.
+
+    Raises
+    ------
+    ValueError
+        There is no roster, or no such question, or one that nobody can answer on paper.
+    """
+    with at_desk(out, show, agree) as (desk, closing):
+        people = Roster(roster) if roster else desk.term.roster
+        if people is None:
+            raise ValueError("who is in the course? Name a roster in term.toml, or use --roster.")
+        is_new = _has_entered(desk, name, tuple(questions))
+        desk.ask(course := Course(solutions, desk.term, [name]), [name], closing)
+        for question, (contract, *_) in desk.questions[name].items():
+            if contract.plain is None:
+                raise ValueError(f"nobody can answer {question} on paper: it asks for a function.")
+        if is_new:
+            path = desk.store.folder / FILE
+            lines = ["", f"[assignments.{json.dumps(name)}]", f"questions = {list(questions)}", ""]
+            path.write_text(path.read_text("utf8").rstrip("\n") + "\n" + "\n".join(lines), "utf8")
+            desk.tell(f"{path} has the sitting now: say there what it counts.")
+        settled = (desk.marked(_on_paper(desk, person, name, people)) for person in people.people)
+        desk.settle(settled, "printed again")
+        desk.report(course)
+        records = [desk.store.read(person, name) for person in people.people]
+        return _printed(desk, name, [record for record in records if record], paper)
+
+
+def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
+    """Enter a new sitting into the term, and say so; one that the file has is left as it is."""
+    path, about = desk.store.folder / FILE, desk.term.assignments.get(name)
+    if not path.exists():
+        raise BadTerm(f"there is no {path}: `coursework term new` writes it.")
+    if about and (not about.questions or questions not in ((), about.questions)):
+        asks = f"asks {', '.join(about.questions)}" if about.questions else "is no sitting"
+        raise BadTerm(f"{name} {asks} in {path}: change it there, or use another name.")
+    if about is None:
+        desk.term = replace(
+            desk.term,
+            assignments={
+                **desk.term.assignments,
+                name: Assignment(notebooks_of(name, questions), questions=questions),
+            },
+        )
+        if not questions:
+            raise BadTerm(f"{name} is not in {path} yet: name its questions with --questions.")
+    return about is None
+
+
+def _on_paper(desk: Desk, student: str, name: str, people: Roster) -> Record:
+    """The record of a student's sheet; one that was printed before keeps its variants."""
+    record = desk.store.read(student, name) or Record(student, name)
+    # The sheet names its student, so that no two students' answers are taken for equal.
+    answers = dict.fromkeys(desk.questions[name], Answer("on paper", why=student))
+    identity, reply = people.identity(student), f"{file_name(student)}-"
+    return replace(record, key=name, identity=identity, reply=reply, answers=answers)
+
+
+def boxes_of(contract: Contract) -> list[Box]:
+    """The right answer, the mistakes that earn something or that the author expects, and others."""
+    shares: dict[str, tuple[float, bool]] = {}
+    for fingerprint in contract.known:
+        locker = contract.locker(fingerprint)
+        for note, details in (
+            note for answer in (locker.answers if locker else ()) for note in answer.notes[:1]
+        ):
+            says = message(contract.question, note, details)
+            shares[says] = contract.credit.get(note, 0), note == "authored"
+    ranked = sorted(shares, key=shares.__getitem__, reverse=True)[:MOST_BOXES]
+    said = [(1, "The right answer."), *((shares[says][0], says) for says in ranked)]
+    said.append((0, "Something else, or no answer."))
+    return [Box(letter, *box) for letter, box in zip(string.ascii_uppercase, said)]
+
+
+def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
+    """An answer as it is typeset, and whether it needs the whole width of the page."""
+    value: Value = plain["value"] if plain else ["blank"]
+    parts = parts_of(value) if value[0] == "list" else []
+    if plain and parts and all(part[0] == "expression" for part in parts):
+        # One formula for each entry, between which a line may break.
+        entries = [as_formula({"value": part, "nodes": plain["nodes"]}) for part in parts]
+        return Markup("({})").format(Markup(", ").join(formula for formula, _ in entries)), any(
+            wide for _, wide in entries
+        )
+    if plain is None or not (tex := answer_as_tex(plain)):
+        words = [part[1] for part in parts or [value] if part[0] == "text"]
+        text = ", ".join(map(str, words)) or answer_as_text(plain, LONGEST)
+        return Markup("<strong>{}</strong>").format(text), False
+    # What a row shows: the letters of a function, one sign for another command, and no braces.
+    shown = re.sub(r"\\(?:left|right|(?:begin|end)\{\w+\})|[{}^_&\s]", "", tex)
+    rows = re.sub(r"\\(?!sin|cos|tan|\\)[A-Za-z]+", "x", shown).split(r"\\")
+    return Markup(pages.formula(tex, LONGEST)), max(map(len, rows)) > WIDE
+
+
+def _asked(contract: Contract, figures: str) -> Asked:
+    text = "\n\n".join([figures, text_of(contract.variant)])
+    right, wide = as_formula(contract.plain)
+    return Asked(
+        contract.title,
+        contract.worth,
+        Markup(to_page(text, functools.partial(pages.formula, longest=LONGEST))),
+        right,
+        wide,
+        boxes_of(contract),
+    )
+
+
+def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> list[Path]:
+    folder = desk.store.folder / FOLDER / file_name(name)
+    asked: dict[str, Asked] = {}
+    for record in records:
+        for question, mark in record.marks.items():
+            contract = desk.contracts.of(mark.version)
+            if mark.version not in asked and contract:
+                asked[mark.version] = _asked(contract, desk.questions[name][question][0].text)
+    people = [
+        (record, [asked[mark.version] for mark in record.marks.values()]) for record in records
+    ]
+    made = []
+    for template in ("sheets", "markers"):
+        path = (folder / f"{template}.html").resolve()
+        write(
+            path,
+            page(f"{template}.html", name=name, people=people, paper=PAPERS[paper]),
+            private=True,
+        )
+        made.append(_as_pdf(path))
+    write(folder / TICKS, _table_of_ticks(folder / TICKS, people), private=True)
+    if made[0].suffix == ".html":
+        desk.tell("No Chromium or Chrome is installed here: print the pages from your browser.")
+    return [*made, folder / TICKS]
+
+
+def _as_pdf(path: Path) -> Path:
+    """Print a page; where there is no browser, the page itself is left."""
+    browser = next(filter(None, map(shutil.which, BROWSERS)), None)
+    if browser is None:
+        return path
+    made = path.with_suffix(".pdf")
+    command = [browser, "--headless", "--no-sandbox", "--no-pdf-header-footer"]
+    command += [f"--print-to-pdf={made}", path.as_uri()]
+    subprocess.run(command, check=True, capture_output=True)
+    path.unlink()
+    return made
+
+
+def _table_of_ticks(path: Path, people: Sequence[tuple[Record, list[Asked]]]) -> str:
+    """A line for each answer, with what its boxes say; what was ticked before stays."""
+    ticked: dict[str, list[str]] = {}
+    if path.exists():
+        header, lines = cells_in(path)
+        columns = [header.index(column) for column in ("tick", "credit", "comment")]
+        ticked = {cells[0]: [cells[column] for column in columns] for _, cells in lines}
+
+    def rows() -> Iterator[list[object]]:
+        for record, asked in people:
+            for (question, mark), about in zip(record.marks.items(), asked):
+                line = case_id(record, question)
+                says = [f"{number(box.share)}: {plain_text(box.says)}" for box in about.boxes]
+                yield [
+                    line,
+                    mark.version,
+                    record.student,
+                    question,
+                    *ticked.get(line, ["", "", ""]),
+                    mark.worth,
+                    *says,
+                ]
+
+    letters = string.ascii_uppercase[: MOST_BOXES + 2]
+    header = ["id", "version", "student", "question", "tick", "credit", "comment", "worth"]
+    return table([*header, *letters], rows())
