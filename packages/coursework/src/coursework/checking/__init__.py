@@ -1,1 +1,1 @@
-"""What a student imports: the check, the sealed questions and the replies."""
+"""The student's imports: the check, the sealed questions and the replies."""

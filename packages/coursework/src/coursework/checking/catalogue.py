@@ -1,6 +1,4 @@
-"""The catalogue: every mistake that a question knows, by its short
-name, with what the student is told.
-"""
+"""The catalogue: every mistake that a question knows, by its short name, with its message."""
 
 import functools
 import inspect
@@ -15,14 +13,14 @@ from .question import Note, Question
 
 
 def message(question: Question, note: str, details: Mapping[str, Json]) -> str:
-    """What a student is told of a mistake."""
+    """Return the message to a student about a mistake."""
     return (kind_of_values(question).messages.get(note) or MESSAGES[note])(question, **details)
 
 
 def by_short_name(question: Question) -> dict[bytes, Note]:
-    """Every mistake that the messages can name for a question, with its details, by its short name.
+    """Return every mistake with a message for a question, with its details, by its short name.
 
-    It is the same for all questions of a kind, and so tells nothing.
+    It is the same for all questions of a kind, so it reveals nothing.
 
     Raises
     ------
@@ -42,7 +40,7 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
         "factor": [name for name, _ in FACTORS],
         "number": range(len(NUMBERS)),
     }
-    found: dict[bytes, Note] = {}
+    by_name: dict[bytes, Note] = {}
     for messages, own in ((MESSAGES, {}), (kind.messages, kind.details)):
         for note, words in messages.items():
             needed = list(inspect.signature(words).parameters)[1:]
@@ -50,13 +48,13 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
                 for values in itertools.product(
                     *((own or details).get(name, ()) for name in needed)
                 ):
-                    one = Note(note, dict(zip(needed, values, strict=True)))
-                    if found.setdefault(short_name(*one), one) != one:
+                    known = Note(note, dict(zip(needed, values, strict=True)))
+                    if by_name.setdefault(short_name(*known), known) != known:
                         raise RuntimeError(
-                            f"{one} and {found[short_name(*one)]} have one short name: "
+                            f"{known} and {by_name[short_name(*known)]} have one short name: "
                             "rename a note."
                         )
-    return found
+    return by_name
 
 
 def mistakes(
@@ -65,7 +63,7 @@ def mistakes(
     turns: Iterable[tuple[Any, Any]] = (),
     turned: tuple[Any, Any] | None = None,
 ) -> list[Mistake]:
-    """Give every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
+    """Return every mistake of the catalogue that applies to an answer, as :class:`Mistake`.
 
     Parameters
     ----------
@@ -73,10 +71,10 @@ def mistakes(
     answer : SymPy object, nested list or number
         The right answer, as its author wrote it.
     turns : list of tuples (axis, angle)
-        The successive turns, each about an axis of the frame that the turns before it have reached,
-        of which the answer is the direction cosine matrix or the quaternion.
+        The successive rotations, each about an axis of the frame that the earlier ones have
+        reached; the answer is their direction cosine matrix or quaternion.
     turned : tuple (matrix, components)
-        For components that a matrix turned: the matrix and what it was applied to.
+        For components that a matrix rotated: the matrix and the components before it.
     """
     find = kinds()[question.kind].mistakes
     return list(find(question, answer, list(turns), turned)) if find else []

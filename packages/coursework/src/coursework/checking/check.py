@@ -30,19 +30,19 @@ from .sealing import unseal
 from .variants import siblings_of, without_sibling
 from .writing import answer_as_tex, answer_as_text
 
-#: After so many days an earlier mistake is worth another look.
+# After so many days an earlier mistake is worth another look.
 REVIEW_AFTER = 3
 DAY = 86_400
-#: Different answers of one question that are remembered.
+# The number of different answers to one question that are remembered.
 MOST_ANSWERS = 100
-#: Of so many wrong answers the notebook tells the grader so many digits:
-#: enough to see that two are the same.
+# The numbers of wrong answers and of their digits that the notebook shows to the grader, which are
+# enough to see that two answers are the same.
 MOST_TOLD, DIGITS = 20, 6
-#: Notes of wrong answers that are no help on the way to the right one.
+# Notes of wrong answers that do not help to find the right one.
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
-#: Signs of the TeX of an answer up to which a reply typesets it.
+# The length of the TeX of an answer up to which a reply typesets it.
 LONGEST_SHOWN = 1_500
-#: What is said in place of a verdict on a value that no longer stands in the notebook.
+# The message in place of a verdict on a value that is no longer in the notebook.
 OUTDATED = (
     "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
     "an earlier value. We checked nothing: correct that cell, run it, then run this check again."
@@ -52,7 +52,7 @@ watch()
 
 
 class NotCorrect(AssertionError):
-    """Raised in place of showing the reply where nbgrader runs the notebook: it counts errors."""
+    """Raised instead of showing the reply when nbgrader, which counts errors, runs a notebook."""
 
 
 def check(name: str, answer: object) -> Reply:
@@ -63,8 +63,8 @@ def check(name: str, answer: object) -> Reply:
     name : str
         The question, as its cell names it: ``'notebook/question'``.
     answer : object
-        A SymPy expression or matrix, a reference frame, a vector, numbers, a text or a function, as
-        the question asks.
+        A SymPy expression or matrix, a reference frame, a vector, numbers, a string or a function,
+        as the question requires.
 
     Returns
     -------
@@ -104,21 +104,24 @@ def check(name: str, answer: object) -> Reply:
 
 
 def shown(question: Question, plain: Plain) -> Shown:
-    """An answer as it was read: of a frame or a vector, what the question asks for.
+    """Return an answer as it was read; of a frame or a vector, the part that the question asks for.
 
-    The picture is no part of the verdict: where it cannot be drawn, as without NumPy, there is
-    none.
+    The picture does not affect the verdict: if it cannot be drawn, as without NumPy, there is none.
     """
     value, picture = plain["value"], ""
     if value[0] in ("frame", "vector") and question.frames:
-        wanted, known = question.frames[-1], by_frame(value)
-        if wanted in known:
-            inner = known[wanted]
-            value = ["frame", text_of(value), {wanted: inner}] if value[0] == "frame" else inner
+        source, known = question.frames[-1], by_frame(value)
+        if source in known:
+            inner = known[source]
+            value = ["frame", text_of(value), {source: inner}] if value[0] == "frame" else inner
     draw = kinds()[question.kind].picture
     with suppress(Exception):
-        if draw and not question.symbols and not fault(question, found := read(question, plain)):
-            picture = draw(question, found.numbers[0])
+        if (
+            draw
+            and not question.symbols
+            and not fault(question, reading_of_answer := read(question, plain))
+        ):
+            picture = draw(question, reading_of_answer.numbers[0])
     plain = {"value": value, "nodes": plain["nodes"]}
     text = ("a function that " if value[0] == "function" else "") + answer_as_text(plain)
     tex = answer_as_tex(plain)
@@ -129,17 +132,17 @@ def shown(question: Question, plain: Plain) -> Shown:
 
 
 def hint(name: str) -> Reply:
-    """Show the hints that you have earned for a question: each different
-    answer that is wrong earns one more.
-    """
+    """Show the hints that you have earned: each different wrong answer earns one more."""
     student = identity()
     entry = _entry(Progress.read(), name, student)
     steps, earned = _steps(name, student, entry), _earned(entry)
     if steps[:earned]:
         _note_help(name, student, "hint")
     lines = [f"Hint {order + 1}: {step}" for order, step in enumerate(steps[:earned])]
-    for other, place in entry.after:
-        lines += [f"Hint: {step}" for step in _page(other, student, place).after.get(name, ())]
+    for later_question, place in entry.after:
+        lines += [
+            f"Hint: {step}" for step in _page(later_question, student, place).after.get(name, ())
+        ]
     left = len(steps) - min(earned, len(steps))
     if not lines:
         lines = ["There is no hint yet."]
@@ -153,9 +156,7 @@ def hint(name: str) -> Reply:
 
 
 def worked_solution(name: str, code: str) -> Reply:
-    """Show the worked solution of a question to one who gives up, with the
-    code that the instructor gave out.
-    """
+    """Show the worked solution to a student who gives up, with the code from the instructor."""
     student = identity()
     sealed = find_question(name, student)
     locker = opened(sealed, code_text(str(code)))
@@ -179,46 +180,46 @@ def worked_solution(name: str, code: str) -> Reply:
 
 
 def _note_help(name: str, student: str, kind: str) -> Entry:
-    """Write down that somebody had help; after the right answer it is none."""
+    """Record that a student had help; after the right answer, help does not count."""
     progress = Progress.read()
     entry = _entry(progress, name, student)
     if entry.outcome != "correct":
-        most = next(one for one in reversed(HELP) if one in (kind, entry.help))
+        most = next(
+            kind_of_help for kind_of_help in reversed(HELP) if kind_of_help in (kind, entry.help)
+        )
         entry = replace(entry, help=most)
         progress.put({name: entry})
     return entry
 
 
 def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
-    """Say of the siblings of a question what concerns one who had
-    help, or who has solved one without.
-    """
+    """Offer a sibling to a student who had help, or who has solved one without help."""
     asked, order = without_sibling(reply.question)
     siblings = siblings_of(asked, question.variants)
     if not help_had:
         reply.messages += ["Solved without help."] if order else []
     elif siblings:
-        said = f"You had help: {HELP.get(help_had, 'it was shown')}."
+        notice = f"You had help: {HELP.get(help_had, 'it was shown')}."
         if order == len(siblings):
-            reply.messages.append(f"{said} There is no further sibling.")
+            reply.messages.append(f"{notice} There is no further sibling.")
             return
         reply.sibling = siblings[order]
         reply.messages.append(
-            f"{said} For practice, solve it with other numbers and without help: "
+            f"{notice} For practice, solve it with other numbers and without help: "
             f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks "
             "your answer."
         )
 
 
 def _page(name: str, student: str, place: Place) -> Locker:
-    """What stands on a page of a question; nothing on one of an earlier release."""
+    """Return the content of a page of a question, or nothing if it is from an earlier release."""
     with suppress(ValueError, LookupError):
         return Locker.from_json(open_page(find_question(name, student), place), "A page")
     return Locker()
 
 
 def _steps(name: str, student: str, entry: Entry) -> list[str]:
-    """All hints of a question: those of the last mistake, and then the ladder."""
+    """Return all hints of a question: those of the last mistake, and then the ladder."""
     sealed = find_question(name, student)
     known = _page(name, student, entry.page).answers if entry.page else ()
     return [
@@ -231,7 +232,7 @@ def _steps(name: str, student: str, entry: Entry) -> list[str]:
 
 
 def _earned(entry: Entry) -> int:
-    """A first wrong answer gets its message; each other one earns a hint."""
+    """Return the number of earned hints: every wrong answer but the first earns one."""
     return max(0, len(entry.answers) - 1)
 
 
@@ -241,7 +242,7 @@ def _show_next_hint(student: str, reply: Reply, entry: Entry) -> None:
         _note_help(reply.question, student, "hint")
     reply.messages += [f"Hint: {step}" for step in steps[:earned]]
     if len(steps) > earned == 0:
-        # In words, and not as a call of `hint`, which few notebooks import.
+        # Use words here and not a call of `hint`, which few notebooks import.
         reply.messages.append("Each new answer earns you a hint.")
 
 
@@ -249,16 +250,17 @@ def _show_next_hint(student: str, reply: Reply, entry: Entry) -> None:
 
 
 def progress() -> Reply:
-    """Show how far you are, by chapter, and what is worth another look; from
-    the record beside this notebook.
+    """Show your progress by chapter, and what is worth another look.
+
+    It comes from the record beside this notebook.
     """
-    kept, student = Progress.read(), identity()
+    stored, student = Progress.read(), identity()
     record = {
         name: entry
-        for name, entry in {name: _entry(kept, name, student) for name in kept.entries}.items()
+        for name, entry in {name: _entry(stored, name, student) for name in stored.entries}.items()
         if entry.outcome and not without_sibling(name)[1]
     }
-    others = _right_for_others(kept, student)
+    others = _right_for_others(stored, student)
     if not record:
         return Reply(
             "progress", "hints", "", others or ["Nothing has been checked in this folder yet."]
@@ -289,7 +291,7 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
         name for name in questions if name in record and record[name].outcome == "recorded"
     }
     open_ = [name for name in questions if name not in right and name not in taken_down]
-    # What was begun comes before what is new.
+    # Questions that were begun come before new ones.
     open_.sort(key=lambda name: name not in record)
     line = (
         f"*{notebook}*: {len(right & set(questions))} of {len(questions)} right, {earned} of "
@@ -305,48 +307,46 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
 
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
     today = time.time()
-    found = [
+    reminders = [
         f"`{name}` ({days} days ago: {entry.mistake})"
         for name, entry in sorted(record.items())
         if (days := int((today - (entry.mistake_at or today)) / DAY)) >= REVIEW_AFTER
         and entry.mistake
     ]
     return (
-        [f"Worth another look, since you made a mistake there: {', '.join(found)}."]
-        if found
+        [f"Worth another look, since you made a mistake there: {', '.join(reminders)}."]
+        if reminders
         else []
     )
 
 
 def _right_for_others(progress: Progress, student: str) -> list[str]:
-    """What is said of questions that are right with other numbers than a
-    student's own: that stays known.
-    """
-    found = [
+    """Return a message on questions that were solved with other numbers than the student's own."""
+    names = [
         f"`{name}`"
         for name in sorted(progress.entries)
         if (entry := _entry(progress, name, student)).outcome != "correct"
-        and any(one.outcome == "correct" for one in entry.others)
+        and any(variant_entry.outcome == "correct" for variant_entry in entry.others)
     ]
     return (
-        [f"Right with other numbers, and not with yours yet: {', '.join(found)}."] if found else []
+        [f"Right with other numbers, and not with yours yet: {', '.join(names)}."] if names else []
     )
 
 
 def _entry(progress: Progress, name: str, student: str) -> Entry:
-    """What is known of a question with a student's numbers."""
+    """Return the record of a question with a student's numbers."""
     return progress.entry(name).with_numbers(*own_numbers(name, student))
 
 
 def _remember(name: str, student: str, question: Question, reply: Reply) -> Entry:
-    """Write down the outcome, and where hints can be read again: never the hints themselves."""
+    """Record the outcome, and where hints can be read again, but never the hints themselves."""
     progress = Progress.read()
     entry = _entry(progress, name, student)
     if reply.outcome == "not attempted":
         return entry
     if question.variants > 1:
         entry = replace(entry, whose=student)
-    # What was right once stays right: another try in the same cell takes nothing away.
+    # A right answer remains right: another try in the same cell does not change it.
     if entry.outcome != "correct":
         helped = reply.outcome == "wrong" and reply.note not in NO_HELP
         entry = replace(
@@ -370,12 +370,12 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
             mistake_at=int(time.time()),
         )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
-        entry = replace(entry, mistake="")  # looked at again, and right
+        entry = replace(entry, mistake="")  # reviewed, and right
     changed = {name: entry}
     if reply.opened and reply.opened.place and reply.outcome == "correct":
-        for other in reply.opened.after:
-            later = changed.get(other, progress.entry(other))
-            changed[other] = replace(
+        for later_question in reply.opened.after:
+            later = changed.get(later_question, progress.entry(later_question))
+            changed[later_question] = replace(
                 later, after=tuple(dict.fromkeys((*later.after, (name, reply.opened.place))))
             )
     progress.put(changed)

@@ -1,12 +1,10 @@
-"""Sealed variants that lie where the pages lie: only a browser's
-Python asks for them, one by one.
-"""
+"""Sealed variants on the server of the pages, which only a browser's Python requests."""
 
 from importlib.resources.abc import Traversable
 
 
 def fetched(file: Traversable, name: str) -> str:
-    """A file from where the pages lie, whose address follows upon that of Python's packages."""
+    """Return a file from the server of the pages; its address is relative to Python's packages."""
     import js
     import pyodide_js
 
@@ -18,7 +16,7 @@ def fetched(file: Traversable, name: str) -> str:
         if request.status == 200:
             return str(request.responseText)
         why = f"the server says {request.status}"
-    except Exception as error:  # what the browser throws where there is no network
+    except Exception as error:  # the browser's error without a network
         why = str(error)
     raise RuntimeError(
         f"Your numbers could not be fetched from {address} ({why}). Is there a network?"

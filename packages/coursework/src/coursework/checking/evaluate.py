@@ -1,12 +1,11 @@
-"""The numbers that an answer stands for, at given values of its symbols.
+"""Evaluate an answer at given values of its symbols.
 
-Two forms of one expression have the same values, so values are compared and forms are not: nothing
-is simplified, which could take a minute or not come back at all. They are worked out with 40
-digits, of which a check compares nine, so no two ways of writing an answer are told apart by
-rounding.
+Two forms of one expression have the same values, so values are compared instead of forms: nothing
+is simplified, which could take a minute or never finish. They are computed with 40 digits, of which
+a check compares nine, so that rounding never distinguishes two ways of writing an answer.
 
-This reads the plain data of :mod:`coursework.checking.plain` only. It never builds a SymPy object
-from it, and whatever the data holds, its work is bounded.
+This reads only the plain data of :mod:`coursework.checking.plain`. It never builds a SymPy object
+from them, and its work is bounded for any data.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -18,43 +17,42 @@ MP = mpmath.MPContext()
 MP.dps = 40
 #: A real or a complex number.
 Number: TypeAlias = "mpmath.mpf | mpmath.mpc"
-#: What a node is at a point: a number or a truth value, a case of a Piecewise with its condition,
-#: or the error that working it out has led to.
+# The value of a node at a point: a number or a Boolean, a case of a Piecewise with its condition,
+# or the error of its evaluation.
 Result: TypeAlias = "Number | bool | tuple[Result, ...] | Exception"
 Node: TypeAlias = Sequence[str | int]
-#: Imaginary parts below this are rounding: what remains of exponentials that should cancel.
+# Smaller imaginary parts are rounding: the rest of exponentials that should cancel.
 ROUNDING = MP.mpf(10) ** -25
 LARGEST = MP.mpf(10) ** 60
-#: Below two to this power a number is not worked with: what is done with it takes
-#: memory in the size of the exponent.
+# Numbers below two to this power are not used, because operations on them take memory in proportion
+# to the exponent.
 SMALLEST = -3_333_333
-#: The smaller part of a complex number of which the larger one is this many powers of two larger is
-#: taken for nothing: no digit depends on it, and some functions would write out every place between
-#: the two.
+# If the parts of a complex number differ by this many powers of two, the smaller one counts as
+# zero: no digit depends on it, and some functions would write out every place between the two.
 APART = 20_000
-#: Work on one answer at one point, in additions of real numbers; others cost as many as they take.
-#: An honest answer of thousands of nodes stays far below; a hostile one would take a minute.
+# The allowed work on one answer at one point, in additions of real numbers; other operations cost
+# more. A normal answer of thousands of nodes stays far below; a hostile one would take a minute.
 MOST_WORK = 100_000
 
 
 class Undefined(ArithmeticError):
-    """An expression has no finite value at a point: a division by zero, say."""
+    """An expression has no finite value at a point, because of a division by zero, say."""
 
 
 class TooLarge(ArithmeticError):
-    """A value grows beyond all bounds that an answer can need."""
+    """A value exceeds all bounds that an answer can need."""
 
 
 class NotSupported(ValueError):
-    """An expression holds an operation that has no value here, so the answer cannot be decided."""
+    """An expression contains an operation without a value here, so the answer cannot be decided."""
 
 
 class UnknownSymbol(ValueError):
-    """An expression holds a symbol that the question does not have; its name is the argument."""
+    """An expression contains a symbol that the question lacks; its name is the argument."""
 
 
 def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
-    """Give the value of every node: real or complex numbers, truth values, or the error each has.
+    """Return the value of every node: real or complex numbers, Booleans, or the error of each.
 
     Parameters
     ----------
@@ -63,8 +61,8 @@ def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
     point : dict
         A number for each symbol, by name.
 
-    An error is kept as the value of its node and is raised by :func:`number`, since a branch that
-    is not taken may be undefined.
+    An error is kept as the value of its node and is raised by :func:`number`, since the branch of a
+    Piecewise that does not apply may be undefined.
     """
     results: list[Result] = []
     work = 0
@@ -90,7 +88,7 @@ def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
 
 
 def number(result: Result) -> Number:
-    """The number that one of the results of :func:`values` is, or raise the error that it is."""
+    """Return the number in one of the results of :func:`values`, or raise the error in it."""
     if isinstance(result, Exception):
         raise result
     if isinstance(result, bool):
@@ -99,8 +97,10 @@ def number(result: Result) -> Number:
 
 
 def real(result: Result, absolute: Number = ROUNDING, relative: Number = ROUNDING) -> Number:
-    """The real number that a result is; raises ``ValueError`` where its imaginary part is more than
-    rounding, or what else is allowed: so much, and such a share of the real part.
+    """Return the real number in a result.
+
+    Raises ``ValueError`` if its imaginary part exceeds the absolute allowance plus the relative one
+    times the real part; by default, only rounding is allowed.
     """
     result = number(result)
     if result in (MP.inf, -MP.inf):
@@ -112,7 +112,7 @@ def real(result: Result, absolute: Number = ROUNDING, relative: Number = ROUNDIN
     return result
 
 
-#: What holds digits or a name, and no other nodes.
+# Nodes that contain digits or a name, and no other nodes.
 LEAVES = ("symbol", "constant", "integer", "rational", "float")
 
 
@@ -162,7 +162,7 @@ def _leaf(operation: str, parts: Sequence[str], point: Mapping[str, Number]) -> 
         return MP.mpf(int(text))
     if operation == "float":
         return _bounded(MP.mpf(text))
-    if text in ("ComplexInfinity", "NaN"):  # what SymPy gives for a division by zero
+    if text in ("ComplexInfinity", "NaN"):  # SymPy's result of a division by zero
         raise Undefined("division by zero")
     if text not in CONSTANTS:
         raise NotSupported(text)
@@ -215,7 +215,7 @@ def _power(base: Number, exponent: Number) -> Number:
         if exponent == 0:
             return MP.one
         raise Undefined("division by zero")
-    # Judged before it is worked out: a power of a power of ten would fill the memory.
+    # Check this before evaluation: a power of a power of ten would fill the memory.
     if abs(exponent) > 10_000:
         raise TooLarge("an exponent is beyond ten thousand")
     return MP.power(base, exponent)

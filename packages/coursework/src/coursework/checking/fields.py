@@ -1,8 +1,7 @@
-"""JSON from outside, read into what has types: whatever is wrong
-is said with its key and its value.
+"""Read external JSON into typed values, with errors that name the key and the value.
 
-A reader takes what :func:`json.loads` gave, and where it stood, and gives the value or raises
-:class:`Misread`. It keeps a number as it is, so that what is written again is the same to the byte.
+A reader takes a result of :func:`json.loads` and its location, and returns the value or raises
+:class:`Misread`. It keeps a number as it is, so that writing it again gives the same bytes.
 """
 
 from __future__ import annotations
@@ -10,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TypeVar, cast
 
-#: What JSON can hold.
+# Values that JSON can represent.
 Json = None | bool | int | float | str | list["Json"] | dict[str, "Json"]
 Some = TypeVar("Some")
 Reader = Callable[[object, str], Some]
@@ -18,13 +17,13 @@ LONGEST_SHOWN = 60
 
 
 class Misread(ValueError):
-    """What was read is not what it should be; the message says which key, and what its value is."""
+    """A value is not of the expected kind; the message names the key and the value."""
 
-    def __init__(self, where: str, wanted: str, value: object) -> None:
+    def __init__(self, where: str, expected: str, value: object) -> None:
         shown = repr(value)
         if len(shown) > LONGEST_SHOWN:
             shown = f"{shown[:LONGEST_SHOWN]}…"
-        super().__init__(f"{where} should be {wanted}, and is {shown}.")
+        super().__init__(f"{where} should be {expected}, and is {shown}.")
 
 
 def text(value: object, where: str) -> str:
@@ -52,7 +51,7 @@ def truth(value: object, where: str) -> bool:
 
 
 def anything(value: object, where: str) -> Json:
-    """What a plug-in, an author or a student decides on: it is handed on as it is."""
+    """Pass on a value whose meaning a plug-in, an author or a student determines."""
     return cast(Json, value)
 
 
@@ -70,7 +69,7 @@ def one_of(*choices: str) -> Reader[str]:
 
 
 def many(reader: Reader[Some]) -> Reader[tuple[Some, ...]]:
-    """A reader of lists."""
+    """Return a reader of lists."""
 
     def read(value: object, where: str) -> tuple[Some, ...]:
         if not isinstance(value, (list, tuple)):
@@ -81,7 +80,7 @@ def many(reader: Reader[Some]) -> Reader[tuple[Some, ...]]:
 
 
 def pair(reader: Reader[Some]) -> Reader[tuple[Some, Some]]:
-    """A reader of lists of two."""
+    """Return a reader of lists of two."""
 
     def read(value: object, where: str) -> tuple[Some, Some]:
         if not isinstance(value, (list, tuple)) or len(value) != 2:
@@ -92,7 +91,7 @@ def pair(reader: Reader[Some]) -> Reader[tuple[Some, Some]]:
 
 
 def by_name(reader: Reader[Some]) -> Reader[dict[str, Some]]:
-    """A reader of objects, whose names may be any."""
+    """Return a reader of objects with any names."""
 
     def read(value: object, where: str) -> dict[str, Some]:
         if not isinstance(value, dict):
@@ -105,7 +104,7 @@ def by_name(reader: Reader[Some]) -> Reader[dict[str, Some]]:
 
 
 class Fields:
-    """The fields of an object, each read by what should stand there.
+    """The fields of an object, each read by the reader of the expected kind.
 
     >>> about = Fields({"worth": "two"}, "levers/see-saw")
     >>> about.maybe("title", text)
@@ -114,28 +113,28 @@ class Fields:
     coursework.checking.fields.Misread: levers/see-saw: 'worth' should be a number, and is 'two'.
     """
 
-    def __init__(self, found: object, where: str) -> None:
+    def __init__(self, value: object, where: str) -> None:
         self.where = where
-        self.found = by_name(anything)(found, where)
+        self.found = by_name(anything)(value, where)
 
     def get(self, name: str, reader: Reader[Some]) -> Some:
-        """A field that has to be there."""
+        """Return a required field."""
         if name not in self.found:
             raise Misread(self.where, f"an object with {name!r}", ", ".join(self.found))
         return reader(self.found[name], f"{self.where}: {name!r}")
 
     def maybe(self, name: str, reader: Reader[Some]) -> Some | None:
-        """A field that may be missing, or empty."""
+        """Return a field that may be missing, or empty."""
         value = self.found.get(name)
         return None if value is None else reader(value, f"{self.where}: {name!r}")
 
     def beside(self, names: Iterable[str]) -> dict[str, Json]:
-        """All other fields than these."""
+        """Return all fields except these."""
         return {name: value for name, value in self.found.items() if name not in names}
 
 
 def written(value: object) -> Json:
-    """What a reader gave, as JSON: for a tuple a list."""
+    """Return the result of a reader as JSON, with lists for tuples."""
     if isinstance(value, (tuple, list)):
         return [written(part) for part in value]
     return (

@@ -1,39 +1,38 @@
-"""Who works in this notebook: said once, kept beside the notebooks, and known
-to page, notebook and grader alike.
+"""The ID of the student who works in this notebook, stored once beside the notebooks.
 
-With it each student of a course gets numbers of their own. Who forgets it works on the first
-numbers, which earn nothing there: so the cell that asks for it says so. An edition without a roster
-asks nobody, and says nothing of it.
+Page, notebook and grader share it. With it, each student of a course gets individual numbers. A
+student who forgets it gets the default numbers, which earn nothing there, so the cell that asks for
+it says so. An edition without a roster does not ask for it.
 """
 
 import unicodedata
 from contextlib import suppress
 from pathlib import Path
 
-#: Where it is kept who works in this folder; the pages of a book keep it under the same name.
+# The file with the ID for this folder; the pages of a book use the same name for it.
 KEPT = Path(".coursework", "me.txt")
-#: What is said where nobody has said who works here.
+# The message if nobody has given an ID.
 FORGOTTEN = (
     "You have the default numbers. For credit, put your ID into student('...') and run this cell "
     "again."
 )
-#: What stands in place of an ID in notebooks that leave it to the student to give one.
+# The placeholder for an ID in notebooks that leave it to the student.
 PLACEHOLDER = "your ID"
-#: Nothing has been said in this notebook: then what was said beside it counts.
+# If no ID has been given in this notebook, the stored one applies.
 _identity: str | None = None
 
 
 def student(identity: str = "") -> None:
     """Say who you are, so that you get your own numbers: ``student('ada@uni.example')``.
 
-    Once is enough: it is kept beside your notebooks (in JupyterLite, in the browser), and
-    ``student('')`` in another one finds it there, and says so. Without it you get the default
-    numbers; who hands in answers to another one's numbers gets no points for them.
+    Once is enough: your ID is stored beside your notebooks (in JupyterLite, in the browser), and
+    ``student('')`` in another one finds it there and says so. Without it you get the default
+    numbers; answers to somebody else's numbers earn no points.
 
     Parameters
     ----------
     identity : str
-        As your instructor's roster has it; capitals and spaces around it make no difference.
+        As in your instructor's roster; capitals and surrounding spaces make no difference.
     """
     global _identity
     _identity, before = plain_identity("" if identity == PLACEHOLDER else identity), _kept()
@@ -47,14 +46,14 @@ def student(identity: str = "") -> None:
         )
     else:
         print(f"You are {_identity}. The numbers below are yours." if _identity else FORGOTTEN)
-    with suppress(OSError):  # a folder that cannot be written to: each notebook asks anew
+    with suppress(OSError):  # in a read-only folder, each notebook asks again
         if _identity:
             KEPT.parent.mkdir(exist_ok=True)
             KEPT.write_text(_identity, "utf8")
 
 
 def identity() -> str:
-    """Who works here, or an empty text: what a student calls asks for it, and hands it on."""
+    """Return the student's ID, or an empty string; functions for students pass it on."""
     global _identity
     if _identity is None:
         _identity = _kept()
@@ -68,8 +67,9 @@ def _kept() -> str:
 
 
 def plain_identity(identity: str) -> str:
-    """An identity as it is compared: however its letters are stored, and without
-    invisible characters, capitals and spaces around it.
+    """Return an ID in the form in which IDs are compared.
+
+    Unicode forms, invisible characters, capitals and surrounding spaces make no difference.
 
     >>> plain_identity("Zoe\u0308\u200b") == plain_identity(" ZO\u00cb")
     True

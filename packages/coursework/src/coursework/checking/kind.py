@@ -1,4 +1,4 @@
-"""What is particular to one kind of question."""
+"""The particular properties of one kind of question."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -1,9 +1,7 @@
-"""The kinds of questions that no course owns: how the entries of an answer are
-found, and what is wrong with its form.
+"""The kinds of questions that no course owns: the entries of an answer, and the check of its form.
 
-Plug-ins build their kinds from what stands here. An answer is the plain data of
-:mod:`coursework.checking.plain`; what becomes of its entries is in
-:mod:`coursework.checking.reading`.
+Plug-ins build their kinds from these functions. An answer is the plain data of
+:mod:`coursework.checking.plain`; :mod:`coursework.checking.reading` processes its entries.
 """
 
 import itertools
@@ -19,25 +17,23 @@ from .plain import Plain, Value, by_frame, entries_of, node_of, operands, parts_
 from .question import Question
 from .units import unit
 
-#: What stands between the parts of an answer in words.
+# The separators of the parts of an answer in words.
 PARTS = {"words": " | ", "order": " < ", "truth values": ""}
 FUNCTIONS = SimpleNamespace(
     sin=MP.sin, cos=MP.cos, norm=lambda *parts: MP.sqrt(sum(x * x for x in parts))
 )
 
 
-#: One of mpmath.
+# A number of mpmath.
 Number = Any
 
 
 class Blank(Exception):
-    """Nothing has been answered yet."""
+    """The question has not been answered yet."""
 
 
 class Fault(Exception):
-    """An answer is not of the form that is asked for: a short
-    note for statistics, and a message.
-    """
+    """An answer does not have the required form: a short note for statistics, and a message."""
 
     def __init__(self, note: str, message: str) -> None:
         super().__init__(message)
@@ -46,7 +42,7 @@ class Fault(Exception):
 
 
 class Undecidable(Exception):
-    """An answer has the right form, but its value cannot be found here: a person must look."""
+    """An answer has the right form, but has no value here, so a person must decide."""
 
 
 # --- the entries of an answer -------------------------------------------------------------------
@@ -64,10 +60,10 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
 
 
-def shape_fault(wanted: str, got: Value | str) -> Fault:
+def shape_fault(expected: str, got: Value | str) -> Fault:
     return Fault(
         "shape",
-        f"Give {wanted[0].lower()}{wanted[1:]}; this is "
+        f"Give {expected[0].lower()}{expected[1:]}; this is "
         f"{got if isinstance(got, str) else _describe(got)}.",
     )
 
@@ -100,7 +96,7 @@ def _describe(value: Value) -> str:
 
 
 def _holding(whole: Value, part: Value) -> str:
-    """What a list is, one part of which is of another kind than is asked for."""
+    """Describe a list of which one part has the wrong kind."""
     if is_blank(part):
         return "a list that is still blank in part"
     if part[0] == "text":
@@ -108,100 +104,98 @@ def _holding(whole: Value, part: Value) -> str:
     return f"a list with {len(parts_of(whole))} entries, one of which is {_describe(part)}"
 
 
-def _fault_of_numbers(wanted: str, value: Value) -> Fault:
+def _fault_of_numbers(expected: str, value: Value) -> Fault:
     return shape_fault(
-        wanted, "a string: write it without quotation marks" if value[0] == "text" else value
+        expected, "a string: write it without quotation marks" if value[0] == "text" else value
     )
 
 
-def leaf(value: Value, wanted: str) -> int:
-    """The one expression that a value is; a list or matrix of one entry is that entry."""
+def leaf(value: Value, expected: str) -> int:
+    """Return the only expression of a value, which may be a list or matrix of one entry."""
     if value[0] == "matrix" and value[1] == value[2] == 1:
         [entry] = entries_of(value)
         return entry
     parts = parts_of(value) if value[0] == "list" else []
     if parts and parts[1:] in ([], [["text", "1"]]):  # degrees are no unit
-        return leaf(parts[0], wanted)
+        return leaf(parts[0], expected)
     if value[0] != "expression":
-        raise _fault_of_numbers(wanted, value)
+        raise _fault_of_numbers(expected, value)
     return node_of(value)
 
 
-def _leaf_of(whole: Value, part: Value, wanted: str) -> int:
-    """The one expression that a part of a list is."""
+def _leaf_of(whole: Value, part: Value, expected: str) -> int:
+    """Return the only expression of a part of a list."""
     try:
-        return leaf(part, wanted)
+        return leaf(part, expected)
     except Fault:
-        said = "; write numbers without quotation marks" if part[0] == "text" else ""
-        raise shape_fault(wanted, _holding(whole, part) + said) from None
+        advice = "; write numbers without quotation marks" if part[0] == "text" else ""
+        raise shape_fault(expected, _holding(whole, part) + advice) from None
 
 
 def _expression(question: Question, value: Value) -> list[int]:
     return [leaf(value, "A single expression")]
 
 
-def components(value: Value, length: int, wanted: str) -> list[int]:
+def components(value: Value, length: int, expected: str) -> list[int]:
     if value[0] == "matrix" and value[1:3] in ([1, length], [length, 1]):
         return entries_of(value)
     if value[0] == "list":
         parts = parts_of(value)
         if len(parts) == length:
-            return [_leaf_of(value, part, wanted) for part in parts]
+            return [_leaf_of(value, part, expected) for part in parts]
         if len(parts) == 1 and parts[0][0] == "list":
-            return components(parts[0], length, wanted)
-    raise _fault_of_numbers(wanted, value)
+            return components(parts[0], length, expected)
+    raise _fault_of_numbers(expected, value)
 
 
 def _measurement(question: Question, value: Value) -> list[int]:
-    wanted = "A number and its unit, such as `(3.2, 'N m')`"
+    expected = "A number and its unit, such as `(3.2, 'N m')`"
     parts = parts_of(value) if value[0] == "list" else []
     if len(parts) != 2 or parts[1][0] != "text":
-        raise shape_fault(wanted, value)
-    return [leaf(parts[0], wanted)]
+        raise shape_fault(expected, value)
+    return [leaf(parts[0], expected)]
 
 
 def scale_of(answer: Any) -> dict[str, str]:
-    """What the sealed part of a measurement tells of its unit: how large
-    it is, and not what it measures.
-    """
+    """Return the size of a measurement's unit for the sealed part, without what it measures."""
     return {"scale": MP.nstr(unit(answer[1]).size, 15)}
 
 
 def _vector(question: Question, value: Value) -> list[int]:
     frame = question.frames[0] if question.frames else None
     parts = "components" if frame else "expressions" if question.symbols else "numbers"
-    wanted = f"A list of {question.length or 3} {parts}"
+    expected = f"A list of {question.length or 3} {parts}"
     if value[0] == "vector":
         # The zero vector belongs to every frame.
         if frame is None:
-            raise shape_fault(wanted, value)
+            raise shape_fault(expected, value)
         if frame not in by_frame(value):
             raise Fault(
                 "frame",
                 f"This vector is not connected with the frame `{frame}` that the question names.",
             )
         value = by_frame(value)[frame]
-    return components(value, question.length or 3, wanted)
+    return components(value, question.length or 3, expected)
 
 
-def row_entries(value: Value, rows: int, columns: int, wanted: str) -> list[int]:
+def row_entries(value: Value, rows: int, columns: int, expected: str) -> list[int]:
     if value[0] == "matrix" and value[1:3] == [rows, columns]:
         return entries_of(value)
     if value[0] == "list" and len(parts_of(value)) == rows:
-        return [entry for row in parts_of(value) for entry in _row(value, row, columns, wanted)]
-    raise _fault_of_numbers(wanted, value)
+        return [entry for row in parts_of(value) for entry in _row(value, row, columns, expected)]
+    raise _fault_of_numbers(expected, value)
 
 
-def _row(whole: Value, row: Value, columns: int, wanted: str) -> list[int]:
+def _row(whole: Value, row: Value, columns: int, expected: str) -> list[int]:
     length = len(parts_of(row)) if row[0] == "list" else columns
     if length not in (1, columns):
         described = _describe(whole)
         uneven = f"a list of rows, one of which has {length} entries"
-        raise shape_fault(wanted, described if " row" in described else uneven)
+        raise shape_fault(expected, described if " row" in described else uneven)
     in_line = row[0] == "list" or row[0] == "matrix" and 1 in size_of(row)
     if is_blank(row) or not in_line:
-        raise shape_fault(wanted, _holding(whole, row))
-    return components(row, columns, wanted)
+        raise shape_fault(expected, _holding(whole, row))
+    return components(row, columns, expected)
 
 
 def _matrix(question: Question, value: Value) -> list[int]:
@@ -212,20 +206,18 @@ def _matrix(question: Question, value: Value) -> list[int]:
 # --- answers in words ---------------------------------------------------------------------------
 
 
-def word(plain: Plain, wanted: str) -> str:
+def word(plain: Plain, expected: str) -> str:
     value = plain["value"]
     parts = parts_of(value) if value[0] == "list" else []
     if parts and all(part[0] == "text" for part in parts):
         return "".join(map(text_of, parts))
     if value[0] != "text":
-        raise shape_fault(wanted, value)
+        raise shape_fault(expected, value)
     return text_of(value)
 
 
 def _spelled(plain: Plain) -> str | None:
-    """The word that is meant by a number or a symbol: ``-1`` for
-    ``'-1'``, the symbol ``-i`` for ``'-i'``.
-    """
+    """Return the word of a number or a symbol: ``-1`` for ``'-1'``, ``-i`` for ``'-i'``."""
     if plain["value"][0] != "expression":
         return None
     nodes = plain["nodes"]
@@ -240,67 +232,72 @@ def _spelled(plain: Plain) -> str | None:
 
 
 def _choice(question: Question, plain: Plain) -> str:
-    given = _spelled(plain) or word(plain, f"One of {listed(question.options)}, in quotation marks")
-    given = " ".join(given.split())
-    # A minus of typography is no mistake; nor is a plus that nobody
-    # asked for, or one that is left out.
-    text = given.lower().translate(MINUS)
+    answer = _spelled(plain) or word(
+        plain, f"One of {listed(question.options)}, in quotation marks"
+    )
+    answer = " ".join(answer.split())
+    # A typographic minus is no mistake, and neither is an unrequested or missing plus.
+    text = answer.lower().translate(MINUS)
     options = {option.lower(): option for option in question.options}
-    # Nor are wide letters, or quotation marks within those of Python.
+    # Neither are wide letters, or quotation marks within those of Python.
     bare = unicodedata.normalize("NFKC", text).strip(QUOTES).replace("- ", "-").replace("+ ", "+")
-    found = [one for one in (text, bare, bare.removeprefix("+"), f"+{bare}") if one in options]
-    if not found:
+    matches = [
+        spelling
+        for spelling in (text, bare, bare.removeprefix("+"), f"+{bare}")
+        if spelling in options
+    ]
+    if not matches:
         raise Fault(
-            "shape", f"The answer is one of {listed(question.options)}; this is `{given[:40]}`."
+            "shape", f"The answer is one of {listed(question.options)}; this is `{answer[:40]}`."
         )
-    return found[0]
+    return matches[0]
 
 
 def _choices(question: Question, plain: Plain) -> list[str]:
-    """Each part of a list as one of the options."""
+    """Return each part of a list as one of the options."""
     nodes = plain["nodes"]
     return [_choice(question, {"value": part, "nodes": nodes}) for part in parts_of(plain["value"])]
 
 
 def _truths(question: Question, plain: Plain) -> str:
     value, length = plain["value"], question.length
-    wanted = f"A list of {length} Booleans, `True` or `False`"
+    expected = f"A list of {length} Booleans, `True` or `False`"
     if value[0] != "list" or len(parts_of(value)) != length:
-        raise shape_fault(wanted, value)
+        raise shape_fault(expected, value)
     letters = ""
     for part in parts_of(value):
-        said: object = text_of(part).strip().lower() if part[0] == "text" else None
+        content: object = text_of(part).strip().lower() if part[0] == "text" else None
         if part[0] == "expression":
-            said = plain["nodes"][node_of(part)]
-        if part == ["truth", True] or said in ("true", ["integer", "1"]):
+            content = plain["nodes"][node_of(part)]
+        if part == ["truth", True] or content in ("true", ["integer", "1"]):
             letters += "T"
-        elif part == ["truth", False] or said in ("false", ["integer", "0"]):
+        elif part == ["truth", False] or content in ("false", ["integer", "0"]):
             letters += "F"
         else:
-            raise shape_fault(wanted, _holding(value, part))
+            raise shape_fault(expected, _holding(value, part))
     return letters
 
 
 def _words(question: Question, plain: Plain) -> str:
     value, length, options = plain["value"], question.length, question.options
-    wanted = f"A list of {length} words, each one of {listed(options)}"
+    expected = f"A list of {length} words, each one of {listed(options)}"
     if value[0] != "list" or len(parts_of(value)) != length:
-        raise shape_fault(wanted, value)
+        raise shape_fault(expected, value)
     if any(map(is_blank, parts_of(value))):
-        said = ": `'none'` is a text, too" if "none" in options else ""
-        raise shape_fault(wanted, f"a list that is still blank in part{said}")
+        advice = ": `'none'` is a text, too" if "none" in options else ""
+        raise shape_fault(expected, f"a list that is still blank in part{advice}")
     return PARTS["words"].join(_choices(question, plain))
 
 
 def _order(question: Question, plain: Plain) -> str:
     value, options = plain["value"], question.options
-    wanted = f"A list with each of {listed(options)} once"
+    expected = f"A list with each of {listed(options)} once"
     if value[0] != "list" or len(parts_of(value)) != len(options):
-        raise shape_fault(wanted, value)
+        raise shape_fault(expected, value)
     parts = _choices(question, plain)
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise shape_fault(wanted, f"one in which `{twice}` stands {parts.count(twice)} times")
+        raise shape_fault(expected, f"one in which `{twice}` stands {parts.count(twice)} times")
     return PARTS["order"].join(parts)
 
 
@@ -311,7 +308,7 @@ def _free_text(question: Question, plain: Plain) -> str:
     return text
 
 
-#: What a text program puts around a word that is quoted twice; and what it may make of a minus.
+# Characters that a text program puts around a word that is quoted twice, and its forms of a minus.
 QUOTES = " \"'`\u2018\u2019\u201a\u201b\u201c\u201d\u201e\u00ab\u00bb"
 MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 
@@ -320,16 +317,14 @@ MINUS = str.maketrans("\u2212\u2010\u2011\u2013", "----")
 
 
 def one_sign(question: Question, numbers: list[Number]) -> list[Number]:
-    # Of two opposites the one whose first component that is not zero is positive.
+    # Of two opposites, use the one whose first nonzero component is positive.
     limit = sign_limit(question)
     leading = next((number for number in numbers if abs(number) > limit), MP.one)
     return numbers if leading > 0 or not question.either_sign else [-number for number in numbers]
 
 
 def sign_limit(question: Question) -> Number:
-    """Below this a component counts as zero, so that rounding does
-    not decide which sign is taken.
-    """
+    """Return the limit below which a component counts as zero, so that rounding decides no sign."""
     return MP.mpf("2e-9") if question.tolerance is None else 8 * MP.mpf(str(question.tolerance))
 
 
@@ -345,7 +340,7 @@ def short(number: Number) -> str:
 
 
 def length_in_words(length: Number) -> str:
-    """A length that should be 1, with as many digits as show that it is not."""
+    """Return a length that should be 1, with enough digits to show that it is not."""
     texts = (str(MP.nstr(length, digits)) for digits in itertools.count(3))
     return next(text for text in texts if MP.mpf(text) != 1).removesuffix(".0")
 
@@ -363,7 +358,7 @@ def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | Non
 
 
 def transposed(question: Question, numbers: list[Number]) -> list[Number] | None:
-    """The entries of the transpose; ``None`` where it is of another shape."""
+    """Return the entries of the transpose, or ``None`` for another shape."""
     rows, columns = question.shape or (3, 3)
     return (
         None

@@ -1,9 +1,9 @@
-"""The typical mistakes: what each does to a right answer, and what the student is told.
+"""The typical mistakes: their effect on a right answer, and their messages to the student.
 
 When a question is sealed, every mistake that applies to it is carried out on the right answer, and
-its result gets a locker of its own. So a student's mistake is recognised by one fingerprint, and
-nothing of the right answer is needed where the student works. Mistakes that lead to the same answer
-are named together.
+its result gets a locker of its own. So a student's mistake is recognised by its fingerprint, and
+the student's computer needs nothing of the right answer. Mistakes that lead to the same answer are
+named together.
 
 The messages are no secret; which of them a question knows, and for what answers, is.
 """
@@ -21,7 +21,7 @@ from .fields import Json
 from .question import Question
 from .sealing import MISTAKE
 
-#: Factors that are forgotten or put in twice, as they are said.
+# Factors that are forgotten or inserted twice, with their words.
 FACTORS = (
     ("2", "2"),
     ("one half", "1/2"),
@@ -34,14 +34,12 @@ NUMBERS = (
     "zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen "
     "sixteen seventeen eighteen nineteen twenty"
 ).split()
-#: Mistakes that say little: where a more telling one leads to the same answer, they are left out.
+# General mistakes, which are left out if a more specific one leads to the same answer.
 GENERAL = ("one wrong", "factor", "half", "double", "opposite")
 
 
 class Mistake(NamedTuple):
-    """A note for statistics, what the message needs to know, and the
-    answer that the mistake leads to.
-    """
+    """A note for statistics, the details for the message, and the answer after the mistake."""
 
     note: str
     details: dict[str, Json]
@@ -83,7 +81,7 @@ MESSAGES: dict[str, Callable[..., str]] = {
     ),
     "authored": lambda question, text: text,
 }
-#: Prefixes that are lost or read wrongly, as powers of ten.
+# Prefixes that are lost or misread, as powers of ten.
 POWERS = (3, -3, 6, -6, 2, -2)
 OF_MEASUREMENTS = {
     "power of ten": lambda question, power: (
@@ -100,10 +98,9 @@ OF_ORDERS = {
 
 
 def short_name(note: str, details: Mapping[str, Json]) -> bytes:
-    """The name that a mistake has in a locker: it follows from its note
-    and details, and from nothing else.
+    """Return the name of a mistake in a locker, which depends only on its note and details.
 
-    So files that were sealed before keep their meaning, whatever is added to the catalogue.
+    So sealed files remain valid when the catalogue grows.
 
     >>> short_name("sign of a symbol", {"symbol": "beta"}).hex()
     '72eac791'
@@ -126,7 +123,7 @@ def as_matrix(answer: Any) -> Any:
 
 
 def of_symbols(question: Question, answer: Any) -> Iterator[Mistake]:
-    """A symbol taken for its negative, or two symbols for each other."""
+    """Iterate over a symbol's sign error, and two symbols interchanged."""
     free = sorted(_unknowns(answer), key=str)
     for symbol in free:
         changed = answer.xreplace({symbol: -symbol})
@@ -152,7 +149,7 @@ def of_matrix(question: Question, answer: Any, turns: Any, turned: Any) -> Itera
 
 
 def of_parts(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
-    """One part of a list of words or truth values that is another than the right one."""
+    """Iterate over lists of words or Booleans with one wrong part."""
     answer = list(answer)
     if not 3 <= len(answer) < len(NUMBERS):
         return
@@ -167,7 +164,7 @@ def of_parts(question: Question, answer: Any, turns: Any, turned: Any) -> Iterat
 
 
 def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
-    """The order turned round, and two neighbours in each other's place."""
+    """Iterate over the reversed order, and two neighbours interchanged."""
     answer = list(answer)
     yield Mistake("turned round", {}, answer[::-1])
     if len(answer) > 3:
@@ -179,7 +176,7 @@ def of_order(question: Question, answer: Any, turns: Any, turned: Any) -> Iterat
 
 
 def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
-    """What is mixed up in a number, with the unit as it is; and a prefix that is lost."""
+    """Iterate over mistakes in a number, with the unit unchanged, and a lost prefix."""
     number, unit = answer
     for mistake in of_expression(question, number, turns, turned):
         if mistake.note != "reciprocal":
@@ -193,14 +190,14 @@ def of_measurement(question: Question, answer: Any, turns: Any, turned: Any) -> 
 
 
 def of_factors(answer: Any) -> Iterator[Mistake]:
-    """The answer times a small factor."""
+    """Iterate over the answer times a small factor."""
     for name, factor in FACTORS:
         yield Mistake("factor", {"factor": name}, sympy.Rational(factor) * answer)
 
 
 def of_vector(question: Question, answer: Any, turns: Any, turned: Any) -> Iterator[Mistake]:
     if hasattr(answer, "to_matrix"):
-        # a SymPy vector: its author has written its components in `turned`, or names mistakes
+        # The author of a SymPy vector has written its components in `turned`, or names mistakes.
         return
     answer = as_matrix(answer)
     yield Mistake("opposite", {}, -answer)

@@ -1,7 +1,7 @@
 """An answer as plain data: what a check reads, and all that ever leaves a student's process.
 
 An answer may be a SymPy expression, a matrix, a reference frame, a vector, a NumPy array, a list or
-a text. Here it becomes a table of numbers, names and operations that JSON can hold:
+a string. Here it becomes a table of numbers, names and operations that JSON can represent:
 
 ``{'value': value, 'nodes': [node, ...]}``
 
@@ -10,13 +10,13 @@ rows, columns, [k, ...]]``, ``['list', [value, ...]]``, ``['frame', name, {other
 (its direction cosine matrix with respect to each frame it is connected to), ``['frames', {target:
 {source: value, ...}, ...}]``, ``['vector', {frame: value, ...}]`` (its components in each frame) or
 ``['function', [value or ['raised', t] or ['printed', t], ...], b]``, where ``b`` says whether its
-body works anything out. Each ``k`` counts into ``nodes``; a node is ``['integer', digits]``,
+body computes anything. Each ``k`` is an index into ``nodes``; a node is ``['integer', digits]``,
 ``['rational', p, q]``, ``['float', digits]``, ``['symbol', name]``, ``['constant', name]`` or
-``[operation, k, ...]``, and refers only to nodes before itself.
+``[operation, k, ...]``, and refers only to earlier nodes.
 
-A subexpression that occurs often is written once, so the table is as large as the work that made
-the answer and not as the tree that would be printed. Nothing is simplified. Reading such a table,
-unlike unpickling or ``sympify``, runs no code that a student wrote.
+A repeated subexpression is written once, so the table is as large as the work that made the answer
+and not as the printed tree. Nothing is simplified. Reading such a table, unlike unpickling or
+``sympify``, runs no code that a student wrote.
 """
 
 import contextlib
@@ -43,14 +43,14 @@ from .units import BASE
 #: Largest number of nodes of one answer, and of parts of a list.
 MOST_NODES = 60_000
 MOST_PARTS = 400
-#: Longest text, longest integer (in digits) and deepest list that are read.
+# Longest string, longest integer (in digits) and deepest list that are read.
 LONGEST_TEXT = 2_000
 LONGEST_INTEGER = 400
 DEEPEST = 6
 
-#: Calls of functions that working out one part of an answer (a derivative, an integral) may take:
-#: about a second. Calls are counted, and no clock is read, so that every machine decides alike, the
-#: one in a browser too.
+# The allowed function calls for evaluating one part of an answer (a derivative, an integral): about
+# a second. Calls are counted instead of time, so that every machine decides alike, also in a
+# browser.
 MOST_CALLS = 400_000
 
 VALUES = (
@@ -69,9 +69,9 @@ VALUES = (
 )
 
 
-#: A step of the work: a number, a name, or an operation and which nodes before it it is of.
+# A step of the computation: a number, a name, or an operation with the indices of its operands.
 Node: TypeAlias = list[str | int]
-#: What an answer is: the name of its form, and what that form holds.
+# An answer: the name of its form, and the content of that form.
 Value: TypeAlias = list[
     "str | int | list[int] | list[Value] | dict[str, Value] | dict[str, dict[str, Value]]"
 ]
@@ -87,42 +87,42 @@ class Plain(TypedDict):
 
 
 def operands(node: Node) -> list[int]:
-    """The nodes that an operation is of."""
+    """Return the operands of an operation, as nodes."""
     return cast(list[int], node[1:])
 
 
 def parts_of(value: Value) -> list[Value]:
-    """What a list holds, or a function has returned."""
+    """Return the parts of a list, or the results of a function."""
     return cast(list[Value], value[1])
 
 
 def node_of(value: Value) -> int:
-    """The node that an expression is."""
+    """Return the node of an expression."""
     return cast(int, value[1])
 
 
 def text_of(value: Value) -> str:
-    """What a text says; or what was printed, or raised."""
+    """Return the content of a string, or the printed or raised text."""
     return cast(str, value[1])
 
 
 def entries_of(value: Value) -> list[int]:
-    """The nodes of the entries of a matrix, row by row."""
+    """Return the nodes of the entries of a matrix, row by row."""
     return cast(list[int], value[3])
 
 
 def size_of(value: Value) -> tuple[int, int]:
-    """Rows and columns of a matrix."""
+    """Return the rows and columns of a matrix."""
     return cast(tuple[int, int], tuple(value[1:3]))
 
 
 def by_frame(value: Value) -> dict[str, Value]:
-    """The matrices of a reference frame, or the components of a vector, by the other frame."""
+    """Return the matrices of a reference frame, or the components of a vector, by frame."""
     return cast(dict[str, Value], value[-1])
 
 
 class Array(Protocol):
-    """What NumPy's arrays can do, and those that stand in for them."""
+    """The interface of NumPy's arrays and of their stand-ins."""
 
     shape: tuple[int, ...]
 
@@ -130,7 +130,7 @@ class Array(Protocol):
 
 
 class CoordinateFrame(Protocol):
-    """A reference frame of SymPy, and the frames that it was oriented with."""
+    """A reference frame of SymPy, and the frames relative to which it was oriented."""
 
     name: str
     _dcm_dict: dict["CoordinateFrame", object]
@@ -150,18 +150,19 @@ class FrameGraph(Protocol):
 
 
 class NotPlain(ValueError):
-    """An answer cannot be read; the message says why, in the student's terms."""
+    """An answer cannot be read; the message explains why, in the student's terms."""
 
 
 class TooMuchWork(BaseException):
-    """Working out a part took more calls than it may; no Exception,
-    so that SymPy does not catch it.
+    """Evaluating a part took too many calls.
+
+    This is no Exception, so that SymPy does not catch it.
     """
 
 
 @contextlib.contextmanager
 def limited_work(most: int = MOST_CALLS) -> Iterator[None]:
-    """Stop what takes too long by counting the calls it makes: it needs no signal and no thread.
+    """Stop slow work by counting the calls that it makes, without signals or threads.
 
     Raises
     ------
@@ -186,18 +187,18 @@ def limited_work(most: int = MOST_CALLS) -> Iterator[None]:
 def to_plain(
     answer: object, calls: Sequence[Sequence[object]] | None = None, raise_missing: bool = False
 ) -> Plain:
-    """Give an answer as plain data.
+    """Return an answer as plain data.
 
     Parameters
     ----------
     answer : object
-        What the student bound to the name. ``...`` and ``None`` are blanks.
+        The student's value. ``...`` and ``None`` are blanks.
     calls : list of lists, optional
         For a question that asks for a function: the arguments of each call, already of the type
-        that the function is to be given. The results, and errors, of the calls are the answer.
+        that the function takes. The results, and errors, of the calls are the answer.
     raise_missing : bool
-        Whether the error of a package that is not here goes on to whoever asks, who may bring the
-        package (a page fetches NumPy) and ask again; otherwise it counts as the answer's own.
+        Whether to raise the error of a missing package, so that the caller can load the package (a
+        page fetches NumPy) and try again; otherwise it counts as the answer's own.
 
     Raises
     ------
@@ -220,7 +221,7 @@ def to_plain(
         ) from None
 
 
-#: What the body of a function that is still blank is compiled to.
+# The byte code of a function body that is still blank.
 IDLE = {
     "RESUME",
     "NOP",
@@ -243,9 +244,7 @@ def _is_blank(answer: object) -> bool:
 
 
 class _Writer:
-    """Writes one answer; the memory of what was written already is
-    what keeps shared parts shared.
-    """
+    """The writer of one answer, whose memory of written parts keeps shared parts shared."""
 
     def __init__(self, raise_missing: bool) -> None:
         self.raise_missing = raise_missing
@@ -287,7 +286,7 @@ class _Writer:
         if origin == "orientation" and hasattr(answer, "reference_frames"):
             return self.of_frames(cast(FrameGraph, answer), depth)
         if isinstance(answer, dict) and len(answer) == 1:
-            # What `solve` gives for one unknown: {theta: pi/4}.
+            # The result of `solve` for one unknown: {theta: pi/4}.
             return self.value(next(iter(answer.values())), depth)
         if isinstance(answer, (Iterator, KeysView, ValuesView)):
             kind = type(answer).__name__[:40]
@@ -324,7 +323,7 @@ class _Writer:
         ]
 
     def of_frames(self, answer: FrameGraph, depth: int) -> Value:
-        """The frames of the book's own graph: the matrix of every pair that is connected."""
+        """Return the matrix of every connected pair in the book's own graph of frames."""
         names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
         if len(names) > 12:
             raise NotPlain(
@@ -346,15 +345,15 @@ class _Writer:
                 "This is a SciPy Rotation, which holds no matrix of two named frames. "
                 "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
             )
-        # Mechanics is slow to import; whoever has a frame or a vector has imported it.
+        # Mechanics is slow to import; if the answer has a frame or a vector, it has been imported.
         mechanics = sys.modules.get("sympy.physics.vector")
         if mechanics and isinstance(answer, mechanics.ReferenceFrame):
             return [
                 "frame",
                 _text(answer.name),
                 {
-                    _text(other.name): self.value(answer.dcm(other), depth)
-                    for other in _connected([answer])
+                    _text(neighbour.name): self.value(answer.dcm(neighbour), depth)
+                    for neighbour in _connected([answer])
                 },
             ]
         if mechanics and isinstance(answer, mechanics.Vector):
@@ -385,7 +384,7 @@ class _Writer:
                 else self.value(answer[()], depth)
             )
         if isinstance(answer, sympy.Eq):
-            # `Eq(theta, pi/4)`: what stands beside the one symbol that is solved for.
+            # `Eq(theta, pi/4)`: use the side beside the symbol that is solved for.
             sides = [
                 side for side in answer.args if not isinstance(side, (sympy.Symbol, AppliedUndef))
             ]
@@ -438,11 +437,10 @@ class _Writer:
         return len(self.nodes) - 1
 
     def matrix(self, answer: sympy.matrices.MatrixExpr | sympy.MatrixBase) -> Entries:
-        """The rows, columns and entries of a matrix expression, whose products
-        and inverses are worked out here.
+        """Return the rows, columns and entries of a matrix expression, with products evaluated.
 
-        SymPy's own inverse of a product of three turns takes half a minute; written as cofactors
-        over a determinant it is a few more nodes.
+        SymPy's own inverse of a product of three rotations takes half a minute; written as
+        cofactors over a determinant it is a few more nodes.
         """
         if not all(sympy.sympify(size).is_Integer for size in answer.shape):
             raise NotPlain("The matrix has no definite size.")
@@ -557,7 +555,7 @@ class _Writer:
         columns: tuple[int, ...],
         minus: int,
     ) -> int:
-        """The determinant of some rows and columns."""
+        """Return the determinant of some rows and columns."""
         if not rows:
             return self.node("integer", "1")
         terms = []
@@ -584,7 +582,7 @@ class _Writer:
 
     def rational(self, numerator: int, denominator: int) -> int:
         for part in (numerator, denominator):
-            # Compared as powers of two: writing a huge integer out can itself take minutes.
+            # Compare powers of two: writing a huge integer out can itself take minutes.
             if part.bit_length() > LONGEST_INTEGER * 3:
                 raise NotPlain(
                     f"The answer holds an integer of about {int(part.bit_length() * 0.30103)} "
@@ -614,9 +612,7 @@ class _Writer:
         return self.written[root]
 
     def worked_out(self, part: sympy.Basic) -> sympy.Basic:
-        """A part that SymPy has put off, worked out; or itself, which has no
-        value, where that takes too long.
-        """
+        """Evaluate a part that SymPy has deferred; return it unchanged if that takes too long."""
         if self.gave_up < 2:
             try:
                 with limited_work():
@@ -624,7 +620,7 @@ class _Writer:
             except TooMuchWork:
                 self.gave_up += 1
             except Exception:
-                pass  # what SymPy cannot work out has no value here
+                pass  # a part that SymPy cannot evaluate has no value here
         return part
 
     def children(self, part: sympy.Basic) -> tuple[sympy.Basic, ...]:
@@ -640,9 +636,7 @@ class _Writer:
         return () if part in self.put_off else tuple(part.args)
 
     def without_unit(self, unit: sympy.Basic) -> sympy.Expr:
-        """What stands for a unit in a matrix of numbers: a radian is
-        none, and a degree a part of it.
-        """
+        """Return a unit's value in a matrix of numbers: 1 for a radian, a fraction for a degree."""
         units = sys.modules["sympy.physics.units"]
         if unit == units.radian:
             return sympy.S.One
@@ -678,7 +672,7 @@ class _Writer:
         return self.node(type(part).__name__[:60], *(self.written[child] for child in children))
 
 
-#: What SymPy may have put off and would work out by ``.doit()``.
+# Expressions that SymPy may have deferred and that ``.doit()`` evaluates.
 PUT_OFF = (
     sympy.Derivative,
     sympy.Integral,
@@ -692,45 +686,41 @@ PUT_OFF = (
 
 
 def _name_of(symbol: str) -> str:
-    """The name of a symbol in the letters of a keyboard: ``θ`` is
-    ``theta``, ``θ_1`` is ``theta_1``.
-    """
+    """Return the name of a symbol in ASCII: ``theta`` for ``θ``, ``theta_1`` for ``θ_1``."""
     return _text("".join(map(_spelled, unicodedata.normalize("NFKC", symbol))))
 
 
 def _spelled(letter: str) -> str:
     words = unicodedata.name(letter, "").lower().split()
     if words[:1] == ["greek"] and words[2:3] == ["letter"]:
-        # Unicode spells one letter in another way than everybody else.
+        # Unicode spells this letter differently from everybody else.
         word = words[-1].replace("lamda", "lambda")
         return word.capitalize() if words[1] == "capital" else word
     return letter
 
 
 def _text(text: str) -> str:
-    text = str(text)  # a subclass, such as NumPy's, is none in JSON
+    text = str(text)  # a subclass, such as NumPy's, is not a string in JSON
     if len(text) > LONGEST_TEXT:
         raise NotPlain(f"A text of {len(text)} characters is longer than any answer.")
     return text
 
 
 def _module(kind: type) -> str:
-    # A function of time, theta(t), is of a type that SymPy made on the
-    # spot and that belongs to no module.
+    # A function of time, theta(t), has a type that SymPy creates on the spot and that belongs to no
+    # module.
     return str(kind.__module__)
 
 
 def _is_array(answer: object) -> TypeGuard[Array]:
-    """Whether this is an array of NumPy, or one of those that stand in for it
-    where it is not: by what it can do.
-    """
+    """Whether this behaves like an array of NumPy or of its stand-in."""
     return callable(getattr(answer, "tolist", None)) and isinstance(
         getattr(answer, "shape", None), tuple
     )
 
 
 def _is_quantity(part: object) -> bool:
-    # Slow to import; whoever has a quantity has imported it.
+    # The module is slow to import; if there is a quantity, it has been imported.
     units = sys.modules.get("sympy.physics.units")
     return units is not None and isinstance(part, units.Quantity)
 
@@ -743,8 +733,7 @@ def _is_rate(part: sympy.Basic) -> TypeGuard[sympy.Derivative]:
 def _has_unit(part: object) -> bool:
     if not isinstance(part, sympy.Expr):
         return False
-    # Each shared part is looked at once: SymPy's own `has` goes
-    # through the tree that would be printed.
+    # Visit each shared part once: SymPy's own `has` traverses the printed tree.
     seen: set[int] = set()
     waiting = [part]
     while waiting:
@@ -758,8 +747,9 @@ def _has_unit(part: object) -> bool:
 
 
 def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr, str]:
-    """Write an expression with quantities of :mod:`sympy.physics.units` as a
-    number and a text in base units.
+    """Write an expression with quantities of :mod:`sympy.physics.units` in base units.
+
+    The result is a number and the text of the unit.
     """
     base = {getattr(units, name): sympy.Dummy(name, positive=True) for name in BASE}
     pure = {
@@ -804,12 +794,10 @@ def _in_order(parts: Iterable[object]) -> list[object]:
 
 
 def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:
-    """All frames that are connected with those given, found through
-    SymPy's own record of neighbours.
-    """
+    """Return all frames connected with the given ones, from SymPy's record of neighbours."""
     connected = list(dict.fromkeys(frames))
     for frame in connected:
-        connected.extend(other for other in frame._dcm_dict if other not in connected)
+        connected.extend(neighbour for neighbour in frame._dcm_dict if neighbour not in connected)
         if len(connected) > 30:
             raise NotPlain("More than 30 frames are connected with this one.")
     return connected
@@ -823,12 +811,12 @@ _NAME = re.compile(r"\w{1,60}", re.ASCII)
 
 
 def read_plain(data: object) -> Plain:
-    """Check data that came out of a student's process, and give it back.
+    """Check data from a student's process, and return them.
 
     Raises
     ------
     NotPlain
-        The data is not what :func:`to_plain` makes.
+        The data are not a result of :func:`to_plain`.
     """
     if not isinstance(data, dict) or set(data) != {"value", "nodes"}:
         raise NotPlain(DAMAGED)
@@ -871,7 +859,7 @@ def _is_text(text: object) -> bool:
 
 
 def _is_before(position: int, node: object) -> bool:
-    # A truth value would count as a number, too.
+    # A Boolean would count as a number, too.
     return type(node) is int and 0 <= node < position
 
 

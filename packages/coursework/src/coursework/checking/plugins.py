@@ -36,17 +36,17 @@ GROUP = "coursework.plugins"
 
 @functools.cache
 def plugins() -> list[ModuleType]:
-    """The plug-ins of all installed distributions.
+    """Return the plug-ins of all installed distributions.
 
     Raises
     ------
     RuntimeError
         One of them cannot be imported; the message says which.
     """
-    found = []
+    modules = []
     for entry in sorted(metadata.entry_points(group=GROUP)):
         try:
-            found.append(entry.load())
+            modules.append(entry.load())
         except Exception as error:
             brought = (
                 f", which {entry.dist.name} {entry.dist.version} brings for coursework,"
@@ -57,46 +57,44 @@ def plugins() -> list[ModuleType]:
                 f"The plug-in {entry.name!r} ({entry.value}){brought} cannot be loaded: "
                 f"{type(error).__name__}: {error}"
             ) from error
-    return found
+    return modules
 
 
 @functools.cache
 def kinds() -> dict[str, Kind]:
-    """All kinds of questions, by name."""
-    found = dict(KINDS)
+    """Return all kinds of questions, by name."""
+    all_kinds = dict(KINDS)
     for plugin in plugins():
         for name, kind in getattr(plugin, "KINDS", {}).items():
-            if name in found:
+            if name in all_kinds:
                 raise RuntimeError(
                     f"{plugin.__name__} brings a kind of question {name!r}; there is one already."
                 )
-            found[name] = kind
-    return found
+            all_kinds[name] = kind
+    return all_kinds
 
 
 def kind_of_values(question: Question) -> Kind:
-    """The kind of what is compared: for a function, of its results."""
+    """Return the kind of the compared values; for a function, that of its results."""
     return kinds()[question.kind_of_values]
 
 
 def packages() -> list[str]:
-    """Names of the packages that the notebooks of the installed
-    courses import, and of the plug-ins.
-    """
-    found = []
+    """Return the names of the plug-ins and of the packages that installed courses import."""
+    names = []
     for plugin in plugins():
-        found += [plugin.__name__.partition(".")[0], *getattr(plugin, "PACKAGES", ())]
-    return list(dict.fromkeys(found))
+        names += [plugin.__name__.partition(".")[0], *getattr(plugin, "PACKAGES", ())]
+    return list(dict.fromkeys(names))
 
 
 def folders_of(names: Iterable[str]) -> list[str]:
-    """The folders of those packages that are installed."""
+    """Return the folders of the packages that are installed."""
     specs = [importlib.util.find_spec(name) for name in names]
     return [folder for spec in specs if spec for folder in spec.submodule_search_locations or ()]
 
 
 def sealed_folders() -> list[Traversable]:
-    """The folders of sealed questions that plug-ins bring."""
+    """Return the folders of sealed questions in plug-ins."""
     return [
         folder
         for folder in [resources.files(plugin) / "sealed" for plugin in plugins()]

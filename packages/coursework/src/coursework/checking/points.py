@@ -1,6 +1,6 @@
 """The values at which the symbols of a question are compared.
 
-They follow from the question's own salt, so the author's machine and every student's take the same.
+They depend on the question's own salt, so the author's machine and every student's use the same.
 """
 
 import functools
@@ -13,34 +13,37 @@ from typing import Any
 from .evaluate import MP
 from .question import Question
 
-#: So many that each angle has been in all four quadrants, and no two signs
-#: of sines and cosines always agree.
+# Enough points that each angle is in all four quadrants, and that no two signs of sines and cosines
+# always agree.
 POINTS = 5
-#: Where an angle is sampled if its question says nothing: in all four quadrants, so that no root is
-#: taken for the cosine it equals in the first one, and within a half turn, where half-angle forms
-#: hold.
+# The default range of an angle: in all four quadrants, so that no root is taken for the cosine it
+# equals in the first one, and within a half turn, where half-angle forms hold.
 ANGLES = (-3.0, 3.0)
-#: Letters that SymPy has two of and handwriting one.
+# Letters of which SymPy has two forms and handwriting one.
 TWINS = {"phi": "varphi", "varphi": "phi", "epsilon": "varepsilon", "varepsilon": "epsilon"}
-#: How a derivative with respect to time, ``theta'``, may be written as a symbol.
+# Spellings of a derivative with respect to time, ``theta'``, as a symbol.
 RATES = ("{}dot", "{}_dot", "dot_{}", "d{}", r"\dot{{{}}}", r"\dot{{\{}}}")
-#: Tries to place the points well; a range within one quadrant leaves nothing to place.
+# Tries to place the points well; within one quadrant there is nothing to choose.
 MOST_TRIES = 200
 
 
 def spellings(name: str) -> list[str]:
-    """Other names of the symbol of this name."""
+    """Return the other spellings of a symbol's name."""
     if name.endswith("'"):
         letter = name.rstrip("'")
         order = name[len(letter) :]
         letters = [letter, *spellings(letter)]
-        rates = [rate.format(one) for one in letters for rate in RATES] if order == "'" else []
-        return [*(f"{one}{order}" for one in letters[1:]), *rates]
+        rates = (
+            [rate.format(spelling) for spelling in letters for rate in RATES]
+            if order == "'"
+            else []
+        )
+        return [*(f"{spelling}{order}" for spelling in letters[1:]), *rates]
     return [TWINS[name]] if name in TWINS else []
 
 
 def points(question: Question) -> list[dict[str, Any]]:
-    """Give the points of a question: dictionaries from the names of its symbols to numbers."""
+    """Return the points of a question: dictionaries from the names of its symbols to numbers."""
     if not question.symbols:
         return [{}]
     asked = json.dumps([question.salt, sorted(question.symbols.items()), question.unit])
@@ -51,22 +54,23 @@ def points(question: Question) -> list[dict[str, Any]]:
 def _points(asked: str) -> list[dict[str, Any]]:
     salt, symbols, unit = json.loads(asked)
     placed = _placed(salt, [limits for _, limits in symbols])
-    found = []
+    placed_points = []
     for row in placed:
         point = {name: value for (name, _), value in zip(symbols, row)}
         for group in unit:
             length = MP.sqrt(sum(point[name] ** 2 for name in group))
             point.update({name: point[name] / length for name in group})
         for name in list(point):
-            for other in spellings(name):
-                point.setdefault(other, point[name])
-        found.append(point)
-    return found
+            for spelling in spellings(name):
+                point.setdefault(spelling, point[name])
+        placed_points.append(point)
+    return placed_points
 
 
 def _placed(salt: str, ranges: list[tuple[float, float]]) -> list[tuple[Any, ...]]:
-    """Rows of values, one for each point, such that no two signs of sines
-    and cosines agree at all of them.
+    """Return rows of values, one for each point.
+
+    No two signs of sines and cosines agree at all of them.
     """
     best: list[list[Any]] = []
     most = -1
@@ -88,12 +92,12 @@ def _placed(salt: str, ranges: list[tuple[float, float]]) -> list[tuple[Any, ...
 
 def _signs(function: Callable[[Any], float], column: list[Any]) -> tuple[bool, ...]:
     signs = [function(value) >= 0 for value in column]
-    # A sign and its opposite are one: the product of the two never changes.
+    # A sign and its opposite count as one: the product of the two never changes.
     return tuple(sign == signs[0] for sign in signs)
 
 
 def _column(seed: str, low: float, high: float) -> list[Any]:
-    """One value for each point, in every quadrant that the range has a part in."""
+    """Return one value for each point, in every quadrant that the range overlaps."""
     first, last = MP.mpf(low), MP.mpf(high)
     quarter = MP.pi / 2
     inner = range(int(MP.floor(first / quarter)) + 1, int(MP.ceil(last / quarter)))
@@ -106,7 +110,8 @@ def _column(seed: str, low: float, high: float) -> list[Any]:
     chosen = [*kinds.values(), *parts, *parts, *parts, *parts, *parts][:POINTS]
     chosen = sorted(enumerate(chosen), key=lambda place: _share(f"{seed} place {place[0]}"))
     return [
-        # Not at the edge of a part: there a form may be undefined, or two that differ nearly agree.
+        # Avoid the edges of a part: there a form may be undefined, or two different ones nearly
+        # agree.
         start + (MP.mpf("0.06") + MP.mpf("0.88") * _share(f"{seed} value {number}")) * (end - start)
         for number, (start, end) in chosen
     ]

@@ -1,10 +1,9 @@
-"""What is written down beside a notebook: how far its student is with
-each question, and with whose numbers.
+"""The record beside a notebook: a student's progress with each question, and with whose numbers.
 
-Never an answer, and never a hint: where hints can be read again. The file may hold anything, since
-it is the student's: what is no record is none, and what a newer version has added to an entry stays
-in it. The pages of a book keep the same entries (``store.js`` of their scripts), and know from
-them, without Python, what was solved with other numbers.
+It never contains an answer or a hint, only where hints can be read again. The file may contain
+anything, since it belongs to the student: invalid records are ignored, and fields that a newer
+version has added to an entry are kept. The pages of a book store the same entries (``store.js`` of
+their scripts), and see from them, without Python, what was solved with other numbers.
 """
 
 from __future__ import annotations
@@ -33,9 +32,9 @@ from .fields import (
 )
 from .question import Place
 
-#: Where it lies: beside the notebook, and nowhere else.
+# The file is beside the notebook, and nowhere else.
 KEPT = Path(".coursework", "progress.json")
-#: In an entry: what is known with other numbers than those of the entry itself.
+# The field of an entry for the records with other numbers.
 OTHERS = "other variants"
 
 
@@ -85,10 +84,10 @@ class Entry:
     more: Mapping[str, Json] = field(default_factory=dict)
 
     @classmethod
-    def from_json(cls, found: object) -> Entry:
-        """Read an entry; a field that is not what it should be is as if it were not there."""
+    def from_json(cls, content: object) -> Entry:
+        """Read an entry; an invalid field counts as missing."""
         try:
-            about = Fields(found, "An entry")
+            about = Fields(content, "An entry")
         except Misread:
             return cls()
 
@@ -114,8 +113,8 @@ class Entry:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """What :meth:`from_json` reads; what is empty is left out."""
-        found: dict[str, Json] = dict(self.more)
+        """Return the JSON that :meth:`from_json` reads, without empty fields."""
+        fields_as_json: dict[str, Json] = dict(self.more)
         for name, value in vars(self).items():
             if (
                 name
@@ -131,25 +130,28 @@ class Entry:
                 )
                 and value
             ):
-                found[name.replace("_", " ")] = written(value)
+                fields_as_json[name.replace("_", " ")] = written(value)
         if self.page:
-            found["page"] = [self.page.page, self.page.key]
+            fields_as_json["page"] = [self.page.page, self.page.key]
         if self.after:
-            found["after"] = [[name, place.page, place.key] for name, place in self.after]
-        found |= {} if self.whose is None else {"whose": self.whose}
-        return found | ({OTHERS: _by_variant(self.others)} if self.others else {})
+            fields_as_json["after"] = [[name, place.page, place.key] for name, place in self.after]
+        fields_as_json |= {} if self.whose is None else {"whose": self.whose}
+        return fields_as_json | ({OTHERS: _by_variant(self.others)} if self.others else {})
 
     def has(self, variant: int, numbers: str) -> bool:
-        """Whether it is of these numbers; an entry without any knows its variant's number alone."""
+        """Whether it has these numbers; an unnamed entry knows only its variant's number."""
         return self.numbers == numbers if self.numbers and numbers else self.variant == variant
 
     def with_numbers(self, variant: int, numbers: str) -> Entry:
-        """What is known with these numbers; what is known with others stays beside it."""
+        """Return the record with these numbers, which keeps the records with others."""
         if self == Entry(after=self.after) or self.has(variant, numbers):
             return replace(self, variant=variant, numbers=numbers)
         known = [replace(self, others=()), *self.others]
-        own = next((one for one in self.others if one.has(variant, numbers)), Entry())
-        others = tuple(one for one in known if one is not own)
+        own = next(
+            (variant_entry for variant_entry in self.others if variant_entry.has(variant, numbers)),
+            Entry(),
+        )
+        others = tuple(variant_entry for variant_entry in known if variant_entry is not own)
         return replace(
             own,
             variant=variant,
@@ -164,24 +166,27 @@ FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"oth
 }
 
 
-def _opened(found: object, where: str) -> tuple[str, Place]:
-    name, *place = many(anything)(found, where) or [None]
+def _opened(content: object, where: str) -> tuple[str, Place]:
+    name, *place = many(anything)(content, where) or [None]
     return text(name, where), Place.from_json(place, where)
 
 
 def _by_variant(entries: Iterable[Entry]) -> dict[str, Json]:
-    """Entries by the number of their variant; where two editions have other
-    numbers under one, by these, too.
+    """Return entries by the number of their variant.
+
+    If two editions have different numbers under the same one, the name includes these numbers.
     """
-    found: dict[str, Json] = {}
-    for one in entries:
-        name = str(one.variant)
-        found[f"{name} {one.numbers}" if name in found else name] = one.as_json()
-    return found
+    by_name: dict[str, Json] = {}
+    for variant_entry in entries:
+        name = str(variant_entry.variant)
+        by_name[f"{name} {variant_entry.numbers}" if name in by_name else name] = (
+            variant_entry.as_json()
+        )
+    return by_name
 
 
 class Progress:
-    """The file, as it was when it was read; what is changed in it is written at once.
+    """The content of the file when it was read; changes are written at once.
 
     >>> progress = Progress({"levers/arm": {"outcome": "correct"}, "levers/see-saw": 3})
     >>> progress.entry("levers/arm").outcome, progress.entry("levers/see-saw") == Entry()
@@ -201,9 +206,7 @@ class Progress:
         return Entry.from_json(self.entries.get(name))
 
     def put(self, entries: Mapping[str, Entry]) -> None:
-        """Write some entries; a folder that cannot be written to
-        costs the record and nothing else.
-        """
+        """Write some entries; in a read-only folder, only the record is lost."""
         self.entries |= {name: entry.as_json() for name, entry in entries.items()}
         with suppress(OSError):
             KEPT.parent.mkdir(exist_ok=True)

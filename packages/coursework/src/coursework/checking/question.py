@@ -1,9 +1,8 @@
-"""A question as a student's computer knows it, and what is locked up with it: the
-data, and how it is read and written.
+"""A question as a student's computer knows it, its sealed part, and how both are read and written.
 
-JSON calls a field as Python does, with spaces for underscores: ``either_sign`` is ``"either
-sign"``. What is empty is left out. The files of sealed questions are read by
-:mod:`coursework.checking.questions`.
+JSON names a field as Python does, with spaces for underscores: ``either_sign`` is ``"either
+sign"``. Empty fields are left out. :mod:`coursework.checking.questions` reads the files of sealed
+questions.
 """
 
 from __future__ import annotations
@@ -29,20 +28,20 @@ from .fields import (
     written,
 )
 
-#: Of the files with sealed questions.
+# The format of the files with sealed questions.
 FORMAT = 4
-#: What an answer that a question knows may be, by its number in a locker.
+# The outcomes of a known answer, by their numbers in a locker.
 OUTCOMES = ("correct", "mistake")
 
 
 @dataclass(frozen=True)
 class Variant:
-    """What is particular to one of the variants of a question.
+    """The particular data of one variant of a question.
 
     Attributes
     ----------
     number, count : int
-        Which it is, and how many there are.
+        Its number, and how many there are.
     given : mapping
         Its numbers and names, by the names of the parameters.
     shown : mapping of str
@@ -52,9 +51,9 @@ class Variant:
     picture : str or None
         As :func:`coursework.checking.variants.packed` makes it.
     names : tuple of str
-        What all variants are called, where one goes to a student by its name.
+        The names of all variants, where a student's variant is found by its name.
     edition : str
-        Of the course: each draws afresh.
+        Of the course: each edition draws its own variants.
     """
 
     number: int = 0
@@ -68,7 +67,7 @@ class Variant:
 
     @classmethod
     def of(cls, about: Fields) -> Variant | None:
-        """The variant of a question, from the fields of that; ``None`` if there is only one."""
+        """Return the variant in a question's fields, or ``None`` if there is only one."""
         count = about.maybe("variants", whole)
         if count is None:
             return None
@@ -164,12 +163,12 @@ class Question:
 
     @property
     def kind_of_values(self) -> str:
-        """The kind of what is compared: for a function, of its results."""
+        """The kind of the compared values; for a function, that of its results."""
         return self.result if self.kind == "function" and self.result else self.kind
 
     @property
     def variants(self) -> int:
-        """How many variants there are."""
+        """The number of variants."""
         return self.variant.count if self.variant else 1
 
     @property
@@ -178,14 +177,14 @@ class Question:
         return self.variant.given if self.variant else {}
 
     @classmethod
-    def from_json(cls, found: object, where: str = "a question") -> Question:
-        """Read a question; beside it there may be what is sealed.
+    def from_json(cls, content: object, where: str = "a question") -> Question:
+        """Read a question; its sealed part may be beside it.
 
         Raises
         ------
         Misread
         """
-        about = Fields(found, where)
+        about = Fields(content, where)
         return cls(
             about.get("kind", text),
             about.maybe("salt", text) or "",
@@ -211,43 +210,41 @@ class Question:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """What :meth:`from_json` reads."""
-        found: dict[str, Json] = {}
+        """Return the JSON that :meth:`from_json` reads."""
+        fields_as_json: dict[str, Json] = {}
         for name, value in vars(self).items():
             if name == "variant":
-                found |= self.variant.as_json() if self.variant else {}
+                fields_as_json |= self.variant.as_json() if self.variant else {}
             elif name == "arguments":
-                found |= self.arguments
+                fields_as_json |= self.arguments
             elif value not in (None, (), {}):
-                found[name.replace("_", " ")] = written(value)
-        return found
+                fields_as_json[name.replace("_", " ")] = written(value)
+        return fields_as_json
 
 
 class Place(NamedTuple):
-    """Where something is locked up: the number of a page, its key, and what
-    is to be put into the words there.
-    """
+    """The place of sealed content: a page's number, its key, and what to insert into its text."""
 
     page: int
     key: str
     short: str = ""
 
     @classmethod
-    def from_json(cls, found: object, where: str) -> Place:
-        if not isinstance(found, (list, tuple)) or len(found) not in (2, 3):
-            raise Misread(where, "a page with its key", found)
-        return cls(whole(found[0], where), *(text(part, where) for part in found[1:]))
+    def from_json(cls, content: object, where: str) -> Place:
+        if not isinstance(content, (list, tuple)) or len(content) not in (2, 3):
+            raise Misread(where, "a page with its key", content)
+        return cls(whole(content[0], where), *(text(part, where) for part in content[1:]))
 
 
 class Note(NamedTuple):
-    """What a mistake is called, and what its message needs to know."""
+    """The note of a mistake, and the details for its message."""
 
     note: str
     details: dict[str, Json]
 
     @classmethod
-    def from_json(cls, found: object, where: str) -> Note:
-        note, details = pair(anything)(found, where)
+    def from_json(cls, content: object, where: str) -> Note:
+        note, details = pair(anything)(content, where)
         return cls(text(note, where), by_name(anything)(details, where))
 
 
@@ -272,8 +269,8 @@ class KnownAnswer:
     numbers: tuple[str, ...] = ()
 
     @classmethod
-    def from_json(cls, found: object, where: str) -> KnownAnswer:
-        about = Fields(found, where)
+    def from_json(cls, content: object, where: str) -> KnownAnswer:
+        about = Fields(content, where)
         return cls(
             about.get("outcome", one_of(*OUTCOMES)),
             about.maybe("notes", many(Note.from_json)) or (),
@@ -282,9 +279,9 @@ class KnownAnswer:
         )
 
     def as_json(self) -> dict[str, Json]:
-        found = {"outcome": self.outcome, "notes": written(self.notes)}
-        found |= {"hints": written(self.hints)} if self.hints else {}
-        return found | ({"numbers": written(self.numbers)} if self.numbers else {})
+        fields_as_json = {"outcome": self.outcome, "notes": written(self.notes)}
+        fields_as_json |= {"hints": written(self.hints)} if self.hints else {}
+        return fields_as_json | ({"numbers": written(self.numbers)} if self.numbers else {})
 
 
 @dataclass(frozen=True)
@@ -309,8 +306,8 @@ class Locker:
     place: Place | None = None
 
     @classmethod
-    def from_json(cls, found: object, where: str, place: Place | None = None) -> Locker:
-        about = Fields(found, where)
+    def from_json(cls, content: object, where: str, place: Place | None = None) -> Locker:
+        about = Fields(content, where)
         return cls(
             about.maybe("cases", many(KnownAnswer.from_json)) or (),
             about.maybe("after", by_name(many(text))) or {},
@@ -319,20 +316,21 @@ class Locker:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """What is known of the answers; the solution and its place are sealed by
-        :mod:`coursework.authoring.author`.
+        """Return the known answers.
+
+        :mod:`coursework.authoring.author` seals the solution and its place.
         """
         cases: dict[str, Json] = {"cases": [answer.as_json() for answer in self.answers]}
         return cases | ({"after": written(self.after)} if self.after else {})
 
 
-def _solution(found: object, where: str) -> Place | str:
-    return found if isinstance(found, str) else Place.from_json(found, where)
+def _solution(content: object, where: str) -> Place | str:
+    return content if isinstance(content, str) else Place.from_json(content, where)
 
 
 @dataclass(frozen=True)
 class Sealed:
-    """A question with what is locked up of it, as students receive it.
+    """A question with its sealed part, as students receive it.
 
     Attributes
     ----------
@@ -343,12 +341,12 @@ class Sealed:
     lockers : str
         As :func:`coursework.checking.sealing.pack` packs them.
     pages, ladder : tuple of str
-        As :func:`coursework.checking.sealing.seal` seals them: the ladder are the hints that every
-        question has.
+        As :func:`coursework.checking.sealing.seal` seals them: the ladder consists of the hints of
+        every question.
     others : (str, str) or None
-        The salt that all variants have in common, and the names under which it is known that an
-        answer is right in one of them, as :func:`coursework.checking.sealing.pack_names` packs
-        them; with the first variant.
+        In the first variant: the salt that all variants share, and the names by which an answer is
+        recognised as right in one of them, as :func:`coursework.checking.sealing.pack_names` packs
+        them.
     """
 
     question: Question
@@ -360,17 +358,17 @@ class Sealed:
     others: tuple[str, str] | None = None
 
     @classmethod
-    def from_json(cls, found: object, where: str) -> Sealed:
+    def from_json(cls, content: object, where: str) -> Sealed:
         """Read a question of a file of sealed questions.
 
         Raises
         ------
         Misread
         """
-        about = Fields(found, where)
+        about = Fields(content, where)
         worth = about.maybe("worth", number)
         return cls(
-            Question.from_json(found, where),
+            Question.from_json(content, where),
             about.maybe("lockers", text) or "",
             1 if worth is None else worth,
             about.maybe("answer", text) or "",
@@ -380,7 +378,7 @@ class Sealed:
         )
 
     def as_json(self) -> dict[str, Json]:
-        """What :meth:`from_json` reads."""
+        """Return the JSON that :meth:`from_json` reads."""
         more = {"answer": self.answer, "pages": written(self.pages), "ladder": written(self.ladder)}
         more["others"] = written(self.others)
         sealed: dict[str, Json] = {"lockers": self.lockers, "worth": self.worth}
@@ -391,7 +389,7 @@ class Sealed:
         )
 
 
-#: The fields of a sealed question that are no arguments of its kind alone.
+# The fields of a sealed question that are not arguments of its kind alone.
 NOT_OF_THE_KIND = frozenset(
-    name.replace("_", " ") for one in (Question, Sealed) for name in one.__dataclass_fields__
+    name.replace("_", " ") for record in (Question, Sealed) for name in record.__dataclass_fields__
 ).union(OF_VARIANTS)

@@ -1,7 +1,7 @@
-"""The sealed questions, found by name.
+"""Find the sealed questions by name.
 
-A name is ``'notebook/question'``; the questions of one notebook lie in one file,
-``sealed/notebook.json``. The folder ``sealed`` stands beside the notebook, or in the package of a
+A name is ``'notebook/question'``; the questions of one notebook are in one file,
+``sealed/notebook.json``. The folder ``sealed`` is beside the notebook, or in the package of a
 plug-in.
 """
 
@@ -33,51 +33,52 @@ from .reading import Reading, canonical, distance, fault, fingerprint, read, tol
 from .reply import Reply
 from .variants import Given, names_of_variants, own_variant, siblings_of, text_of, without_sibling
 
-#: In a folder of sealed questions: where in the web those are that it lacks. Only a
-#: browser's Python has such a file.
+# A file in a folder of sealed questions with the address of the missing ones. Only a browser's
+# Python has it.
 ELSEWHERE = "elsewhere.txt"
-#: Letters and digits of a code that opens worked solutions: none that looks like another.
+# Letters and digits of a code that opens worked solutions, without those that look alike.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 NOT_IN_THIS_CATALOGUE = (
     "This is a mistake that others have made, too, and this version of coursework has no words for "
     "it: install the package that came with the notebook."
 )
-#: Faults of the form that no right value makes good.
+# Faults of the form that no right value excuses.
 ALWAYS_WRONG = ("not unit length",)
-#: The note of an answer in degrees, where radians are asked for.
+# The note of an answer in degrees, where radians are required.
 IN_DEGREES = "in degrees"
-#: What is said of it where the question does not tell its unit to the check.
+# Its message if the check does not know the unit of the question.
 PERHAPS_DEGREES = "Multiplied by $\\pi/180$, this is right. Does the question ask for radians?"
-#: Up to so many tolerances from the right answer, its locker opens,
-#: and one is told that it is close.
+# The distance from the right answer, in tolerances, within which its locker opens and the student
+# is told that the answer is close.
 NEARLY = 3
-#: The note of an answer that is right for another variant, here and in the marks, and what is said
-#: of it.
+# The note of an answer that is right for another variant, here and in the marks, and its message.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = (
     "This is right for other numbers than yours: the default ones, or another student's. Yours "
     "stand in the text of the question, as its cell shows it once it has run."
 )
-#: As far from it one is told so where the locker has opened all the same: its
-#: cell is wider for several numbers.
+# The distance within which this applies if the locker has opened nevertheless, because its cell is
+# wider for several numbers.
 CLOSE = 30
-#: What numbers may be off by that were rounded to two digits after the point.
+# The possible error of numbers that were rounded to two decimals.
 COARSE = 0.005
-#: Denominators up to which a decimal fraction is plainly that fraction: one with few
-#: digits, and one with all of them.
+# The denominators up to which a decimal fraction is clearly that fraction: one with few digits, and
+# one with all of them.
 SMALL, LARGE = 64, 1000
-#: So many decimal fractions of an answer are looked at for an exact length.
+# The number of decimal fractions of an answer that are searched for an exact length.
 MOST_LOOKED_AT = 16
 
 
 Some = TypeVar("Some")
-#: What is known of a fingerprint, or nothing.
+# A function that returns what is known of a fingerprint, or nothing.
 Find = Callable[[str], Locker | None]
 
 
 class NoSuchQuestion(KeyError):
-    """There is no question of that name, and the message names the nearest
-    one; or its numbers are missing."""
+    """There is no question of that name, or its numbers are missing.
+
+    The message suggests the nearest name.
+    """
 
     def __str__(self) -> str:
         return str(self.args[0])
@@ -85,30 +86,30 @@ class NoSuchQuestion(KeyError):
 
 @functools.cache
 def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
-    """The questions of a notebook, by full name; of another variant than 0 those that have it.
+    """Return the questions of a notebook, by full name; in another variant those that have it.
 
     Raises
     ------
     RuntimeError
-        The file is of another format, or is not what it should be.
+        The file has another format or invalid content.
     """
-    found = {}
+    questions_by_name = {}
     try:
         questions = _file(notebook)
         for name, about in (_file(notebook, variant) if variant else questions).items():
             about = _on_the_first(questions[name], about) if variant else about
-            found[name] = Sealed.from_json(about, f"The sealed question {name}")
+            questions_by_name[name] = Sealed.from_json(about, f"The sealed question {name}")
     except ValueError as error:
         cut = f"The sealed questions of {notebook} are no whole file."
         raise RuntimeError(
             f"{error if isinstance(error, Misread) else cut} Unpack the exercises again; what you "
             "have written is kept."
         ) from None
-    return found
+    return questions_by_name
 
 
 def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
-    """Read what a file of sealed questions says of each of them, by name."""
+    """Read the fields of each question in a file of sealed questions, by name."""
     if not re.fullmatch("[a-z0-9-]{1,60}", notebook):
         return {}
     name = f"variants/{notebook}-{variant}.json" if variant else f"{notebook}.json"
@@ -138,12 +139,12 @@ def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
 
 
 def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[str, Json]:
-    """A variant, of which only what differs from the first one is kept, as :func:`beside` does."""
+    """Complete a variant, stored as its differences from the first one (see :func:`beside`)."""
     pages = [
         page
-        for one in (first, own)
-        if isinstance(found := one.get("pages"), list)
-        for page in found
+        for variant_fields in (first, own)
+        if isinstance(page_list := variant_fields.get("pages"), list)
+        for page in page_list
     ]
     return {
         name: value
@@ -153,15 +154,13 @@ def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[st
 
 
 def places() -> list[Traversable]:
-    """Where sealed questions may lie: the folder ``sealed`` beside the
-    notebook, and those of plug-ins.
-    """
+    """Return the folders ``sealed``: that beside the notebook, and those of plug-ins."""
     beside = Path("sealed")
     return [*([beside] if beside.is_dir() else []), *sealed_folders()]
 
 
 def find_question(name: str, student: str) -> Sealed:
-    """Give a question by its full name, in the variant of a student; a sibling by its own name.
+    """Return a question by its full name, in a student's variant; a sibling by its own name.
 
     Raises
     ------
@@ -200,14 +199,14 @@ def find_question(name: str, student: str) -> Sealed:
                 "package that came with the notebook."
             )
         return of_variant[asked]
-    found = [file.name for folder in places() for file in folder.iterdir()]
-    if not found:
+    files = [file.name for folder in places() for file in folder.iterdir()]
+    if not files:
         raise NoSuchQuestion(
             f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with "
             f"this notebook is not beside it (in {Path.cwd()}), and no package with sealed "
             "questions is installed."
         )
-    notebooks = sorted(file.removesuffix(".json") for file in found if file.endswith(".json"))
+    notebooks = sorted(file.removesuffix(".json") for file in files if file.endswith(".json"))
     if name in notebooks:
         raise NoSuchQuestion(
             f"'{name}' is a notebook. Its questions are {', '.join(map(repr, questions))}."
@@ -223,7 +222,7 @@ def find_question(name: str, student: str) -> Sealed:
 
 
 def variant(name: str) -> Given:
-    """Show your variant of a question, and give its numbers.
+    """Show your variant of a question, and return its numbers.
 
     Parameters
     ----------
@@ -240,16 +239,15 @@ def variant(name: str) -> Given:
     NoSuchQuestion
         If the name is misspelt.
     """
-    found = find_question(name, identity()).question.variant or Variant()
-    return Given(text_of(found), found.given)
+    own = find_question(name, identity()).question.variant or Variant()
+    return Given(text_of(own), own.given)
 
 
 def own_numbers(name: str, student: str) -> tuple[int, str]:
-    """The variant in which a student finds a question, or a sibling,
-    and what its numbers are called.
+    """Return a student's variant of a question or sibling, and the name of its numbers.
 
-    0 and nothing where there is only one, and for a question of another release; no name where the
-    variant cannot be had, as without a network.
+    The result is 0 and an empty name if there is only one, or for a question of another release.
+    The name is empty if the variant cannot be read, as without a network.
     """
     (asked, order), notebook = without_sibling(name), name.partition("/")[0]
     number = 0
@@ -261,9 +259,9 @@ def own_numbers(name: str, student: str) -> tuple[int, str]:
 
 
 def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str, Json]:
-    """What of a sealed variant differs from the first one: that is all that is kept of it.
+    """Return the differences between a sealed variant and the first one, which alone are stored.
 
-    Its pages are those that the first one has not, and follow upon them.
+    Its pages are those that the first one lacks, and are counted after the first one's.
 
     >>> first = {'kind': 'vector', 'salt': 'a', 'ladder': []}
     >>> beside({'kind': 'vector', 'salt': 'b', 'shown': {'arm': '2'}}, first)
@@ -277,10 +275,10 @@ def beside(question: Mapping[str, Json], first: Mapping[str, Json]) -> dict[str,
 
 
 def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
-    """Compare an answer, as plain data, with what is sealed; the reply holds what it opened.
+    """Compare an answer, as plain data, with the sealed part; the reply contains the opened locker.
 
-    What a classmate has answered is looked for where somebody has said who works here: it costs a
-    slow hash, and others have no numbers of their own.
+    A classmate's answer is searched for only if there is a student ID: it costs a slow hash, and
+    without an ID nobody has other numbers.
     """
     if sealed.question.exam:
         return compare(name, sealed.question, plain, None)
@@ -291,14 +289,12 @@ def judge(name: str, sealed: Sealed, plain: Plain, student: str = "") -> Reply:
 
 
 def salt_of_all(name: str) -> str:
-    """The salt that all variants of a question have in common: for what is right in one of them."""
+    """Return the salt that all variants of a question share."""
     return hashlib.sha256(f"{name}, all variants".encode()).hexdigest()[:16]
 
 
 def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
-    """Whether a wrong answer is right in some other variant of the
-    question, as a classmate's pasted one is.
-    """
+    """Whether a wrong answer is right in another variant of the question, as a copied one is."""
     if not sealed.others:
         return False
     salt, names = sealed.others
@@ -311,13 +307,14 @@ def is_right_for_others(sealed: Sealed, plain: Plain) -> bool:
 
 
 def code_text(code: str) -> str:
-    """What is hashed of a code that opens worked solutions, however it is typed."""
+    """Return the hashed text of a code that opens worked solutions, however it is typed."""
     return "code " + "".join(letter for letter in code.upper() if letter in CODE_LETTERS)
 
 
 def rung_key(question: Question, number: int) -> bytes:
-    """The key of a step of the ladder of hints: no secret, it only keeps the
-    step from being read in passing.
+    """Return the key of a step of the ladder of hints.
+
+    It is no secret and only prevents accidental reading.
     """
     return hashlib.sha256(f"step {number} for {question.kind}".encode()).digest()[
         : sealing.PAGE_KEY
@@ -325,11 +322,13 @@ def rung_key(question: Question, number: int) -> bytes:
 
 
 def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
-    """What the locker of a fingerprint holds, or ``None``."""
-    found = sealing.open_locker(sealed.lockers, sealing.slow_key(sealed.question.salt, fingerprint))
-    if found is None:
+    """Return the content of the locker of a fingerprint, or ``None``."""
+    content = sealing.open_locker(
+        sealed.lockers, sealing.slow_key(sealed.question.salt, fingerprint)
+    )
+    if content is None:
         return None
-    outcome, page, inside = found
+    outcome, page, inside = content
     if page is not None:
         place = Place(page, inside.hex())
         return Locker.from_json(open_page(sealed, place), f"Page {page}", place)
@@ -340,15 +339,15 @@ def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
 
 
 def open_page(sealed: Sealed, place: Place) -> object:
-    """What stands on a page, as JSON."""
+    """Return the content of a page, as JSON."""
     return sealing.unseal(sealed.pages[place.page], bytes.fromhex(place.key))
 
 
 def solution_on(sealed: Sealed, solution: Place | str) -> str:
-    """The worked solution as HTML, from where it stands.
+    """Return the worked solution as HTML, from its place.
 
-    That of a variant is what differs from words that all variants have
-    in common, on a page of their own.
+    That of a variant is stored as its differences from words that all variants share, on a separate
+    page.
     """
     if isinstance(solution, str):
         return solution
@@ -365,7 +364,7 @@ def compare(
     find: Find | None,
     for_others: Callable[[], bool] | None = None,
 ) -> Reply:
-    """Compare an answer, as plain data, with what is known of a question. Gives the reply.
+    """Compare an answer, as plain data, with what is known of a question, and return the reply.
 
     Parameters
     ----------
@@ -373,21 +372,21 @@ def compare(
     question : Question
     plain : dict
     find : function or None
-        ``None`` where there is nothing to compare with, as in an exam: then only the form of the
-        answer is looked at. It gives the locker of a fingerprint, or ``None``.
+        Returns the locker of a fingerprint, or ``None``. Without the function, as in an exam, only
+        the form of the answer is checked.
     for_others : function, optional
-        It says of an answer that is not known whether it is right for other numbers. It is asked at
-        once, beside ``find``, where two things can be done at a time.
+        Returns whether an unknown answer is right for other numbers. It is called at once, in
+        parallel to ``find`` where possible.
     """
     try:
         reading = read(question, plain)
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
-            said = (
+            message_text = (
                 f"A person will read this text of {words} {'word' if words == 1 else 'words'} and "
                 "decide."
             )
-            return Reply(name, "undecided", "for a person", [said])
+            return Reply(name, "undecided", "for a person", [message_text])
         text = fingerprint(question, reading)
         if find is None:
             reply = _taken_down(name, question, reading)
@@ -402,21 +401,21 @@ def compare(
             "",
             ["Put your answer in place of the `...` and run the cells again."],
         )
-    except Fault as found:
-        return Reply(name, "invalid", found.note, [found.message])
-    except Undecidable as found:
+    except Fault as reason:
+        return Reply(name, "invalid", reason.note, [reason.message])
+    except Undecidable as reason:
         return Reply(
             name,
             "undecided",
             "undecidable",
-            [f"{found} Try another form, or ask your instructor to look at it."],
+            [f"{reason} Try another form, or ask your instructor to look at it."],
         )
 
 
 def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
-    found = fault(question, reading)
-    if found:
-        return Reply(name, "invalid", found.note, [found.message])
+    form_fault = fault(question, reading)
+    if form_fault:
+        return Reply(name, "invalid", form_fault.note, [form_fault.message])
     return Reply(
         name,
         "recorded",
@@ -442,14 +441,16 @@ def _compare(
     known = _known_in(question, reading, locker)
     wrong_form = fault(question, reading) if known is None or known.outcome == "correct" else None
     if wrong_form and (known is None or wrong_form.note in ALWAYS_WRONG):
-        # What comes of rounding is not called a fault of geometry.
+        # Rounding errors are not reported as faults of geometry.
         stray = wrong_form.note == "stray symbol"
-        said = "" if stray else _decimals(question, plain, reading) or _coarse(question, reading)
+        explanation = (
+            "" if stray else _decimals(question, plain, reading) or _coarse(question, reading)
+        )
         return Reply(
             name,
             "invalid",
             wrong_form.note,
-            [said, wrong_form.message] if said else [wrong_form.message],
+            [explanation, wrong_form.message] if explanation else [wrong_form.message],
         )
     if known is None:
         return _not_known(name, question, plain, reading, find, locker, for_others)
@@ -468,19 +469,17 @@ def _compare(
 
 
 def _close(name: str, question: Question) -> Reply:
-    """The reply to an answer that rounding has made wrong, or seems to have."""
+    """Return the reply to an answer that is, or seems to be, wrong only by rounding."""
     allowed = "" if question.tolerance is None else f" the {question.tolerance:g} that is"
-    said = (
+    message_text = (
         f"This is close, but off by more than{allowed} allowed. If you rounded, here or on the "
         "way, keep all digits until the end."
     )
-    return Reply(name, "wrong", "rounded too far", [said])
+    return Reply(name, "wrong", "rounded too far", [message_text])
 
 
 def _known_in(question: Question, reading: Reading, locker: Locker | None) -> KnownAnswer | None:
-    """Which of the answers of a locker this is: the nearest, if
-    that is near enough; or ``None``.
-    """
+    """Return the answer in a locker that is nearest, if it is near enough, or ``None``."""
     if locker is None or not locker.answers:
         return None
     far = [_far(question, reading, known) for known in locker.answers]
@@ -507,15 +506,15 @@ def _not_known(
     locker: Locker | None,
     for_others: Callable[[], bool] | None,
 ) -> Reply:
-    """The reply to an answer that is neither right nor a mistake of the catalogue."""
+    """Return the reply to an answer that is neither right nor a mistake of the catalogue."""
     if locker is not None and any(
         known.outcome == "correct" and _far(question, reading, known) <= CLOSE
         for known in locker.answers
     ):
         return _close(name, question)
     decimals = _decimals(question, plain, reading)
-    # Each look costs a slow hash: what is exact was not rounded, and what was rounded
-    # is no known mistake to the digit.
+    # Each search costs a slow hash: exact numbers were not rounded, and rounded ones are no known
+    # mistake to the digit.
     precise, rounded = _precision(plain) if decimals else (True, False)
     near = [fingerprint(question, reading, near=True)] if not precise else []
     others = [] if rounded else list(other_readings(question, reading))
@@ -537,17 +536,17 @@ def _not_known(
     for (slip, why, turned), of_slip in zip(others, lockers):
         known = _known_in(question, turned, of_slip)
         if known and known.outcome == "correct" and slip == IN_DEGREES:
-            said = message(question, slip, {}) if question.quantity else PERHAPS_DEGREES
-            return Reply(name, "wrong", slip, [said])
+            message_text = message(question, slip, {}) if question.quantity else PERHAPS_DEGREES
+            return Reply(name, "wrong", slip, [message_text])
         if known and known.outcome != "correct" and (question.quantity or slip != IN_DEGREES):
             note, details = known.notes[0]
             if note == slip:
-                # What is right once a slip is undone twice is the right answer
-                # itself, but for the last digits.
+                # An answer that is right after undoing a slip twice is the right answer itself,
+                # except for the last digits.
                 return _close(name, question)
-            said = f"Two things at once: {why} {message(question, note, details)}"
-            return Reply(name, "wrong", f"{slip}, and {note}", [said], details=details)
-    # Whoever has rounded right work hears of that first, and not that the value is wrong.
+            message_text = f"Two things at once: {why} {message(question, note, details)}"
+            return Reply(name, "wrong", f"{slip}, and {note}", [message_text], details=details)
+    # Report rounding first if it is the only fault, and not that the value is wrong.
     few = _few_digits(question, plain)
     right = what_can_be_said(question, plain)
     lines = [decimals, few, f"Otherwise: {right[:1].lower()}{right[1:]}" if few else right]
@@ -557,43 +556,45 @@ def _not_known(
 
 
 def _begun(work: Callable[[], Some]) -> Callable[[], Some]:
-    """Begin some work in a thread, since the slow hash lets others run; what it
-    gives comes when it is asked for.
+    """Begin some work in a thread, since the slow hash lets others run.
+
+    Returns a function that waits for the result.
     """
     from concurrent.futures import ThreadPoolExecutor  # needed here alone
 
     threads = ThreadPoolExecutor(1)
     try:
         return threads.submit(work).result
-    except RuntimeError:  # a browser's Python has no threads: then it is done if it is asked for
+    except RuntimeError:  # a browser's Python has no threads, so work on demand
         return work
     finally:
         threads.shutdown(wait=False)
 
 
 def _each(find: Find, texts: Sequence[str]) -> list[Locker | None]:
-    """What is known of each fingerprint, all looked up at once."""
+    """Return what is known of each fingerprint, with parallel searches."""
     if len(texts) < 2:
         return [find(text) for text in texts]
     begun = [_begun(functools.partial(find, text)) for text in texts]
-    return [found() for found in begun]
+    return [finish() for finish in begun]
 
 
 def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, str, Reading]]:
-    """The answer with one common slip undone, by what is said of the
-    slip: it may be a known mistake then.
+    """Iterate over the answer with one common slip undone, which may be a known mistake.
+
+    Each comes with the note and the message of the slip.
     """
     if reading.text is None:
-        for name, (said, undo) in kind_of_values(question).slips.items():
+        for name, (message_text, undo) in kind_of_values(question).slips.items():
             numbers = [undo(question, numbers) for numbers in reading.numbers]
             if None not in numbers:
-                yield name, said, Reading(numbers)
+                yield name, message_text, Reading(numbers)
         # Without a quantity the question may ask for degrees: then only the right answer counts.
         angles = question.quantity in (None, "angle")
         if angles and question.kind_of_values in ("expression", "vector", "matrix"):
-            said = "it is in degrees, and in radians it has another mistake."
+            message_text = "it is in degrees, and in radians it has another mistake."
             radians = [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
-            yield IN_DEGREES, said, Reading(radians)
+            yield IN_DEGREES, message_text, Reading(radians)
 
 
 def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
@@ -609,11 +610,10 @@ def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
 
 
 def _few_digits(question: Question, plain: Plain) -> str:
-    """What is said of numbers that are given to fewer places than the answer
-    may be off by: they may be rounded.
+    """Return a message on numbers with fewer decimals than the tolerance: they may be rounded.
 
-    It follows from what the student wrote and from the tolerance alone, so it tells nothing of the
-    right answer. Components that make an exact length together, such as 0.6 and 0.8, are exact.
+    It depends only on the student's input and the tolerance, so it reveals nothing of the right
+    answer. Components that make an exact length together, such as 0.6 and 0.8, are exact.
     """
     if question.tolerance is None:
         return ""
@@ -623,7 +623,7 @@ def _few_digits(question: Question, plain: Plain) -> str:
     squares = [Fraction(digits) ** 2 for digits in floats if float(digits)]
     lengths = [
         sum(squares, Fraction()),
-        *(one + other for one, other in itertools.combinations(squares, 2)),
+        *(first + second for first, second in itertools.combinations(squares, 2)),
     ]
     if len(squares) > 1 and any(map(_is_square, lengths)):
         return ""
@@ -645,17 +645,14 @@ def _is_square(number: Fraction) -> bool:
 
 
 def _coarse(question: Question, reading: Reading) -> str:
-    """What is said of numbers that do not fit together, and would
-    if fewer of their digits counted.
-    """
+    """Return a message on numbers that are inconsistent, but would fit with fewer digits."""
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
     return "The numbers nearly fit together. If you rounded, keep all digits until the end."
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
-    """Of the decimal fractions of an answer: whether each is plainly exact, and
-    whether one of them is plainly rounded.
+    """Return whether all decimal fractions of an answer are clearly exact, and one clearly rounded.
 
     >>> numbers = lambda *texts: {"nodes": [["float", text] for text in texts]}
     >>> _precision(numbers("0.5", "0.8660254037844386")), _precision(numbers("0.5", "0.866"))
@@ -670,21 +667,22 @@ def _precision(plain: Plain) -> tuple[bool, bool]:
             # A root of a fraction has all of its digits.
             numbers = [size] if short else [size, size * size]
             if not any(
-                abs(one - Fraction(one).limit_denominator(most)) <= 1e-13 * max(1, one)
-                for one in numbers
+                abs(size_of_number - Fraction(size_of_number).limit_denominator(most))
+                <= 1e-13 * max(1, size_of_number)
+                for size_of_number in numbers
             ):
                 precise, rounded = False, rounded or short
     return precise, rounded
 
 
 def what_can_be_said(question: Question, plain: Plain) -> str:
-    """What a wrong answer has right, so that its author does not look for the fault there."""
+    """Return what is right in a wrong answer, so that its author does not look there."""
     named = {node[1] for node in plain["nodes"] if node[0] == "symbol"}
     missing = [symbol for symbol in question.symbols if not {symbol, *spellings(symbol)} & named]
     symbols = ", ".join(f"`{symbol}`" for symbol in question.symbols)
     if symbols and not named:
         return f"The question is asked with {symbols}, and your answer holds numbers only."
-    said = kind_of_values(question).wrong
+    message_text = kind_of_values(question).wrong
     if question.every_symbol and missing:
-        said += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
-    return said
+        message_text += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
+    return message_text

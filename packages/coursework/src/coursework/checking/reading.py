@@ -1,17 +1,16 @@
-"""How an answer is read into numbers, and its fingerprint.
+"""Convert an answer to numbers, and compute its fingerprint.
 
-An answer is *read* into real numbers: its entries at the points of the question. Those numbers,
-rounded to whole cells, are its fingerprint; all ways of writing one answer share it. What has
-several equally right values is first turned into something that has one: a quaternion and its
-negative, the many Euler angles of one orientation.
+An answer is *read* into real numbers: its entries at the points of the question. These numbers,
+rounded to whole cells, are its fingerprint, which all ways of writing the answer share. An answer
+with several equally right values is first converted to one of them: a quaternion and its negative,
+the many Euler angles of one orientation.
 
-Where the cells begin follows from the salt and from nothing else, so it tells nothing of the
-answer. An answer near the edge of a cell has a locker for the cell beyond it too. Cells are several
-tolerances wide: what the fingerprint opens holds the right numbers, and with those an answer is
-compared to the digit.
+The edges of the cells depend only on the salt, so they reveal nothing of the answer. An answer near
+the edge of a cell has a locker for the cell beyond it, too. Cells are several tolerances wide: the
+opened locker contains the right numbers, with which an answer is compared to the digit.
 
-The same reading serves the student's check, which compares fingerprints through a slow hash, and
-the grading, which compares them as they are. It sees only the plain data of
+The student's check, which compares fingerprints through a slow hash, and the grading, which
+compares them directly, use the same functions. They see only the plain data of
 :mod:`coursework.checking.plain`.
 """
 
@@ -31,28 +30,26 @@ from .points import points
 from .question import Question
 from .units import UnknownUnit, unit
 
-#: What an exact answer may be off by, absolutely and relatively: above all rounding of doubles.
+# The tolerance of an exact answer, absolute and relative: mostly the rounding of doubles.
 EXACT = MP.mpf(10) ** -12
-#: Width of its cells in that unit: far below every real difference.
+# Width of its cells in that unit: far below every real difference.
 EXACT_WIDTH = 1000
-#: What an answer may be off by that is said to be nearly right where an
-#: exact one is asked for: three digits.
+# The tolerance within which an answer is called nearly right where an exact one is required: three
+# digits.
 NEAR = MP.mpf("2e-3")
-#: What two units that measure something else are apart, in tolerances.
+# The distance between units of different quantities, in tolerances.
 FAR = 10**6
 
 
 class Reading(NamedTuple):
-    """An answer as numbers: ``numbers`` is a list for each point;
-    ``text`` is set for words instead.
-    """
+    """An answer as numbers, a list for each point in ``numbers``; for words, ``text`` is set."""
 
     numbers: list[list[Number]]
     text: str | None = None
 
 
 def calls_for(question: Question) -> list[list[Any]] | None:
-    """The arguments of each call to a function that is asked for, made anew: it may change them."""
+    """Return new arguments of each call to a function, because it may change them."""
     if question.kind != "function":
         return None
     if question.takes == "arrays":
@@ -97,9 +94,9 @@ def read(question: Question, plain: Plain) -> Reading:
 
 
 def fingerprint(question: Question, reading: Reading, near: bool = False) -> str:
-    """Give the text that is the same for all forms of one answer, and for no other answer.
+    """Return the text that is the same for all forms of one answer, and for no other answer.
 
-    With ``near``, the text that answers share which agree to about three digits.
+    With ``near``, it is the text that answers share which agree to about three digits.
     """
     if reading.text is not None:
         return reading.text
@@ -110,10 +107,9 @@ def fingerprint(question: Question, reading: Reading, near: bool = False) -> str
 def fingerprints(
     question: Question, reading: Reading, reach: float = 1, near: bool = False, most: int = 6
 ) -> list[str]:
-    """The fingerprints of all answers that are within ``reach`` tolerances of
-    one: its cell and those beside it.
+    """Return the fingerprints of an answer's cell and of those within ``reach`` tolerances.
 
-    Of more than ``most`` edges that are as near as that, the nearest are taken.
+    If there are more than ``most`` such edges, the nearest are used.
     """
     if reading.text is not None:
         return [reading.text]
@@ -127,8 +123,9 @@ def fingerprints(
 def edges_near(
     question: Question, numbers: Sequence[Number], reach: float = 1, near: bool = False
 ) -> list[tuple[Number, int, int]]:
-    """The edges within ``reach`` tolerances, nearest first: how far, of
-    which number, and the cell beyond.
+    """Return the edges within ``reach`` tolerances, nearest first.
+
+    Each has its distance, the index of its number, and the cell beyond.
     """
     margin = MP.mpf(reach) / _width(question, len(numbers), near)
     edges = []
@@ -145,9 +142,7 @@ def _text_of(cells: Iterable[int], near: bool) -> str:
 
 
 def tolerances(question: Question) -> tuple[Number, Number]:
-    """What each number of an answer may be off by: an absolute part,
-    and a share of the right number.
-    """
+    """Return the tolerance of each number: an absolute part, and a share of the right number."""
     if question.tolerance is None:
         return EXACT, EXACT
     return kind_of_values(question).parts * MP.mpf(str(question.tolerance)), MP.mpf(
@@ -156,30 +151,29 @@ def tolerances(question: Question) -> tuple[Number, Number]:
 
 
 def distance(question: Question, numbers: Sequence[Number], right: Sequence[Number]) -> Number:
-    """How far an answer is from the right one, in tolerances: up to 1 it is right."""
+    """Return the distance of an answer from the right one, in tolerances: up to 1 it is right."""
     absolute, relative = tolerances(question)
     return max(
-        abs(number - other) / (absolute + relative * abs(other))
-        for number, other in zip(numbers, right)
+        abs(number - right_number) / (absolute + relative * abs(right_number))
+        for number, right_number in zip(numbers, right)
     )
 
 
 def within(
     question: Question, numbers: Sequence[Number], right: Sequence[Number], share: float = 1
 ) -> bool:
-    """Whether an answer is within some share of the tolerance; quicker than :func:`distance` where
-    it is not.
-    """
+    """Whether an answer is within a share of the tolerance, faster than :func:`distance` if not."""
     absolute, relative = tolerances(question)
     return all(
-        abs(number - other) <= share * (absolute + relative * abs(other))
-        for number, other in zip(numbers, right)
+        abs(number - right_number) <= share * (absolute + relative * abs(right_number))
+        for number, right_number in zip(numbers, right)
     )
 
 
 def _width(question: Question, count: int, near: bool) -> int:
-    """Width of a cell in tolerances. The more numbers, the wider: so the cells
-    that an answer is near stay few.
+    """Return the width of a cell in tolerances.
+
+    It grows with the count of numbers, so that an answer is near few cells.
     """
     if near:
         return 4 * count
@@ -196,7 +190,7 @@ def _places(question: Question, numbers: Sequence[Number], near: bool) -> list[N
 
 
 def _in_tolerances(number: Number, absolute: Number, relative: Number) -> Number:
-    """A number on a scale on which each step of 1 is one tolerance, however large the number."""
+    """Return a number on a scale in units of its tolerance, however large the number."""
     if not relative:
         return number / absolute
     size = MP.log(1 + relative * abs(number) / absolute) / relative
@@ -210,9 +204,7 @@ def offsets(salt: str, count: int) -> list[Number]:
 
 
 def canonical(question: Question, reading: Reading) -> list[Number]:
-    """The numbers of a reading with what is a matter of taste
-    removed, all points one after another.
-    """
+    """Return the numbers of a reading in a canonical form, all points one after another."""
     unique = kind_of_values(question).unique
     if not unique:
         return [number for numbers in reading.numbers for number in numbers]
@@ -220,13 +212,13 @@ def canonical(question: Question, reading: Reading) -> list[Number]:
 
 
 def fault(question: Question, reading: Reading) -> Fault | None:
-    """Say what is wrong with the form of an answer that was read, or give ``None``."""
+    """Return the fault of the form of an answer, or ``None``."""
     find = kind_of_values(question).fault
     if find:
         for numbers in reading.numbers:
-            found: Fault | None = find(question, numbers)
-            if found:
-                return found
+            form_fault: Fault | None = find(question, numbers)
+            if form_fault:
+                return form_fault
     return None
 
 
@@ -239,8 +231,8 @@ def _entries(question: Question, value: Value) -> Sequence[int]:
     """
     entries = kinds()[question.kind].entries
     assert entries is not None
-    found: Sequence[int] = entries(question, value)
-    return found
+    nodes_of_entries: Sequence[int] = entries(question, value)
+    return nodes_of_entries
 
 
 def _number(question: Question, result: Any) -> Number:
@@ -249,13 +241,13 @@ def _number(question: Question, result: Any) -> Number:
         return real(result, *(max(part, EXACT) for part in tolerances(question)))
     except UnknownSymbol as error:
         name = error.args[0][:40]
-        given = list(question.symbols)
-        wanted = (
-            f"this question has the symbols {listed(given)}"
-            if given
+        known_symbols = list(question.symbols)
+        expected = (
+            f"this question has the symbols {listed(known_symbols)}"
+            if known_symbols
             else "this question has no symbols"
         )
-        raise Fault("stray symbol", f"The answer holds `{name}`; {wanted}.") from None
+        raise Fault("stray symbol", f"The answer holds `{name}`; {expected}.") from None
     except Undefined as error:
         somewhere = " for some values of its symbols" if question.symbols else ""
         raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
@@ -280,7 +272,7 @@ def _with_units(
     """
     _, name = parts_of(value)
     try:
-        given = unit(text_of(name))
+        unit_given = unit(text_of(name))
     except UnknownUnit as error:
         raise Fault(
             "unknown unit",
@@ -289,9 +281,9 @@ def _with_units(
             "`kN m`, `m/s^2`, `J/(kg K)`.",
         ) from None
     absolute, _ = tolerances(question)
-    far = [exponent * FAR * max(absolute, NEAR) for exponent in given.exponents]
+    far = [exponent * FAR * max(absolute, NEAR) for exponent in unit_given.exponents]
     scale = MP.mpf(question.scale or 1)  # in an exam it is not told
-    return [[number * given.size / scale, *far] for [number] in numbers]
+    return [[number * unit_given.size / scale, *far] for [number] in numbers]
 
 
 def _read_function(question: Question, plain: Plain) -> Reading:

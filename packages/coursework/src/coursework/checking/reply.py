@@ -1,4 +1,4 @@
-"""What a student sees after a check."""
+"""The reply that a student sees after a check."""
 
 import html
 import os
@@ -10,8 +10,8 @@ from typing import NamedTuple
 from .fields import Json
 from .question import KnownAnswer, Locker
 
-#: Each outcome with its sign and its word: the word is for those who
-#: do not see the sign or its colour.
+# Each outcome with its sign, its word and its colour: the word is for those who do not see the sign
+# or its colour.
 OUTCOMES = {
     "correct": ("✓", "Correct", "#1a7f37"),
     "wrong": ("✗", "Not yet", "#b54708"),
@@ -23,7 +23,7 @@ OUTCOMES = {
 }
 
 
-#: Each kind of help that a student may have had, in words, from little to much.
+# The words for each kind of help, from little to much.
 HELP = {
     "mistake": "we named your mistake",
     "hint": "we showed a hint",
@@ -124,7 +124,7 @@ class Reply:
         sign, word, colour = OUTCOMES[self.outcome]
         name = html.escape(self.question)
         tries = f" · {self.tries} answers so far" if self.tries > 1 else ""
-        # What the notebook remembers of the way to this answer: the grader reads it there.
+        # The notebook's record of the way to this answer, which the grader reads.
         known = f' data-question="{name}" data-tries="{self.tries}"' if self.tries else ""
         known += f' data-tried="{html.escape(" ".join(self.tried))}"' if self.tried else ""
         known += f' data-help="{self.help}"' if self.help else ""
@@ -155,15 +155,12 @@ class Reply:
 
 
 def tex_is_typeset() -> bool:
-    """Whether whatever shows this notebook typesets TeX in HTML:
-    VS Code, Colab and marimo do not.
-    """
+    """Whether the front end typesets TeX in HTML, which VS Code, Colab and marimo do not."""
     return not ("VSCODE_PID" in os.environ or {"google.colab", "marimo"} & set(sys.modules))
 
 
 def mathml(source: str, display: str = "inline") -> str:
-    """A formula as MathML, which every browser shows by itself; TeX in a
-    box where there is no converter.
+    """Return a formula as MathML, which every browser can show, or else as TeX in a box.
 
     >>> mathml("x_1")[:40], "TeX" in mathml("x_1")
     ('<math xmlns="http://www.w3.org/1998/Math', False)
@@ -173,25 +170,25 @@ def mathml(source: str, display: str = "inline") -> str:
 
         return str(convert(source, display=display))
     except Exception:
-        # No converter, or one that does not know a command: a reply is never lost for that.
+        # There is no converter, or it lacks a command, which must not prevent a reply.
         return f"<code>{html.escape(source)}</code>"
 
 
 def for_this_front_end(page: str) -> str:
-    """The HTML of a worked solution, with its formulas in the way in which they will be seen."""
+    """Return the HTML of a worked solution, with formulas that this front end can show."""
     if tex_is_typeset():
         return page
     blocks = re.sub(
-        r"\$\$([^$]+)\$\$", lambda found: mathml(html.unescape(found[1]), "block"), page
+        r"\$\$([^$]+)\$\$", lambda match: mathml(html.unescape(match[1]), "block"), page
     )
-    return re.sub(r"\$([^$]+)\$", lambda found: mathml(html.unescape(found[1])), blocks)
+    return re.sub(r"\$([^$]+)\$", lambda match: mathml(html.unescape(match[1])), blocks)
 
 
 def _as_tex(source: str) -> str:
     return f'<span class="math">${html.escape(source)}$</span>'
 
 
-#: Code, mathematics and emphasis, each with both of its marks; what has only one is text.
+# Code, mathematics and emphasis, each between two marks; a single mark is text.
 MARKED = re.compile(r"`([^`]+)`|\$([^$]+)\$|(?<![\w)])\*([^*\s][^*]*)\*(?!\w)")
 
 
@@ -199,7 +196,7 @@ def to_html(
     message: str,
     formula: Callable[[str], str] = lambda source: _as_tex(source),
 ) -> str:
-    """Turn a message into HTML; whatever a student wrote in it is shown and never obeyed.
+    """Convert a message to HTML; everything that a student wrote is escaped.
 
     Parameters
     ----------
@@ -211,29 +208,29 @@ def to_html(
     '<em>Not</em> <code>&lt;x&gt;</code>, but *theta is odd'
     """
     pieces, place = [], 0
-    for found in MARKED.finditer(message):
-        code, source, stressed = found.groups()
-        pieces.append(html.escape(message[place : found.start()]))
+    for match in MARKED.finditer(message):
+        code, source, stressed = match.groups()
+        pieces.append(html.escape(message[place : match.start()]))
         if code is not None:
             pieces.append(f"<code>{html.escape(code)}</code>")
         elif source is not None:
             pieces.append(formula(source))
         else:
             pieces.append(f"<em>{html.escape(stressed)}</em>")
-        place = found.end()
+        place = match.end()
     return "".join([*pieces, html.escape(message[place:])])
 
 
 def plain_text(message: str) -> str:
-    """The message for a terminal: a direction cosine matrix is written as in code, ``A_C_N``.
+    """Return the message for a terminal, with matrices as in code: ``A_C_N``.
 
     >>> plain_text(r'This is ${}^{N}\\mathbf{C}^{A}$: *transpose* it.')
     'This is N_C_A: transpose it.'
     """
-    return MARKED.sub(lambda found: found[1] or found[3] or _formula_as_text(found[2]), message)
+    return MARKED.sub(lambda match: match[1] or match[3] or _formula_as_text(match[2]), message)
 
 
-#: What TeX of formulas is written as where it cannot be set, the innermost braces first.
+# Replacements of TeX where it cannot be typeset, the innermost braces first.
 WRITTEN_OUT = (
     (r"\\(left|right|displaystyle)(?![A-Za-z])", ""),
     (r"\\[,;: ]|\\quad", " "),

@@ -1,16 +1,15 @@
 """Locks that only an answer opens.
 
-The fingerprint of an answer is stretched by a slow hash into a key. The key gives the name of a
-locker, which can be looked up, and it opens what lies inside: the short names of the mistakes in
-the catalogue, or the key of a page where there is more to say. Lockers are all of one size, whether
-they hold the right answer, a mistake or the cell beside one, so the data that a student receives
-tells neither the answer, nor which mistakes are known.
+A slow hash stretches the fingerprint of an answer to a key. The key gives the name of a locker and
+opens its content: the short names of mistakes in the catalogue, or the key of a page with more
+content. All lockers have one size, whether they contain the right answer, a mistake or the cell
+beside one, so a student's data reveal neither the answer nor the known mistakes.
 
-The key of a page follows from the slow hash too: nothing in a file can be tried more quickly.
+The key of a page depends on the slow hash, too, so nothing in a file can be tried faster.
 
-What can be checked without a server can also be tried without one. The slow hash makes each try
-cost about 12 ms; an answer with few possibilities stays guessable, and the author's report says
-which those are.
+Whatever can be checked without a server can also be tried without one. The slow hash makes each try
+cost about 12 ms; an answer with few possibilities remains guessable, and the author's report lists
+such answers.
 """
 
 import base64
@@ -23,15 +22,15 @@ from typing import Any
 
 #: Rounds of the slow hash (PBKDF2 with HMAC-SHA-256, RFC 8018).
 ROUNDS = 40_000
-#: Pages are filled up to a multiple of this, so that their length tells little.
+# Pages are padded to a multiple of this, so that their length reveals little.
 BLOCK = 48
-#: Bytes of the name of a locker, of what lies in it, of its tag, of the
-#: key of a page and of the tag of one.
+# The sizes in bytes of the name of a locker, of its content, of its tag, of the key of a page and
+# of its tag.
 NAME, INSIDE, TAG, PAGE_KEY, PAGE_TAG = 4, 10, 2, 8, 8
 LOCKER = NAME + INSIDE + TAG
 #: Bytes of the short name of a mistake.
 MISTAKE = 4
-#: In place of the number of a page: there is none.
+# In place of the number of a page: there is none.
 NO_PAGE = 0xFF
 
 
@@ -53,7 +52,7 @@ def portable_pbkdf2(password: bytes, salt: bytes, rounds: int) -> bytes:
     )
     as_number = int.from_bytes
     current, total = salt + b"\0\0\0\1", 0
-    for _ in range(rounds):  # a browser's Python feels each call of a function of ours
+    for _ in range(rounds):  # every call of one of our functions is slow in a browser's Python
         first, second = inner(), outer()
         first.update(current)
         second.update(first.digest())
@@ -95,13 +94,14 @@ def locker(
 
 
 def pack(lockers: Iterable[bytes]) -> str:
-    """The text of some lockers, in an order that tells nothing."""
+    """Return the text of some lockers, in an order that reveals nothing."""
     return _text(b"".join(sorted(lockers)))
 
 
 def pages_filled_up(pages: Iterable[str], count: int, secret: str) -> list[str]:
-    """Sealed pages with empty ones after them, ``count`` in all: each as long as some other one,
-    opened by no key, and only the secret tells them apart.
+    """Pad sealed pages with empty ones to ``count`` in all.
+
+    Each is as long as some other page and cannot be opened; only the secret distinguishes them.
 
     >>> pages = pages_filled_up([seal("a", bytes(8)), seal("b" * 99, bytes(8))], 4, "a secret")
     >>> [len(page) for page in pages]
@@ -116,13 +116,12 @@ def pages_filled_up(pages: Iterable[str], count: int, secret: str) -> list[str]:
 
 
 def count_of(lockers: str) -> int:
-    """How many lockers there are in the text of some."""
+    """Return the number of lockers in their text."""
     return len(base64.b85decode(lockers)) // LOCKER
 
 
 def filled_up(lockers: str, count: int, secret: str) -> str:
-    """The text of some lockers with empty ones among them, ``count`` in all:
-    only the secret tells them apart.
+    """Pad lockers with empty ones to ``count`` in all; only the secret distinguishes them.
 
     >>> few = pack([locker(bytes(32), 0)])
     >>> many = filled_up(few, 8, "a secret")

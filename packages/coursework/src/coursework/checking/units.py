@@ -1,8 +1,7 @@
-"""Units of measurement as texts, ``'kN m'`` or ``'m/s^2'``: how large each is,
-and of which base units it is made.
+"""Units of measurement as strings, ``'kN m'`` or ``'m/s^2'``: their sizes and base units.
 
-Only the names of the International System, and those that it accepts beside its own (brochure of
-the BIPM, 9th edition, tables 1 to 8).
+This covers the names of the International System and those that it accepts beside its own (brochure
+of the BIPM, 9th edition, tables 1 to 8).
 """
 
 import re
@@ -41,11 +40,11 @@ TOKEN = re.compile(
 
 
 class UnknownUnit(ValueError):
-    """A text is no unit; the message quotes the part that is not understood."""
+    """A string is not a unit; the message quotes the part that is not understood."""
 
 
 class Unit(NamedTuple):
-    """How large a unit is in base units, and their exponents."""
+    """The size of a unit in base units, and their exponents."""
 
     size: Any
     exponents: tuple[int, ...]
@@ -69,40 +68,40 @@ def unit(text: str) -> Unit:
     size, exponents, place, sign, inside = MP.one, [0] * len(BASE), 0, 1, None
     plain = text.translate(RAISED).replace("\u03bc", "µ").replace("\u2126", "Ω").strip()
     while place < len(plain):
-        found = TOKEN.match(plain, place)
-        if not found:
+        token = TOKEN.match(plain, place)
+        if not token:
             raise UnknownUnit(plain[place:][:20])
-        place = found.end()
-        if found["unit"] == "°" and plain[place : place + 1] in ("C", "F"):
-            # A scale with a zero of its own, and no angle times coulomb.
+        place = token.end()
+        if token["unit"] == "°" and plain[place : place + 1] in ("C", "F"):
+            # A temperature scale has a zero of its own, and is no angle times coulomb.
             raise UnknownUnit(plain[place - 1 : place + 1])
-        if found["over"]:
+        if token["over"]:
             sign = -1
-        elif found["open"]:
+        elif token["open"]:
             inside = sign
-        elif found["close"]:
+        elif token["close"]:
             sign, inside = 1, None
-        elif found["unit"]:
-            one, power = _named(found["unit"]), int(found["power"] or 1) * sign
+        elif token["unit"]:
+            factor, power = _named(token["unit"]), int(token["power"] or 1) * sign
             if abs(power) > 12:
-                raise UnknownUnit(found[0].strip())
-            size *= one.size**power
-            for order, exponent in enumerate(one.exponents):
+                raise UnknownUnit(token[0].strip())
+            size *= factor.size**power
+            for order, exponent in enumerate(factor.exponents):
                 exponents[order] += power * exponent
-            # What stands behind a stroke is one unit, or those in brackets.
+            # The units behind a slash are a single one, or those in brackets.
             sign = 1 if inside is None else inside
     return Unit(size, tuple(exponents))
 
 
 def _named(name: str) -> Unit:
-    """One unit, with its prefix."""
+    """Return one unit, with its prefix."""
     whole = {**WITH_PREFIX, **WITHOUT_PREFIX}
     if name in whole:
         return _unit(whole[name])
     for prefix, power in PREFIXES.items():
         if name.startswith(prefix) and name[len(prefix) :] in WITH_PREFIX:
-            one = _unit(WITH_PREFIX[name[len(prefix) :]])
-            return Unit(one.size * MP.mpf(10) ** power, one.exponents)
+            unprefixed = _unit(WITH_PREFIX[name[len(prefix) :]])
+            return Unit(unprefixed.size * MP.mpf(10) ** power, unprefixed.exponents)
     raise UnknownUnit(name[:20])
 
 

@@ -1,7 +1,7 @@
-"""A newer archive of exercises beside a student's work, which stays as it is.
+"""Update a student's exercises from a newer archive, without touching the student's work.
 
-An archive holds a manifest: what was handed out, by name, each file with a digest. So what nobody
-has changed since is known, and a newer one takes its place.
+An archive contains a manifest of the released files, by name, each with a digest. So unchanged
+files are recognised and replaced by newer ones.
 """
 
 import hashlib
@@ -21,24 +21,22 @@ WHEEL = re.compile(r"(?P<name>[A-Za-z0-9_.]+)-(?P<version>[^-]+)-[^-]+-[^-]+-[^-
 #: What a browser adds to the name of a second download: (1) or -1.
 NUMBERED = re.compile(r" ?\(\d+\)$|[- ]\d+$")
 REQUIREMENTS = "requirements.txt"
-#: The folder of the sealed questions: no student changes them, so a newer one
-#: takes the place of the older one.
+# The folder of the sealed questions, which students do not change, so newer ones replace older
+# ones.
 SEALED = "sealed/"
 
 
 MANIFEST = "manifest.json"
-#: Of manifests.
+# The format of manifests.
 FORMAT = 1
 
 
 class ArchiveRefused(ValueError):
-    """The archive is none, or is older than the folder, or the folder is of a newer
-    coursework; the message says which.
-    """
+    """The archive is invalid or older than the folder, or the folder needs a newer coursework."""
 
 
 def manifest(files: Mapping[str, bytes]) -> str:
-    """The manifest of files by name, as text.
+    """Return the manifest of files by name, as text.
 
     >>> json.loads(manifest({"README.txt": b"Answer in place of the dots."}))
     {'files': {'README.txt': '57c8e4f1c8ae41625a63c305e9a221a4'}, 'format': 1}
@@ -51,30 +49,27 @@ def _as_text(**about: object) -> str:
 
 
 def _digest_of_all(digests: Mapping[str, str]) -> str:
-    """A digest of an archive, by those of its files."""
+    """Return a digest of an archive, from those of its files."""
     return hashlib.sha256(json.dumps(sorted(digests.items())).encode()).hexdigest()[:32]
 
 
 def digest_of(name: str, data: bytes) -> str:
-    """A digest of what stands in a file; of a notebook, of what its cells
-    say: to run it is not to change it.
-    """
+    """Return a digest of a file; of a notebook, of its cells' sources, which a run leaves."""
     if name.endswith(".ipynb"):
         try:
             data = json.dumps(
                 [[cell["cell_type"], "".join(cell["source"])] for cell in json.loads(data)["cells"]]
             ).encode()
         except (ValueError, KeyError, TypeError):
-            pass  # no notebook: its bytes count
+            pass  # it is no notebook, so use its bytes
     return hashlib.sha256(data).hexdigest()[:32]
 
 
 def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     """Unpack a newer archive of exercises beside a student's work.
 
-    What nobody has changed since it was handed out is replaced. What somebody has changed is left
-    as it is, and what is new is put beside it under a new name. The package takes the place of the
-    older one.
+    Files unchanged since their release are replaced. Changed files are left as they are, and new
+    versions of them are put beside them under a new name. The package replaces the older one.
 
     Parameters
     ----------
@@ -99,22 +94,22 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     before, archives = _handed_out(folder)
     now = {name: digest_of(name, data) for name, data in files.items()}
     older = {name: _older(folder, name) for name in files if WHEEL.fullmatch(name)}
-    this = _digest_of_all(now)
-    if this in archives[:-1]:
+    digest = _digest_of_all(now)
+    if digest in archives[:-1]:
         raise ArchiveRefused(
             f"The archive {archive_file} was in this folder before, and a newer one since. Has the "
             "newest another name? Nothing was changed."
         )
-    if this not in archives:
-        archives.append(this)
+    if digest not in archives:
+        archives.append(digest)
     to_install = [str(folder / name) for name in older if not _is_installed(name)]
-    said = []
+    report = []
     for name, data in files.items():
         place = folder / name
         if place.exists() and place.read_bytes() == data:
-            said.append(f"the same    {name}")
+            report.append(f"the same    {name}")
         elif name.startswith(SEALED):
-            said.append(f"{'replaced' if place.exists() else 'added':<12}{name}")
+            report.append(f"{'replaced' if place.exists() else 'added':<12}{name}")
             place.parent.mkdir(parents=True, exist_ok=True)
             place.write_bytes(data)
         elif name in older:
@@ -122,22 +117,22 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             for path in older[name]:
                 path.unlink()
             replaced = ", ".join(path.name for path in older[name])
-            said.append(f"replaced    {replaced}" if replaced else f"added       {name}")
+            report.append(f"replaced    {replaced}" if replaced else f"added       {name}")
         elif not place.exists():
             place.write_bytes(data)
-            said.append(f"added       {name}")
+            report.append(f"added       {name}")
         elif before.get(name) == digest_of(name, place.read_bytes()):
             place.write_bytes(data)
-            said.append(f"replaced    {name}, which you had not changed")
+            report.append(f"replaced    {name}, which you had not changed")
         elif name == REQUIREMENTS:
             place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
-            said.append(f"changed     {name}")
+            report.append(f"changed     {name}")
         elif before.get(name) == now[name]:
-            said.append(f"kept yours  {name}; nothing in it is new")
+            report.append(f"kept yours  {name}; nothing in it is new")
         else:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
-            said.append(f"kept yours  {name}; the new one is {beside}")
+            report.append(f"kept yours  {name}; the new one is {beside}")
     (folder / MANIFEST).write_text(_as_text(files={**before, **now}, archives=archives), "utf8")
     if to_install:
         command = [
@@ -148,12 +143,12 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             *to_install,
         ]
         line = " ".join(f'"{word}"' if " " in word else word for word in command)
-        said.append(f"Now run this:\n\n    {line}\n")
-    return said
+        report.append(f"Now run this:\n\n    {line}\n")
+    return report
 
 
 def _files_in(archive_file: str | Path) -> dict[str, bytes]:
-    """What an archive of exercises holds, by the place of each file in a student's folder."""
+    """Return the files of an archive of exercises, by their places in a student's folder."""
     once_more = "Nothing was changed: download it once more."
     if not (place := Path(archive_file)).is_file():
         raise ArchiveRefused(
@@ -161,11 +156,11 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
             "Put the archive there as you have downloaded it, or write where it is."
         )
     others = [
-        one
-        for one in place.parent.glob(f"*{place.suffix}")
-        if NUMBERED.sub("", one.stem) == NUMBERED.sub("", place.stem)
+        file
+        for file in place.parent.glob(f"*{place.suffix}")
+        if NUMBERED.sub("", file.stem) == NUMBERED.sub("", place.stem)
     ]
-    newest = max(others, key=lambda one: one.stat().st_mtime)
+    newest = max(others, key=lambda file: file.stat().st_mtime)
     if newest.stat().st_mtime > place.stat().st_mtime:
         raise ArchiveRefused(
             f'Beside {place} lies "{newest.name}", which is newer. Nothing was changed: write that '
@@ -173,7 +168,7 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
         )
     try:
         with zipfile.ZipFile(archive_file) as box:
-            # A Mac's own archives hold a hidden file beside each.
+            # A Mac's own archives contain a hidden file beside each.
             entries = [
                 entry
                 for entry in sorted(box.namelist())
@@ -193,9 +188,7 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
 
 
 def _place(entry: str) -> str:
-    """Where an entry of the archive goes: sealed questions into a folder of their
-    own, other files into the folder.
-    """
+    """Return where an entry of the archive goes: sealed questions into their own folder."""
     path = Path(entry)
     if path.parent.name == "variants":
         return f"{SEALED}variants/{path.name}"
@@ -203,7 +196,7 @@ def _place(entry: str) -> str:
 
 
 def _package_in(file: str) -> tuple[str, str]:
-    """The package and its version, from the name of its wheel."""
+    """Return the package and its version, from the name of its wheel."""
     name, number, *_ = file.split("-")
     return name, number
 
@@ -217,7 +210,7 @@ def _is_installed(file: str) -> bool:
 
 
 def _order(number: str) -> tuple[list[int], bool, int]:
-    """A key that sorts versions: numbers, where ``.dev`` comes before the version itself.
+    """Return a key that sorts versions: numbers, with ``.dev`` before the version itself.
 
     >>> _order("1.9") < _order("1.10.dev7") < _order("1.10")
     True
@@ -227,9 +220,9 @@ def _order(number: str) -> tuple[list[int], bool, int]:
 
 
 def _older(folder: Path, name: str) -> list[Path]:
-    """The files of ``folder`` that hold another version of the package in the file ``name``."""
+    """Return the files of ``folder`` with another version of the package in the file ``name``."""
     package, new = _package_in(name)
-    found = []
+    outdated = []
     for path in sorted(folder.glob("*.whl")):
         if (
             WHEEL.fullmatch(path.name)
@@ -242,12 +235,12 @@ def _older(folder: Path, name: str) -> list[Path]:
                     f"The archive is older than this folder: it has version {new} of the package, "
                     f"and here is {present}. Nothing was changed."
                 )
-            found.append(path)
-    return found
+            outdated.append(path)
+    return outdated
 
 
 def _with_new_packages(text: str, wheels: Iterable[str]) -> str:
-    """A list of requirements that names the new files; other lines are the student's and stay."""
+    """Return requirements with the new files; other lines are the student's and stay."""
     for name in wheels:
         package = re.escape(_package_in(name)[0])
         text, count = re.subn(rf"^(\./)?{package}-[^-]+-\S+\.whl", f"./{name}", text, flags=re.M)
@@ -257,7 +250,7 @@ def _with_new_packages(text: str, wheels: Iterable[str]) -> str:
 
 
 def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
-    """Write a new file beside the one that a student has changed, and give its name."""
+    """Write a new file beside the one that a student has changed, and return its name."""
     number = 1
     while (beside := place.with_name(f"{place.stem}-new-{number}{place.suffix}")).exists():
         there = beside.read_bytes()
@@ -269,16 +262,17 @@ def _put_beside(place: Path, data: bytes, before: Mapping[str, str]) -> str:
 
 
 def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
-    """What was handed out into a folder, by name: the digest of each file; and the archives that it
-    came in, the newest last. Nothing, if that was before manifests.
+    """Return the files released into a folder with their digests, and the archives in order.
+
+    Both are empty if the release was before manifests.
     """
     try:
         about = Fields(json.loads((folder / MANIFEST).read_text("utf8")), MANIFEST)
         format, files = about.get("format", whole), about.get("files", by_name(text))
-        # One that was unpacked says what it holds, and names no archive.
+        # An unpacked archive lists its files and names no archive.
         archives = about.maybe("archives", many(text)) or (_digest_of_all(files),)
     except (OSError, ValueError):
-        return {}, []  # what is not known to be as it was handed out is the student's
+        return {}, []  # files of unknown origin count as the student's
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder is of format {format}, and the coursework that is "

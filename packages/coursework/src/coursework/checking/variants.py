@@ -1,14 +1,13 @@
-"""A question in several variants: each student gets one, found from
-who the student is, with no server.
+"""A question in several variants: each student gets one, by the student's ID, with no server.
 
-The variants of a question differ in their numbers, axes or names, and are sealed one by one. Which
-one is a student's follows from the student's identity, the question and the edition of the course
-by a hash, so the same student meets the same one in every notebook, on every machine and in the
-grader. Without an identity it is variant 0.
+The variants of a question differ in their numbers, axes or names, and are sealed one by one. A hash
+of the student's ID, the question and the edition of the course chooses the variant, so the same
+student gets the same one in every notebook, on every machine and in the grader. Without an ID it is
+variant 0.
 
-The variants that come next are its siblings: who had help with a question earns the rest of its
-points with one of them. A sibling has a name, ``'levers/see-saw/sibling'``, and is shown, checked
-and graded by it.
+The variants that come next are its siblings: a student who had help with a question earns the rest
+of its points with one of them. A sibling has a name, ``'levers/see-saw/sibling'``, under which it
+is shown, checked and graded.
 """
 
 import base64
@@ -23,7 +22,8 @@ from .fields import Json, pair, text
 from .identity import plain_identity
 from .question import Question, Variant
 
-#: So many siblings of a question count: with all of them, somebody else's answer would count, too.
+# The number of siblings of a question that count: with all of them, somebody else's answer would
+# count, too.
 SIBLINGS = 2
 SIBLING = re.compile(r"(?P<question>.+)/sibling(?:-(?P<order>[2-9]))?")
 
@@ -39,39 +39,37 @@ def variant_of(student: str, name: str, count: int, edition: str = "") -> int:
     student = plain_identity(student)
     if not student or count < 2:
         return 0
-    # JSON and the like could be read in two ways only if a part held a line
-    # break: names and editions hold none.
+    # JSON and the like could be read in two ways only if a part contained a line break, which names
+    # and editions do not.
     digest = hashlib.sha256(f"{edition}\n{name}\n{student}".encode()).digest()
     return int.from_bytes(digest[:8]) % count
 
 
 def names_of_variants(variants: Iterable[Variant]) -> list[str]:
-    """What variants are called, whatever their numbers: it follows from
-    what is given and shown in each.
+    """Return the names of variants, which depend only on what is given and shown in each.
 
     Parameters
     ----------
     variants : iterable of Variant
-        All variants of a question, in their order.
+        All variants of a question, in order.
 
     >>> short, long = Variant(given={"arm": 2}), Variant(given={"arm": 3})
     >>> names_of_variants([short, long]) == names_of_variants([long, short])[::-1]
     True
     """
     names: list[str] = []
-    for one in variants:
+    for variant in variants:
         name = hashlib.sha256(
-            json.dumps({**one.shown, **one.given}, sort_keys=True).encode()
+            json.dumps({**variant.shown, **variant.given}, sort_keys=True).encode()
         ).hexdigest()[:12]
-        while name in names:  # two that differ in nothing that is shown
+        while name in names:  # two variants with the same content
             name += "+"
         names.append(name)
     return names
 
 
 def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -> list[int]:
-    """The numbers of all variants in a student's own order: first the
-    student's own, then its siblings.
+    """Return the numbers of all variants in a student's order: first the student's own.
 
     A course that names its variants gives them by these names (rendezvous hashing): each student
     has an order of all names that there could be, so that one that is taken out moves only those
@@ -100,13 +98,13 @@ def numbers_of_variants(student: str, name: str, variant: Variant, count: int) -
 
 
 def own_variant(student: str, name: str, question: Question, order: int = 0) -> int:
-    """The number of a student's variant, or of one of its siblings."""
+    """Return the number of a student's variant, or of one of its siblings."""
     variant = question.variant or Variant()
     return numbers_of_variants(student, name, variant, variant.count)[order % variant.count]
 
 
 def siblings_of(name: str, count: int) -> list[str]:
-    """The names of the siblings of a question that has ``count`` variants, in their order.
+    """Return the names of the siblings of a question with ``count`` variants, in order.
 
     >>> siblings_of('levers/see-saw', 16)
     ['levers/see-saw/sibling', 'levers/see-saw/sibling-2']
@@ -118,17 +116,17 @@ def siblings_of(name: str, count: int) -> list[str]:
 
 
 def without_sibling(name: str) -> tuple[str, int]:
-    """The question that a name means, and which of its siblings: 0 is the student's own variant.
+    """Return the question of a name, and the number of its sibling: 0 is the student's own variant.
 
     >>> without_sibling('levers/see-saw/sibling-2'), without_sibling('levers/see-saw')
     (('levers/see-saw', 2), ('levers/see-saw', 0))
     """
-    found = SIBLING.fullmatch(name)
-    return (found["question"], int(found["order"] or 1)) if found else (name, 0)
+    match = SIBLING.fullmatch(name)
+    return (match["question"], int(match["order"] or 1)) if match else (name, 0)
 
 
 def shown(text: str, written: Mapping[str, str]) -> str:
-    """The text of a question with what is given in its places.
+    """Return the text of a question with its given values inserted.
 
     >>> shown("A force of {{force}} N", {"force": "20"})
     'A force of 20 N'
@@ -139,11 +137,11 @@ def shown(text: str, written: Mapping[str, str]) -> str:
 
 
 def image(picture: str, alt: str) -> str:
-    """A picture, given as SVG, as Markdown, with its text for those who do not see it."""
+    """Return an SVG picture as Markdown, with its text description."""
     (width,) = re.findall(r'width="(\S+)"', picture)[:1]
     data = base64.b64encode(picture.encode("utf8")).decode("ascii")
-    # As HTML: Markdown readers that are careful refuse this kind of
-    # address in an image of their own.
+    # Use HTML, because careful Markdown readers refuse this kind of address in an image of their
+    # own.
     return (
         f'<p><img alt="{html.escape(alt)}" width="{width}" '
         f'src="data:image/svg+xml;base64,{data}"></p>'
@@ -151,7 +149,7 @@ def image(picture: str, alt: str) -> str:
 
 
 def packed(picture: str, alt: str) -> str:
-    """A picture as short text: pictures are most of what the variants of a question differ in."""
+    """Return a picture as short text: pictures are most of the differences between variants."""
     return base64.b85encode(zlib.compress(json.dumps([picture, alt]).encode("utf8"), 9)).decode(
         "ascii"
     )
@@ -192,13 +190,13 @@ class Given:
         if name.startswith("_"):
             raise AttributeError(name)
         if name not in self._parameters:
-            names = ", ".join(f"`{one}`" for one in self._parameters) or "no numbers of its own"
+            names = ", ".join(f"`{name}`" for name in self._parameters) or "no numbers of its own"
             raise AttributeError(f"This question gives {names}; `{name}` is not among them.")
         return self._parameters[name]
 
     def __repr__(self) -> str:
         text = re.sub(
-            r'<p><img alt="([^"]*)"[^>]*></p>', lambda found: html.unescape(found[1]), self._text
+            r'<p><img alt="([^"]*)"[^>]*></p>', lambda match: html.unescape(match[1]), self._text
         )
         return re.sub(r"[*`$]", "", text)
 

@@ -65,8 +65,8 @@ def _value(value: Value, nodes: Sequence[Node]) -> str:
         inside = r",\; ".join(_value(part, nodes) for part in parts_of(value))
         return rf"\left({inside}\right)"
     if kind == "frame" and len(by_frame(value)) == 1:
-        ((other, inner),) = by_frame(value).items()
-        return rf"{{}}^{{{_name(text_of(value))}}}\mathbf{{C}}^{{{_name(other)}}} = " + _value(
+        ((reference, inner),) = by_frame(value).items()
+        return rf"{{}}^{{{_name(text_of(value))}}}\mathbf{{C}}^{{{_name(reference)}}} = " + _value(
             inner, nodes
         )
     raise NoMathematics
@@ -142,11 +142,11 @@ class _Writer:
             sign = "-" if above.startswith("-") else ""
             return bracketed(rf"{sign}\frac{{{above.lstrip('-')}}}{{{text}}}", 1 if sign else 2)
         if operation == "float":
-            found = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(text):.10g}")
-            if not found:
+            match = re.fullmatch(r"(-?[\d.]+)(?:e([-+]?\d+))?", f"{float(text):.10g}")
+            if not match:
                 raise NoMathematics
-            power = rf" \cdot 10^{{{int(found[2])}}}" if found[2] else ""
-            return bracketed(found[1] + power, 1 if power or found[1].startswith("-") else 9)
+            power = rf" \cdot 10^{{{int(match[2])}}}" if match[2] else ""
+            return bracketed(match[1] + power, 1 if power or match[1].startswith("-") else 9)
         if operation == "Add":
             return bracketed(
                 " + ".join(inner(child, 1) for child in children).replace("+ -", "- "), 0
@@ -261,7 +261,7 @@ class _Printer:
             )
 
         def inner(children: Sequence[int], binding: int = 0, between: str = ", ") -> str:
-            return self.parts(children, lambda one: self.node(one, depth + 1, binding), between)
+            return self.parts(children, lambda child: self.node(child, depth + 1, binding), between)
 
         if operation == "Pow" and self.nodes[rest[1]] == ["rational", "1", "2"]:
             return f"sqrt({inner(rest[:1])})"
