@@ -146,9 +146,12 @@ def wheels(folder: Path) -> None:
 
 
 def _writable(page: str | Path) -> str | Path:
-    """Return the path of a page, which is made at once: an error comes before the work."""
+    """Return the path of a page if it can be written, so that an error comes before the work."""
     Path(page).parent.mkdir(parents=True, exist_ok=True)
+    new = not Path(page).exists()
     Path(page).touch()
+    if new:
+        Path(page).unlink()
     return page
 
 
