@@ -45,9 +45,8 @@ def _dcm(question: Question, value: Value) -> list[int]:
         if source not in frames.get(target, {}):
             raise Fault(
                 "frame",
-                f"These are the frames {listed(frames)}; the question asks for the orientation "
-                f"of `{target}` with respect to `{source}`, and there is no path between two of "
-                "these names.",
+                f"These are the frames {listed(frames)}. Give the orientation of `{target}` with "
+                f"respect to `{source}`: no path connects two frames with these names.",
             )
         value = frames[target][source]
     if value[0] == "frame":
@@ -56,8 +55,8 @@ def _dcm(question: Question, value: Value) -> list[int]:
             connected = [other for other in others if other != name]
             raise Fault(
                 "frame",
-                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}; "
-                f"the question asks for the orientation of `{target}` with respect to `{source}`.",
+                f"This is the frame `{name}`, connected with {listed(connected) or 'no other'}. "
+                f"Give the orientation of `{target}` with respect to `{source}`.",
             )
         value = others[source]
     rows = parts_of(value) if value[0] == "list" else []
@@ -66,8 +65,7 @@ def _dcm(question: Question, value: Value) -> list[int]:
         if not all(source in by_frame(row) for row in rows):
             raise Fault(
                 "frame",
-                f"These vectors are not connected with the frame `{source}` that the question "
-                "names.",
+                f"These vectors are not connected with the frame `{source}` of the question.",
             )
         value = ["list", [by_frame(row)[source] for row in rows]]
     return row_entries(value, 3, 3, "A matrix of 3 × 3")
@@ -93,14 +91,14 @@ def _sequence(question: Question, plain: Plain) -> str:
     if len(text) != 3 or set(text) - set("xyz"):
         raise Fault(
             "shape",
-            "A sequence is three of the letters x, y and z, such as `'xyz'`; this is "
+            "A sequence consists of three letters x, y or z, such as `'xyz'`. This is "
             f"`{text[:20]}`.",
         )
     if text[0] == text[1] or text[1] == text[2]:
         raise Fault(
             "impossible sequence",
-            f"`{text}` turns about one axis twice in a row, which is a single turn: it is not one "
-            "of the 12 sequences.",
+            f"`{text}` rotates about one axis twice in a row, which is a single rotation. It is "
+            "not one of the 12 sequences.",
         )
     return text
 
@@ -111,7 +109,7 @@ def _of_angles(question: Question, numbers: Sequence[Number]) -> Sequence[Number
 
 def _of_axis_and_angle(question: Question, numbers: Sequence[Number]) -> Sequence[Number]:
     if not any(numbers[:3]):
-        raise Fault("zero axis", "The axis is zero, and a zero vector points nowhere.")
+        raise Fault("zero axis", "The axis is zero, and a zero vector has no direction.")
     return axis_angle_formula(FUNCTIONS, *numbers)
 
 
@@ -136,13 +134,12 @@ def _dcm_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
                 f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot "
                 f"product is {short(MP.fdot(rows[i], rows[j]))}{where}"
             )
-        return Fault("not orthogonal", f"This is no direction cosine matrix: {said}.")
+        return Fault("not orthogonal", f"This is not a direction cosine matrix: {said}.")
     if MP.det(MP.matrix(rows)) < 0:
         return Fault(
             "left-handed",
             "The rows are perpendicular unit vectors, but their determinant is −1: they make a "
-            "left-handed triad. "
-            "Has one row, or one sign too many, been turned round?",
+            "left-handed triad. Did you reverse one row, or one sign too many?",
         )
     return None
 
@@ -153,7 +150,7 @@ def _quaternion_fault(question: Question, numbers: Sequence[Number]) -> Fault | 
         where = " at the values tried" if question.symbols else ""
         return Fault(
             "not unit length",
-            "The quaternion of an orientation has length 1; this one has length "
+            "The quaternion of an orientation has length 1. Yours has length "
             f"{length_in_words(length)}{where}.",
         )
     return None
@@ -165,9 +162,7 @@ def _angles_fault(question: Question, numbers: Sequence[Number]) -> Fault | None
         return Fault(
             "degrees",
             f"One of the angles is {short(largest)}, which is more than a full turn of $2\\pi$ "
-            "rad. "
-            "Is it in degrees? "
-            "Angles are in radians here.",
+            "rad. Is it in degrees? Give angles in radians.",
         )
     return None
 
@@ -177,7 +172,7 @@ def _axis_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
     if abs(length - 1) > slack(question) / 3 and question.arguments.get("unit axis", True):
         return Fault(
             "not unit length",
-            f"The axis should be a unit vector; this one has length {length_in_words(length)}.",
+            f"The axis should be a unit vector. Yours has length {length_in_words(length)}.",
         )
     return _angles_fault(question, numbers[3:])
 

@@ -38,7 +38,7 @@ def _names(question: Question) -> tuple[str, str]:
 
 def _transposed(question: Question) -> str:
     if question.kind == "matrix" or not question.frames:
-        return "This is the transpose of what the question asks for."
+        return "This is the transpose of the right matrix."
     wanted, given = _names(question)
     return (
         f"This is {given}, the transpose of {wanted}: its columns are what the rows should be. "
@@ -54,19 +54,18 @@ def _product(question: Question) -> str:
 def _other_order(question: Question) -> str:
     if question.kind_of_values == "quaternion":
         return (
-            "The quaternions are multiplied in the wrong order. "
-            "The first turn goes on the left, unlike with matrices; in this order the same turns "
-            "are about axes fixed in the first frame (space fixed)."
+            "The quaternions are multiplied in the wrong order. That of the first rotation goes on "
+            "the left, unlike with matrices. In your order the axes are fixed in the first frame "
+            "(space fixed)."
         )
     return (
-        "The factors are multiplied in the wrong order. "
-        "The matrix of the first turn goes on the right; in this order the same turns are about "
-        "axes fixed in the first frame (space fixed)."
+        "The factors are multiplied in the wrong order. The matrix of the first rotation goes on "
+        "the right. In your order the axes are fixed in the first frame (space fixed)."
     )
 
 
 def _turn(number: int | None) -> str:
-    return "the turn" if number is None else f"the {ORDINALS[number]} turn"
+    return "the rotation" if number is None else f"the {ORDINALS[number]} rotation"
 
 
 MESSAGES: dict[str, Callable[..., str]] = {
@@ -76,7 +75,7 @@ MESSAGES: dict[str, Callable[..., str]] = {
         f"The angles of {_turn(first)} and of {_turn(second)} have the wrong sign."
     ),
     "sign of every turn": lambda question: (
-        "Every angle has the wrong sign: each turn goes the wrong way round."
+        "Every angle has the wrong sign: each rotation goes the wrong way round."
     ),
     "other order": _other_order,
     "other order, transposed": lambda question: (
@@ -87,29 +86,27 @@ MESSAGES: dict[str, Callable[..., str]] = {
         "sign."
     ),
     "angles interchanged": lambda question, first, second: (
-        f"The angles of {_turn(first)} and of {_turn(second)} have been swapped."
+        f"You swapped the angles of {_turn(first)} and of {_turn(second)}."
     ),
     "another sequence": lambda question, sequence: (
-        f"These are body fixed turns in the sequence `{sequence}`. "
-        "The question asks for another one."
+        f"These are body fixed rotations in the sequence `{sequence}`, which is not the sequence "
+        "of the question."
     ),
     "another axis": lambda question, turn, axis: (
-        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about a "
-        "different one."
+        f"{_turn(turn).capitalize()} is about the ${axis}$ axis here. It should be about "
+        "another axis."
     ),
     "turn missing": lambda question, turn: f"{_turn(turn).capitalize()} is missing.",
     "one factor only": lambda question, turn: (
         f"This is {_turn(turn)} alone. The others are missing."
     ),
-    "sine for cosine": lambda question, turn: (
-        f"Sine and cosine have been swapped in {_turn(turn)}."
-    ),
+    "sine for cosine": lambda question, turn: f"You swapped sine and cosine in {_turn(turn)}.",
     "degrees taken for radians": lambda question: (
-        "Degrees were given to functions that take radians. Convert them first: `sm.rad(30)` or "
+        "You gave degrees to functions that take radians. Convert them first: `sm.rad(30)` or "
         "`np.deg2rad(30)`."
     ),
     "conjugate": lambda question: (
-        "This is the conjugate, which turns the other way: its vector part has the wrong sign."
+        "This is the conjugate, which rotates the other way: its vector part has the wrong sign."
     ),
     "scalar last": lambda question: (
         "The scalar part comes last here. In this book it comes first: $(q_0, q_i, q_j, q_k)$."
@@ -120,27 +117,27 @@ MESSAGES: dict[str, Callable[..., str]] = {
     "whole angle": lambda question: (
         "You have used the whole angle. A quaternion holds the sine and cosine of *half* the angle."
     ),
-    "quarter angle": lambda question: "The angle has been halved twice.",
+    "quarter angle": lambda question: "You halved the angle twice.",
     "angles of another sequence": lambda question, sequence: (
-        f"These are the angles for the sequence `{sequence}`; the question asks for "
+        f"These are the angles for the sequence `{sequence}`. Give those for "
         f"`{question.arguments['sequence']}`."
     ),
     "angles of the transpose": lambda question: "These are the angles of the transposed matrix.",
     "space fixed angles": lambda question: (
-        "These are the angles of space fixed turns; the question asks for body fixed ones."
+        "These are the angles of space fixed rotations. Give the angles of body fixed rotations."
     ),
     "angles in reverse": lambda question: "The three angles are right but in reverse order.",
     "sign of one angle": lambda question, turn: f"The {ORDINALS[turn]} angle has the wrong sign.",
     "sign of every angle": lambda question: "All angles have the wrong sign.",
     "axis reversed": lambda question: (
-        "The turn goes the wrong way round: the axis, or the angle, has the wrong sign."
+        "The rotation goes the wrong way round: the axis, or the angle, has the wrong sign."
     ),
     "sequence reversed": lambda question: (
-        "Are these turns about axes fixed in space, or counted from the last to the first? Go "
-        "through them once more: "
-        "each is about an axis of the frame that the turn before it has reached."
+        "Are these rotations about axes fixed in space, or did you list them from the last to the "
+        "first? Each rotation is about an axis of the frame that the rotation before it has "
+        "reached."
     ),
-    "cosine for sine": lambda question: "Sine and cosine have been swapped.",
+    "cosine for sine": lambda question: "You swapped sine and cosine.",
     # Of an axis and an angle: the axis is neither halved nor doubled.
     "half": lambda question: "The angle is half of what it should be; the axis is right.",
     "double": lambda question: "The angle is twice what it should be; the axis is right.",
@@ -172,19 +169,19 @@ DETAILS = {
 #: What the class did, by the note of a mistake or of a fault of the
 #: form: for the instructor's report.
 DEEDS = {
-    "sign of one turn": "gave the angle of the {turn} turn the wrong sign",
-    "sign of two turns": "gave the angles of the {first} and the {second} turn the wrong sign",
-    "sign of every turn": "turned the wrong way round throughout",
-    "other order": "multiplied in the other order (space fixed turns)",
+    "sign of one turn": "gave the angle of the {turn} rotation the wrong sign",
+    "sign of two turns": "gave the angles of the {first} and the {second} rotation the wrong sign",
+    "sign of every turn": "rotated the wrong way round throughout",
+    "other order": "multiplied in the other order (space fixed rotations)",
     "other order, transposed": "multiplied in the other order and gave the transpose",
-    "other order, sign of one turn": "multiplied in the other order and gave the {turn} turn the "
-    "wrong sign",
-    "angles interchanged": "interchanged the angles of the {first} and the {second} turn",
+    "other order, sign of one turn": "multiplied in the other order and gave the {turn} rotation "
+    "the wrong sign",
+    "angles interchanged": "interchanged the angles of the {first} and the {second} rotation",
     "another sequence": "used the sequence {sequence}",
-    "another axis": "made the {turn} turn about {axis}",
-    "turn missing": "left the {turn} turn out",
-    "one factor only": "gave the {turn} turn alone",
-    "sine for cosine": "interchanged sine and cosine in the {turn} turn",
+    "another axis": "made the {turn} rotation about {axis}",
+    "turn missing": "left the {turn} rotation out",
+    "one factor only": "gave the {turn} rotation alone",
+    "sine for cosine": "interchanged sine and cosine in the {turn} rotation",
     "degrees taken for radians": "took degrees for radians",
     "conjugate": "gave the conjugate",
     "scalar last": "put the scalar last",
@@ -197,7 +194,7 @@ DEEDS = {
     "angles in reverse": "gave the angles in reverse order",
     "sign of one angle": "gave the {turn} angle the wrong sign",
     "sign of every angle": "gave every angle the wrong sign",
-    "axis reversed": "turned the wrong way round",
+    "axis reversed": "rotated the wrong way round",
     "sequence reversed": "gave the sequence in reverse",
     "cosine for sine": "interchanged sine and cosine",
     "impossible sequence": "gave a sequence that is none",

@@ -210,15 +210,19 @@ def reply_to(one, answer):
             "other order",
             "right",
         ),
-        (GIMBAL.subs(alpha, -alpha), "sign of one turn", "second turn has the wrong sign"),
+        (GIMBAL.subs(alpha, -alpha), "sign of one turn", "second rotation has the wrong sign"),
         (
             dcm_from_body_fixed((phi, alpha, theta), "zxy"),
             "angles interchanged",
-            "first turn and of the third",
+            "first rotation and of the third",
         ),
         (dcm_from_body_fixed((theta, alpha, phi), "zxz"), "another sequence", "zxz"),
         (dcm_from_body_fixed((theta, alpha, phi), "xyz"), "another sequence", "xyz"),
-        (simple_dcm("y", phi) * simple_dcm("z", theta), "turn missing", "second turn is missing"),
+        (
+            simple_dcm("y", phi) * simple_dcm("z", theta),
+            "turn missing",
+            "second rotation is missing",
+        ),
         (
             GIMBAL.subs({theta: -theta, alpha: -alpha, phi: -phi}),
             "sign of every turn",
@@ -410,9 +414,9 @@ def test_a_frame_is_not_said_to_be_connected_with_itself():
     A, B = ReferenceFrame("A"), ReferenceFrame("B")
     B.orient_axis(A, A.z, theta)
     [said] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
-    assert "This is the frame `B`, connected with `A`;" in said
+    assert "This is the frame `B`, connected with `A`." in said
     [said] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
-    assert "connected with no other;" in said
+    assert "connected with no other." in said
 
 
 @pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
