@@ -789,7 +789,7 @@ def test_a_page_that_is_opened_again_says_what_is_known_of_the_reader(context, s
     shown = next(k for k, code in enumerate(codes, 1) if "variant(" in code)
     check = next(k for k, code in enumerate(codes, 1) if f"check('{question}'" in code)
     assert page.below(check) == "", "what nobody has attempted is known from the dots"
-    record = json.dumps({question: {"outcome": "correct"}})
+    record = json.dumps({question: {"outcome": "correct", "whose": "ada"}})
     page.page.evaluate(
         "(record) => { bookStore.put('coursework me.txt', { text: 'ada', at: 1 }); "
         "bookStore.keepTries(record, 1); }",
