@@ -410,8 +410,9 @@ def said_of_people(store: Store, standing: Standing, contracts: Contracts) -> It
     for record in store.all():
         appeals += [record.student] * len(appeals_open(record))
         for name in record.marks:
-            decided = standing.decisions.get((record.student, record.assignment, name))
-            if changed_since(decided, record, contracts):
+            if changed_since(
+                standing.decisions.get((record.student, record.assignment, name)), record, contracts
+            ):
                 changed.append(record.student)
     for names, one, several, shown in (
         (appeals, "appeal is open", "appeals are open", "with an open appeal"),

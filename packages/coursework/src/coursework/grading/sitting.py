@@ -104,14 +104,14 @@ def sitting(
                 raise ValueError(f"nobody can answer {question} on paper: it asks for a function.")
         if is_new:
             path = desk.store.folder / FILE
-            lines = ["", f"[assignments.{json.dumps(name)}]", f"questions = {list(questions)}", ""]
-            path.write_text(path.read_text("utf8").rstrip("\n") + "\n" + "\n".join(lines), "utf8")
+            with path.open("a", encoding="utf8") as file:
+                file.write(f"\n[assignments.{json.dumps(name)}]\nquestions = {list(questions)}\n")
             desk.tell(f"{path} has the sitting now: say there what it counts.")
         settled = (desk.marked(_on_paper(desk, person, name, people)) for person in people.people)
         desk.settle(settled, "printed again")
         desk.report(course)
-        records = [desk.store.read(person, name) for person in people.people]
-        return _printed(desk, name, [record for record in records if record], paper)
+        records = (desk.store.read(person, name) for person in people.people)
+        return _printed(desk, name, list(filter(None, records)), paper)
 
 
 def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
@@ -171,8 +171,9 @@ def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
             wide for _, wide in entries
         )
     if plain is None or not (tex := answer_as_tex(plain)):
-        words = [part[1] for part in parts or [value] if part[0] == "text"]
-        text = ", ".join(map(str, words)) or answer_as_text(plain, LONGEST)
+        text = ", ".join(
+            map(str, [part[1] for part in parts or [value] if part[0] == "text"])
+        ) or answer_as_text(plain, LONGEST)
         return Markup("<strong>{}</strong>").format(text), False
     # What a row shows: the letters of a function, one sign for another command, and no braces.
     shown = re.sub(r"\\(?:left|right|(?:begin|end)\{\w+\})|[{}^_&\s]", "", tex)

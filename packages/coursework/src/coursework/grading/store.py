@@ -125,8 +125,12 @@ class Store:
 
     def pictures(self, digest: str) -> dict[int, tuple[str, ...]]:
         """The pictures of a notebook, by the number of the cell that drew them."""
-        kept = self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
-        return {int(number): shown for number, shown in kept.items()}
+        return {
+            int(number): shown
+            for number, shown in (
+                self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
+            ).items()
+        }
 
     def work(self, digest: str) -> tuple[str, ...]:
         """The code cells of a notebook, or nothing if they were not kept."""

@@ -282,8 +282,11 @@ def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, J
     variables = [contract.variable for contract in questions.values()]
 
     def calls(contract: Contract, arguments: tuple[list[Json], ...]) -> Json:
-        is_called = contract.question.kind == "function" and arguments
-        return {"arguments": list(arguments), "as": contract.question.takes} if is_called else None
+        return (
+            {"arguments": list(arguments), "as": contract.question.takes}
+            if (contract.question.kind == "function" and arguments)
+            else None
+        )
 
     return {
         name: {
