@@ -58,10 +58,10 @@ def of_metadata(pdf):
     if "/Metadata" not in root:
         yield "06-001 there is no XMP metadata"
     else:
-        with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as said:
-            if said.get("pdfuaid:part") != "1":
+        with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as metadata:
+            if metadata.get("pdfuaid:part") != "1":
                 yield "06-002 the metadata do not name PDF/UA-1"
-            if not said.get("dc:title"):
+            if not metadata.get("dc:title"):
                 yield "06-003 the metadata name no title"
     if not root.get("/ViewerPreferences", {}).get("/DisplayDocTitle"):
         yield "07-001 the window would show the name of the file, not the title"
@@ -83,26 +83,26 @@ def elements(pdf):
         yield node, kind, above
         inside = listed(node.K) if "/K" in node else []
         stack += [
-            (one, kind)
-            for one in reversed(inside)
-            if isinstance(one, pikepdf.Dictionary) and "/S" in one
+            (child, kind)
+            for child in reversed(inside)
+            if isinstance(child, pikepdf.Dictionary) and "/S" in child
         ]
 
 
 def of_structure(pdf):
-    levels, ids, wanted = [], set(), set()
+    levels, ids, named_ids = [], set(), set()
     for node, kind, above in elements(pdf):
         inside = listed(node.K) if "/K" in node else []
         facts = {}
-        for one in listed(node.A) if "/A" in node else []:
-            facts |= dict(one.items())
+        for attributes in listed(node.A) if "/A" in node else []:
+            facts |= dict(attributes.items())
         if kind not in STANDARD:
             yield f"02-001 {kind} is no standard type, and stands for none"
         if kind in WITHIN and above not in WITHIN[kind]:
             yield f"09-004 {kind} stands in {above or 'nothing'}"
         if above in INSIDE and kind not in INSIDE[above]:
             yield f"09-005 {kind} stands in {above}"
-        if kind in INSIDE and any(isinstance(one, int) or "/MCID" in one for one in inside):
+        if kind in INSIDE and any(isinstance(child, int) or "/MCID" in child for child in inside):
             yield f"09-006 text stands in {kind} itself"
         if kind in ("Figure", "Formula") and len(str(node.get("/Alt", "")).strip()) < 1:
             yield f"{'13-004' if kind == 'Figure' else '17-002'} a {kind} has no words"
@@ -114,17 +114,17 @@ def of_structure(pdf):
             levels.append(HEADINGS[kind])
         if "/ID" in node:
             ids.add(bytes(node.ID))
-        wanted |= {bytes(name) for name in facts.get("/Headers", [])}
+        named_ids |= {bytes(name) for name in facts.get("/Headers", [])}
         if kind == "TH" and str(facts.get("/Scope", "")) not in ("/Row", "/Column", "/Both"):
             yield "15-003 a cell that heads others does not say which"
     if levels[:1] != [1]:
         yield f"14-002 the first heading has the level {levels[:1]}"
     yield from (
-        f"14-003 a heading of level {one} is followed by one of level {next_one}"
-        for one, next_one in zip(levels, levels[1:])
-        if next_one > one + 1
+        f"14-003 a heading of level {level} is followed by one of level {next_one}"
+        for level, next_one in zip(levels, levels[1:])
+        if next_one > level + 1
     )
-    if missing := wanted - ids:
+    if missing := named_ids - ids:
         yield f"15-003 cells name {len(missing)} headings that are not there"
 
 
@@ -171,34 +171,34 @@ def pieces(pdf):
     """How often each marked piece is named by the structure: by the page or
     form that holds it, and its number.
     """
-    found = Counter()
+    marks = Counter()
     for node, _, _ in elements(pdf):
-        for one in listed(node.K) if "/K" in node else []:
-            if isinstance(one, int):
-                found[node.Pg.objgen, one] += 1
-            elif one.get("/Type") == "/MCR":
-                holder = one.Stm if "/Stm" in one else one.Pg if "/Pg" in one else node.Pg
-                found[holder.objgen, int(one.MCID)] += 1
-    return found
+        for child in listed(node.K) if "/K" in node else []:
+            if isinstance(child, int):
+                marks[node.Pg.objgen, child] += 1
+            elif child.get("/Type") == "/MCR":
+                holder = child.Stm if "/Stm" in child else child.Pg if "/Pg" in child else node.Pg
+                marks[holder.objgen, int(child.MCID)] += 1
+    return marks
 
 
 def table_of_parents(pdf):
-    waiting, found = [pdf.Root.StructTreeRoot.ParentTree], {}
+    waiting, table = [pdf.Root.StructTreeRoot.ParentTree], {}
     while waiting:
         node = waiting.pop()
         waiting += listed(node.get("/Kids", pikepdf.Array()))
         flat = listed(node.get("/Nums", pikepdf.Array()))
-        found |= {int(key): value for key, value in zip(flat[::2], flat[1::2])}
-    return found
+        table |= {int(key): value for key, value in zip(flat[::2], flat[1::2])}
+    return table
 
 
 def of_content(pdf):
     parents, named, held = table_of_parents(pdf), pieces(pdf), Counter()
     for number, page in enumerate(pdf.pages, start=1):
         forms = [
-            one
-            for one in page.get("/Resources", {}).get("/XObject", {}).values()
-            if "/StructParents" in one
+            form
+            for form in page.get("/Resources", {}).get("/XObject", {}).values()
+            if "/StructParents" in form
         ]
         for holder, stream in [(page.obj, page), *((form, form) for form in forms)]:
             used = []
@@ -219,9 +219,9 @@ def of_content(pdf):
 def of_annotations(pdf):
     in_links = set()
     for node, kind, _ in elements(pdf):
-        for one in listed(node.K) if "/K" in node else []:
-            if isinstance(one, pikepdf.Dictionary) and one.get("/Type") == "/OBJR":
-                in_links |= {one.Obj.objgen} if kind == "Link" else set()
+        for child in listed(node.K) if "/K" in node else []:
+            if isinstance(child, pikepdf.Dictionary) and child.get("/Type") == "/OBJR":
+                in_links |= {child.Obj.objgen} if kind == "Link" else set()
     parents = table_of_parents(pdf)
     for number, page in enumerate(pdf.pages, start=1):
         notes = listed(page.get("/Annots", pikepdf.Array()))
@@ -245,8 +245,8 @@ def of_fonts(pdf):
         resources += [
             form.get("/Resources", {}) for form in resources[0].get("/XObject", {}).values()
         ]
-        for one in resources:
-            fonts |= {font.objgen: font for font in one.get("/Font", {}).values()}
+        for resource in resources:
+            fonts |= {font.objgen: font for font in resource.get("/Font", {}).values()}
     for font in fonts.values():
         inner = font.DescendantFonts[0] if "/DescendantFonts" in font else font
         name, described = font.get("/BaseFont", "drawn"), inner.get("/FontDescriptor", {})
@@ -263,11 +263,11 @@ def of_fonts(pdf):
 
 def faults(pdf):
     """All faults that are found, the first of each kind with how many there are like it."""
-    found = Counter()
+    kinds_of_faults = Counter()
     first = {}
     for part in (of_metadata, of_structure, of_content, of_annotations, of_fonts):
         for fault in part(pdf):
             number = fault.partition(" ")[0]
-            found[number] += 1
+            kinds_of_faults[number] += 1
             first.setdefault(number, fault)
-    return [f"{first[number]} ({count} such)" for number, count in sorted(found.items())]
+    return [f"{first[number]} ({count} such)" for number, count in sorted(kinds_of_faults.items())]

@@ -17,9 +17,9 @@ import session  # noqa: E402 (it lies where the page's Python finds it)
 def shown(code):
     with pytest.raises(Exception) as caught:
         exec(compile(code, "cell 7", "exec"), {"np": np})
-    told = traceback.TracebackException.from_exception(caught.value, compact=True)
-    session.shorten(told)
-    return "".join(told.format())
+    report = traceback.TracebackException.from_exception(caught.value, compact=True)
+    session.shorten(report)
+    return "".join(report.format())
 
 
 def test_lines_of_packages_are_left_out():

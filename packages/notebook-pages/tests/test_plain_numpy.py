@@ -109,9 +109,9 @@ def values(numpy):
     return {"np": numpy, "v": v, "A": A, "S": numpy.stack([A, A.T @ A / 3])}
 
 
-def told(value):
+def described(value):
     return (
-        [told(part) for part in value]
+        [described(part) for part in value]
         if isinstance(value, (tuple, list))
         else [repr(value), str(value)]
     )
@@ -119,7 +119,7 @@ def told(value):
 
 @pytest.mark.parametrize("line", SAME)
 def test_same_as_the_real_one(line):
-    assert told(eval(line, values(STAND_IN))) == told(eval(line, values(np)))
+    assert described(eval(line, values(STAND_IN))) == described(eval(line, values(np)))
 
 
 BEYOND = """
@@ -237,8 +237,8 @@ def ordinary_lines(count):
         elif kind < 0.85:
             yield f"np.array({draw.choice(POOL)}).{draw.choice(METHODS_TRIED)}"
         else:
-            one, two = (f"np.array({value})" for value in draw.choices(POOL, k=2))
-            yield f"{one} {draw.choice(operators)} {two}"
+            first, second = (f"np.array({value})" for value in draw.choices(POOL, k=2))
+            yield f"{first} {draw.choice(operators)} {second}"
 
 
 def plain(value):

@@ -52,17 +52,17 @@ def page(site, name):
 
 @pytest.mark.parametrize("name", PAGES)
 def test_a_page_comes_out_and_asks_nobody_else(built, name):
-    found = page(built, name)
-    assert found.find("h1") and not found.select(
+    built_page = page(built, name)
+    assert built_page.find("h1") and not built_page.select(
         "script[src*='//'], link[rel=stylesheet][href*='//']"
     )
-    assert "orientation" not in found.get_text().lower()
+    assert "orientation" not in built_page.get_text().lower()
 
 
 def test_mathematics_is_set_when_the_book_is_built(built):
-    found = page(built, "levers")
-    assert found.select(".katex math") and not found.select("script[type^='math/tex']")
-    assert "(1.1)" in found.get_text()
+    built_page = page(built, "levers")
+    assert built_page.select(".katex math") and not built_page.select("script[type^='math/tex']")
+    assert "(1.1)" in built_page.get_text()
 
 
 def test_cells_were_run_and_can_be_run_in_the_page(built):

@@ -87,13 +87,13 @@ def test_what_is_printed_is_put_in_order(printed, book):
 
 def test_all_that_is_there_to_read_is_read_once_and_in_order(printed):
     with pikepdf.open(io.BytesIO(printed)) as raw:
-        said = tagged.mend(raw, printed)
+        words = tagged.mend(raw, printed)
     begins = (
         "One Words, some of them strong, and n hat x. A square with a word in it A caption. Two "
         "first second elsewhere"
     )
     whole = f"{begins} Words in a box, and code. name value {'n 1 ' * 40} Back to the second part."
-    assert "".join(said.split()) == "".join(whole.split())
+    assert "".join(words.split()) == "".join(whole.split())
 
 
 def test_a_picture_says_where_it_stands(book):
@@ -119,8 +119,8 @@ def without(holder, key):
     del holder[key]
 
 
-def rename(book, kind, other):
-    find(book, kind).S = Name(f"/{other}")
+def rename(book, kind, new_kind):
+    find(book, kind).S = Name(f"/{new_kind}")
 
 
 def change(stream, before, after):

@@ -77,10 +77,10 @@ class Desk:
     def notebook_questions(self, notebook):
         if notebook == "gone":
             raise RuntimeError
-        found = self.questions.items()
+        chosen = self.questions.items()
         return {
-            name: one
-            for name, one in found
+            name: selected
+            for name, selected in chosen
             if name.startswith(f"{notebook}/") and "sibling" not in name
         }
 
@@ -111,7 +111,7 @@ def desk(tmp_path, monkeypatch):
     return Desk(monkeypatch)
 
 
-def kept(name=ARM):
+def entry_of(name=ARM):
     return Progress.read().entry(name)
 
 
@@ -123,11 +123,13 @@ def test_what_is_right_is_remembered_and_stays_right(desk):
     reply = check(ARM, "right")
     assert (reply.messages, reply.solution) == (["Said."], "<p>By hand</p>")
     assert (reply.tries, reply.tried, reply.help, reply.sibling) == (1, [], "", "")
-    assert kept() == Entry("correct")
+    assert entry_of() == Entry("correct")
     again = check(ARM, "half")
     assert (again.tries, again.tried, again.solution) == (2, ["half-d"], "")
-    assert kept() == Entry("correct", "half", ("half-digits",), mistake="half", mistake_at=desk.now)
-    assert check(ARM, "right").tries == 2 and kept().note == ""
+    assert entry_of() == Entry(
+        "correct", "half", ("half-digits",), mistake="half", mistake_at=desk.now
+    )
+    assert check(ARM, "right").tries == 2 and entry_of().note == ""
 
 
 def test_without_a_solution_none_is_shown(desk):
@@ -142,14 +144,14 @@ def test_each_different_answer_counts_once_and_earns_a_hint(desk):
         f"Hint: Step {step} of expression {k}." for k, step in enumerate(("one", "two", "three"))
     ]
     assert check(ARM, "wrong 1").messages == ["Said.", EARNS]
-    assert check(ARM, "wrong 1").messages == ["Said.", EARNS] and kept().help == ""
-    assert check(ARM, "wrong 2").messages == ["Said.", *steps[:1]] and kept().help == "hint"
+    assert check(ARM, "wrong 1").messages == ["Said.", EARNS] and entry_of().help == ""
+    assert check(ARM, "wrong 2").messages == ["Said.", *steps[:1]] and entry_of().help == "hint"
     assert check(ARM, "wrong 3").messages == ["Said.", *steps[:2]]
     assert check(ARM, "wrong 4").messages == check(ARM, "wrong 5").messages == ["Said.", *steps]
     last = check(ARM, "wrong 1")
     assert last.tries == 5 and last.tried == ["wrong "] * 5
-    assert kept().answers == tuple(f"wrong {number}-digits" for number in range(1, 6))
-    assert kept().mistake == "another value" and check(ARM, "right").help == "hint"
+    assert entry_of().answers == tuple(f"wrong {number}-digits" for number in range(1, 6))
+    assert entry_of().mistake == "another value" and check(ARM, "right").help == "hint"
 
 
 def test_of_many_answers_some_are_remembered_and_the_newest_told(desk, monkeypatch):
@@ -180,20 +182,20 @@ def test_no_hint_is_announced_where_there_is_none(desk):
 )
 def test_what_is_remembered_of_each_outcome(desk, answer, expected):
     reply = check(ARM, answer)
-    found = kept()
-    assert found.mistake_at == (desk.now if found.answers else 0)
-    assert found.mistake == (expected.mistake or found.note)[: 99 * len(found.answers)]
-    assert (found.outcome, found.note, found.answers, found.help) == (
+    entry = entry_of()
+    assert entry.mistake_at == (desk.now if entry.answers else 0)
+    assert entry.mistake == (expected.mistake or entry.note)[: 99 * len(entry.answers)]
+    assert (entry.outcome, entry.note, entry.answers, entry.help) == (
         expected.outcome, expected.note, expected.answers, expected.help,
     )  # fmt: skip
-    assert reply.messages == ["Said.", EARNS][: 1 + len(found.answers)]
-    assert reply.tries == len(found.answers)
+    assert reply.messages == ["Said.", EARNS][: 1 + len(entry.answers)]
+    assert reply.tries == len(entry.answers)
 
 
 def test_an_answer_that_cannot_be_read_is_told_so(desk):
     reply = check(ARM, object())
     assert (reply.question, reply.outcome, reply.note) == (ARM, "invalid", "unreadable")
-    assert "cannot be read" in reply.messages[0] and kept().outcome == "invalid"
+    assert "cannot be read" in reply.messages[0] and entry_of().outcome == "invalid"
 
 
 def test_a_function_is_called_as_its_question_says(desk):
@@ -220,11 +222,11 @@ def test_it_is_kept_whose_numbers_an_answer_is_for(desk):
     for student, name in (("ann", SAW), ("", SAW), ("", ARM)):
         desk.student = student
         check(name, "half")
-        assert kept(name).whose == (None if name == ARM else student)
+        assert entry_of(name).whose == (None if name == ARM else student)
     for count, whose in ((1, None), (2, "")):
         desk.questions[WORDS] = Sealed(Question("free text", variant=Variant(count=count)))
         check(WORDS, "right")
-        assert kept(WORDS).whose == whose
+        assert entry_of(WORDS).whose == whose
 
 
 def test_a_mistake_is_worth_another_look_until_it_is_right_some_days_later(desk):
@@ -232,14 +234,14 @@ def test_a_mistake_is_worth_another_look_until_it_is_right_some_days_later(desk)
     for days, mistake in ((2.9, "half"), (3, "half"), (3.1, "")):
         desk.now = 10**9 + days * DAY
         check(ARM, "right")
-        assert kept().mistake == mistake, days
-    assert kept().mistake_at == 10**9
+        assert entry_of().mistake == mistake, days
+    assert entry_of().mistake_at == 10**9
 
 
 def test_a_right_answer_opens_hints_for_later_questions(desk):
-    place, other = Place(1, "k"), Place(2, "l")
+    place, later_place = Place(1, "k"), Place(2, "l")
     after = {SAW: ("Think of it.",), WORDS: ("And of that.",)}
-    for at, answer in ((None, "right"), (place, "wrong"), (place, "right"), (other, "right")):
+    for at, answer in ((None, "right"), (place, "wrong"), (place, "right"), (later_place, "right")):
         desk.judged[answer] = (
             ("correct" if answer == "right" else "wrong"),
             "",
@@ -247,15 +249,15 @@ def test_a_right_answer_opens_hints_for_later_questions(desk):
         )
         check(ARM, answer)
         if at is None or answer == "wrong":
-            assert kept(SAW) == Entry()
+            assert entry_of(SAW) == Entry()
         elif at == place:
-            assert kept(SAW) == Entry(after=((ARM, place),)) == kept(WORDS)
-    assert kept(SAW).after == ((ARM, place), (ARM, other))
+            assert entry_of(SAW) == Entry(after=((ARM, place),)) == entry_of(WORDS)
+    assert entry_of(SAW).after == ((ARM, place), (ARM, later_place))
     check(ARM, "right")
-    assert len(kept(SAW).after) == 2
+    assert len(entry_of(SAW).after) == 2
     desk.judged["right"] = ("correct", "", {"opened": Locker(after={ARM: ("Own.",)}, place=place)})
     check(ARM, "right")
-    assert kept() == Entry("correct", "", kept().answers, mistake="another value",
+    assert entry_of() == Entry("correct", "", entry_of().answers, mistake="another value",
                            mistake_at=desk.now, after=((ARM, place),))  # fmt: skip
     desk.judged["right"] = (
         "correct",
@@ -263,15 +265,20 @@ def test_a_right_answer_opens_hints_for_later_questions(desk):
         {"opened": Locker(after={WORDS: ("Own.",)}, place=place)},
     )
     check(WORDS, "right")
-    assert kept(WORDS) == Entry("correct", after=((ARM, place), (ARM, other), (WORDS, place)))
+    assert entry_of(WORDS) == Entry(
+        "correct", after=((ARM, place), (ARM, later_place), (WORDS, place))
+    )
     desk.pages = {
         place: {"cases": [], "after": {SAW: ["Think of it."], ARM: ["Own."]}},
-        other: {"after": {ARM: ["No."]}},
+        later_place: {"after": {ARM: ["No."]}},
     }
     assert hint(SAW).messages == ["Hint: Think of it."]
-    desk.pages[other] = {"after": {SAW: ["Again."]}}
+    desk.pages[later_place] = {"after": {SAW: ["Again."]}}
     assert hint(SAW).messages == ["Hint: Think of it.", "Hint: Again."]
-    for damaged in ({**desk.pages, place: 3}, {other: desk.pages[other]}):  # of an earlier release
+    for damaged in (
+        {**desk.pages, place: 3},
+        {later_place: desk.pages[later_place]},
+    ):  # of an earlier release
         desk.pages = damaged
         assert hint(SAW).messages == ["Hint: Again."]
 
@@ -283,7 +290,7 @@ def test_the_hints_of_the_last_mistake_come_first(desk):
     }
     desk.judged["half"] = ("wrong", "half", {"opened": Locker(place=place), "known": known})
     check(ARM, "half 1")
-    assert kept().page == place
+    assert entry_of().page == place
     assert check(ARM, "half 2").messages == ["Said.", "Hint: Twice?"]
     assert check(ARM, "half 3").messages[-1] == "Hint: Step one of expression 0."
     desk.pages = {place: {"cases": [{"outcome": "mistake"}]}}
@@ -294,7 +301,7 @@ def test_the_hints_of_the_last_mistake_come_first(desk):
                  {"opened": Locker(place=place)}):  # fmt: skip
         desk.judged["half"] = ("wrong", "half", more)
         check(ARM, "half 1")
-        assert kept().page is None
+        assert entry_of().page is None
 
 
 # --- help ---------------------------------------------------------------------------------------
@@ -308,7 +315,7 @@ MORE = (
 def test_hints_that_are_earned_can_be_read_again(desk):
     reply = hint(ARM)
     assert (reply.question, reply.outcome, reply.note) == (ARM, "hints", "")
-    assert reply.messages == ["There is no hint yet.", MORE.format(3)] and kept() == Entry()
+    assert reply.messages == ["There is no hint yet.", MORE.format(3)] and entry_of() == Entry()
     for number in range(3):
         check(ARM, f"wrong {number}")
     assert hint(ARM).messages == [
@@ -319,16 +326,16 @@ def test_hints_that_are_earned_can_be_read_again(desk):
     for number in range(3, 9):
         check(ARM, f"wrong {number}")
     assert [line[:6] for line in hint(ARM).messages] == ["Hint 1", "Hint 2", "Hint 3"]
-    assert hint(SAW).messages == ["There is no hint yet."] and kept(SAW) == Entry()
+    assert hint(SAW).messages == ["There is no hint yet."] and entry_of(SAW) == Entry()
 
 
 def test_reading_a_hint_is_help_until_the_answer_is_right(desk):
     Progress.read().put({ARM: Entry("wrong", answers=("a", "b"))})
     hint(ARM)
-    assert kept() == Entry("wrong", answers=("a", "b"), help="hint")
+    assert entry_of() == Entry("wrong", answers=("a", "b"), help="hint")
     Progress.read().put({ARM: Entry("correct", answers=("a", "b"))})
     hint(ARM)
-    assert kept().help == ""
+    assert entry_of().help == ""
 
 
 @pytest.mark.parametrize(
@@ -338,7 +345,7 @@ def test_reading_a_hint_is_help_until_the_answer_is_right(desk):
 def test_of_two_helps_the_greater_one_is_remembered(desk, before, after):
     Progress.read().put({ARM: Entry("wrong", help=before, answers=("a", "b"))})
     hint(ARM)
-    assert kept().help == after
+    assert entry_of().help == after
 
 
 GIVES_UP = "Read it, close it, and write it out for yourself."
@@ -349,19 +356,19 @@ def test_a_code_opens_the_worked_solution(desk):
         reply = check_module.worked_solution(ARM, code)
         assert (reply.question, reply.outcome, reply.note) == (ARM, "hints", "")
         assert reply.messages[0].startswith("This code opens no solution.") and not reply.solution
-    assert kept() == Entry()
+    assert entry_of() == Entry()
     reply = check_module.worked_solution(ARM, "ab cd")
     assert (reply.question, reply.outcome, reply.note) == (ARM, "hints", "")
     assert reply.messages == [GIVES_UP] and reply.solution == "<p>By hand</p>"
-    assert kept() == Entry(help="solution")
+    assert entry_of() == Entry(help="solution")
     check(ARM, "half")
-    assert kept().help == "solution"
+    assert entry_of().help == "solution"
 
 
-def offered(said, order):
+def offered(notice, order):
     name = SAW + ("/sibling", "/sibling-2")[order]
     return (
-        f"You had help: {said}. For practice, solve it with other numbers and without help: "
+        f"You had help: {notice}. For practice, solve it with other numbers and without help: "
         f"`variant('{name}')` shows them, and `check('{name}', ...)` checks your answer."
     )
 
@@ -466,19 +473,23 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
 def test_what_is_right_with_other_numbers_is_told_apart(desk):
     put(saw=Entry("correct", variant=1, numbers="one", whose="bob"), arm=Entry("correct"))
     desk.numbers = {SAW: (2, "two")}
-    told = [f"Right with other numbers, and not with yours yet: `{SAW}`."]
-    assert check_module.progress().messages[2:] == told
+    messages = [f"Right with other numbers, and not with yours yet: `{SAW}`."]
+    assert check_module.progress().messages[2:] == messages
     put(arm=Entry("correct", others=(Entry("correct", variant=1, numbers="one"),)))
-    assert check_module.progress().messages[2:] == told
+    assert check_module.progress().messages[2:] == messages
     put(arm=Entry())
-    assert check_module.progress().messages == told
+    assert check_module.progress().messages == messages
     desk.numbers = {SAW: (1, "one")}
     assert check_module.progress().messages[0] == "The one question that you have tried is right."
     put(saw=Entry("wrong", variant=1, numbers="one"))
     desk.numbers = {SAW: (2, "two")}
     assert check_module.progress().messages == ["Nothing has been checked in this folder yet."]
     check(SAW, "half")
-    assert kept(SAW).variant == 2 and kept(SAW).whose == "ann" and len(kept(SAW).others) == 1
+    assert (
+        entry_of(SAW).variant == 2
+        and entry_of(SAW).whose == "ann"
+        and len(entry_of(SAW).others) == 1
+    )
     for which in itertools.islice(itertools.cycle([(1, "one"), (2, "two")]), 4):
         desk.numbers = {SAW: which}
         assert check(SAW, "half").tries == 1
@@ -487,6 +498,8 @@ def test_what_is_right_with_other_numbers_is_told_apart(desk):
 def test_the_judge_is_given_plain_data(desk, monkeypatch):
     seen = []
     judge = desk.judge
-    monkeypatch.setattr(check_module, "judge", lambda *given: seen.append(given) or judge(*given))
+    monkeypatch.setattr(
+        check_module, "judge", lambda *arguments: seen.append(arguments) or judge(*arguments)
+    )
     check(ARM, "half")
     assert seen == [(ARM, desk.questions[ARM], to_plain("half"), "ann")]

@@ -14,15 +14,15 @@ from coursework.checking.units import BASE, UnknownUnit, unit
 @pytest.mark.parametrize("count", [1, 2, 4, 9])
 def test_what_agrees_to_three_digits_is_told_so_and_nothing_else(count):
     right = [sm.log(prime) for prime in (2, 3, 5, 7, 11, 13, 17, 19, 23)[:count]]
-    one = question("trial/logarithms", "vector", right, length=count, symbols={"x": None})
+    logarithms = question("trial/logarithms", "vector", right, length=count, symbols={"x": None})
 
     def reply(share):
-        return one.reply_to(to_plain([float(entry) * (1 + share) for entry in right])).note
+        return logarithms.reply_to(to_plain([float(entry) * (1 + share) for entry in right])).note
 
     assert {reply(share) for share in (1e-3, -1e-3, 5e-4, -3e-4)} == {"rounded too far"}
     assert "rounded too far" not in {reply(share) for share in (0.1 * count, -0.1 * count)}
     # With cells as narrow as what it may be off by, there would be hundreds.
-    assert len(one.near) <= 4
+    assert len(logarithms.near) <= 4
 
 
 # ---- work and powers ---------------------------------------------------------------------------
@@ -107,7 +107,7 @@ def test_an_angle_times_a_unit_is_no_temperature():
     ],
 )
 def test_a_unit_is_read_as_its_size_and_its_exponents(text, size, exponents):
-    found = unit(text)
+    read_unit = unit(text)
     whole = (*exponents, *[0] * (len(BASE) - len(exponents)))
-    assert str(found.exponents) == str(whole)  # whole numbers, as is said of them
-    assert abs(found.size / evaluate.MP.mpf(size) - 1) < evaluate.MP.mpf(10) ** -38
+    assert str(read_unit.exponents) == str(whole)  # whole numbers, as is said of them
+    assert abs(read_unit.size / evaluate.MP.mpf(size) - 1) < evaluate.MP.mpf(10) ** -38

@@ -39,7 +39,7 @@ def mistake(words, **more):
 CORRECT = KnownAnswer("correct")
 
 
-def said(question, lockers, answer, for_others=None):
+def reply_to(question, lockers, answer, for_others=None):
     """The outcome, the note and the words of a reply."""
     reply = compare(
         "a/b", question, to_plain(answer), (None if lockers is None else lockers.get), for_others
@@ -101,10 +101,10 @@ FORM = "Otherwise: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
     ],
 )
 def test_an_exact_answer(answer, expected):
-    found = said(EXACT, LOCKERS, answer)
-    assert found[: len(expected)] == expected
+    reply = reply_to(EXACT, LOCKERS, answer)
+    assert reply[: len(expected)] == expected
     if expected[0] == "undecided":
-        assert found[2].endswith("here. Try another form, or ask your instructor to look at it.")
+        assert reply[2].endswith("here. Try another form, or ask your instructor to look at it.")
 
 
 def test_a_symbol_that_is_missing_is_named():
@@ -124,9 +124,9 @@ def test_degrees_are_told_from_radians():
     turns = Question("vector", salt="s", tolerance=0.001, length=2, quantity="angle")
     known = {text_of(turns, [0.5, -1]): Locker((CORRECT,))}
     known[text_of(turns, [-0.5, -1])] = Locker((mistake("A sign."),))
-    degrees = said(turns, known, [math.degrees(0.5), math.degrees(-1)])
+    degrees = reply_to(turns, known, [math.degrees(0.5), math.degrees(-1)])
     assert degrees[:2] == ("wrong", "in degrees") and "in degrees" in degrees[2]
-    both = said(turns, known, [math.degrees(-0.5), math.degrees(-1)])
+    both = reply_to(turns, known, [math.degrees(-0.5), math.degrees(-1)])
     assert both[1] == "in degrees, and authored" and both[2].endswith("A sign.")
 
 
@@ -135,8 +135,10 @@ def test_what_may_be_asked_in_degrees_is_not_told_of_them_falsely():
     box = Question("vector", salt="s", tolerance=0.005, length=2)
     known = {text_of(box, [10, 0.2]): Locker((CORRECT,))}
     known[text_of(box, [0.17453, 0.035])] = Locker((mistake("The angle is in radians."),))
-    assert said(box, known, [10, 2])[1] == ""
-    assert said(box, known, [572.9578, 11.459])[2].endswith("Does the question ask for radians?")
+    assert reply_to(box, known, [10, 2])[1] == ""
+    assert reply_to(box, known, [572.9578, 11.459])[2].endswith(
+        "Does the question ask for radians?"
+    )
 
 
 def test_a_reply_holds_what_was_opened():
@@ -152,11 +154,11 @@ def test_a_reply_holds_what_was_opened():
 
 
 def test_what_is_right_for_others_is_said_before_anything_else():
-    other = [x, sm.sqrt(2) / 3, 7]
-    assert said(EXACT, LOCKERS, other, lambda: True)[:2] == ("wrong", "other numbers")
-    assert said(EXACT, LOCKERS, other, lambda: False)[1] == ""
+    unknown_answer = [x, sm.sqrt(2) / 3, 7]
+    assert reply_to(EXACT, LOCKERS, unknown_answer, lambda: True)[:2] == ("wrong", "other numbers")
+    assert reply_to(EXACT, LOCKERS, unknown_answer, lambda: False)[1] == ""
     for answer in (RIGHT, SLIP):
-        assert said(EXACT, LOCKERS, answer, lambda: True) == said(EXACT, LOCKERS, answer)
+        assert reply_to(EXACT, LOCKERS, answer, lambda: True) == reply_to(EXACT, LOCKERS, answer)
 
 
 # ---- answers with a tolerance ------------------------------------------------------------------
@@ -169,7 +171,8 @@ OFF = "off by more than the 0.01 that is allowed. If you rounded, here or on the
 def rough(*answers):
     """One locker for answers whose numbers lie in one cell."""
     known = [
-        KnownAnswer(one.outcome, one.notes, numbers=numbers_of(ROUGH, at)) for one, at in answers
+        KnownAnswer(known_answer.outcome, known_answer.notes, numbers=numbers_of(ROUGH, at))
+        for known_answer, at in answers
     ]
     return type("Any", (dict,), {"get": lambda self, text: Locker(tuple(known))})()
 
@@ -187,12 +190,12 @@ def rough(*answers):
 )
 def test_an_answer_is_the_nearest_that_is_known(answer, expected):
     lockers = rough((CORRECT, CENTRE), (mistake("Near."), [sm.Rational(36, 100), 2]))
-    found = said(ROUGH, lockers, answer)
-    assert found[: len(expected)] == expected
+    reply = reply_to(ROUGH, lockers, answer)
+    assert reply[: len(expected)] == expected
     if expected[1] == "rounded too far":
-        assert found[2].startswith(f"This is close, but {OFF}")
-    only = said(ROUGH, rough((mistake("Near."), CENTRE)), [0.3434, 2])
-    assert only[:2] == ("wrong", "") and said(ROUGH, {}, [0.3434, 2]) == only
+        assert reply[2].startswith(f"This is close, but {OFF}")
+    only = reply_to(ROUGH, rough((mistake("Near."), CENTRE)), [0.3434, 2])
+    assert only[:2] == ("wrong", "") and reply_to(ROUGH, {}, [0.3434, 2]) == only
 
 
 def test_numbers_with_fewer_places_than_count_may_be_rounded():
@@ -201,13 +204,13 @@ def test_numbers_with_fewer_places_than_count_may_be_rounded():
     enough = (-110.33, 4.33, 7.0, 0.5, 0.333, 0.25, 1e-5)
     few[0.2] = ("1 place", "0.004")
     for entry, (places, allowed) in few.items():
-        assert said(vector, {}, [entry, 1])[2] == (
+        assert reply_to(vector, {}, [entry, 1])[2] == (
             f"If you rounded, keep all digits until the end: `{entry:g}` has {places}, and an "
             f"answer may be off by {allowed}. {FORM}"
         )
-    assert {said(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
+    assert {reply_to(vector, {}, [entry, sm.Rational(1, 3)])[2] for entry in enough} == {ALL_WRONG}
     # Nobody has rounded the components of an exact vector.
-    assert {said(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8])} == {ALL_WRONG}
+    assert {reply_to(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8])} == {ALL_WRONG}
 
 
 def test_large_decimal_fractions_are_as_exact_as_their_digits():
@@ -222,19 +225,19 @@ def test_large_decimal_fractions_are_as_exact_as_their_digits():
 def test_numbers_that_nearly_fit_together_may_be_rounded():
     unit = Question("vector", salt="s", tolerance=1e-6, unit_vector=True)
     right, coarse, wrong = (
-        said(unit, {}, answer) for answer in [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
+        reply_to(unit, {}, answer) for answer in [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
     )
     assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
     assert coarse[2].startswith("The numbers nearly fit together. If you rounded, ")
     assert "0.999" in coarse[3]
     assert len(wrong) == 3 and wrong[2].endswith("this one has length 0.866.")
     exact = Question("vector", salt="s", unit_vector=True)
-    assert said(exact, {}, [0.577] * 3)[1:3] == ("not unit length", DECIMALS)
-    assert said(exact, {}, [sm.Rational(1, 2)] * 3)[1:] == wrong[1:]
+    assert reply_to(exact, {}, [0.577] * 3)[1:3] == ("not unit length", DECIMALS)
+    assert reply_to(exact, {}, [sm.Rational(1, 2)] * 3)[1:] == wrong[1:]
     # A mistake that is known comes first, and what is right only with its length.
     for known, outcome in ((mistake("Known."), "wrong"), (CORRECT, "invalid")):
         locker = {text_of(exact, [1, 1, 0]): Locker((known,))}
-        assert said(exact, locker, [1, 1, 0])[0] == outcome
+        assert reply_to(exact, locker, [1, 1, 0])[0] == outcome
 
 
 def test_of_decimal_fractions_some_are_plainly_exact_and_some_plainly_rounded():
@@ -246,8 +249,8 @@ def test_of_decimal_fractions_some_are_plainly_exact_and_some_plainly_rounded():
         "12345.333333333334": (True, False), "0.50000000000015": (False, False),
         "0.1234567891234": (False, False), "0.12345678": (False, True), "1e10": (True, False),
     }  # fmt: skip
-    found = {text: questions._precision({"nodes": [["float", text]]}) for text in texts}
-    assert found == texts
+    precision = {text: questions._precision({"nodes": [["float", text]]}) for text in texts}
+    assert precision == texts
     several = {"nodes": [["float", "0.333"], ["symbol", "x"], ["float", "0.1234567891234"]]}
     assert questions._precision(several) == (False, True)
     assert questions._precision({"nodes": [["integer", "3"]]}) == (True, False)
@@ -264,19 +267,19 @@ def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
         question = Question("odd", salt="s", quantity=note)
         lockers = {text_of(question, [1, 2, 0.5]): Locker((CORRECT,))}
         expected = ("invalid", note, *([DECIMALS] if decimals else []), "A fault.")
-        assert said(question, {}, [1, 2, 0.5]) == expected
-        found = said(question, lockers, [1, 2, 0.5])
-        assert found == (expected if known else ("correct", ""))
+        assert reply_to(question, {}, [1, 2, 0.5]) == expected
+        reply = reply_to(question, lockers, [1, 2, 0.5])
+        assert reply == (expected if known else ("correct", ""))
 
 
 def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
     together = threading.Barrier(2, timeout=5)
 
-    def found(text):
+    def find(text):
         together.wait()
         return text * 2
 
-    assert questions._each(found, ["a", "b"]) == ["aa", "bb"]
+    assert questions._each(find, ["a", "b"]) == ["aa", "bb"]
     assert questions._each(lambda text: threading.current_thread(), ["a"]) == [
         threading.main_thread()
     ]
@@ -299,25 +302,27 @@ def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
 
 def test_a_mistake_is_found_beside_a_slip():
     matrix = Question("matrix", salt="s", shape=(2, 2))
-    right, other = sm.Matrix([[1, 2], [3, 4]]), sm.Matrix([[1, 5], [3, 4]])
+    right, mistaken = sm.Matrix([[1, 2], [3, 4]]), sm.Matrix([[1, 5], [3, 4]])
     lockers = {
         text_of(matrix, right): Locker((CORRECT,)),
-        text_of(matrix, other): Locker((mistake("Known."),)),
-        text_of(matrix, other + right): Locker(
+        text_of(matrix, mistaken): Locker((mistake("Known."),)),
+        text_of(matrix, mistaken + right): Locker(
             (KnownAnswer("mistake", (Note("transposed", {}),)),)
         ),
     }
     said_of_slip = questions.kind_of_values(matrix).slips["transposed"][0]
-    assert said(matrix, lockers, other.T) == (
+    assert reply_to(matrix, lockers, mistaken.T) == (
         "wrong",
         "transposed, and authored",
         f"Two things at once: {said_of_slip} Known.",
     )
-    twice = said(matrix, lockers, (other + right).T)
+    twice = reply_to(matrix, lockers, (mistaken + right).T)
     assert twice[:2] == ("wrong", "rounded too far") and "more than allowed" in twice[2]
-    assert said(matrix, lockers, right.T)[1] == ""  # the transpose of what is right is no mistake
-    assert said(matrix, lockers, 0.3333 * other.T)[1] == ""
-    reply = compare("a/b", matrix, to_plain(other.T), lockers.get)
+    assert (
+        reply_to(matrix, lockers, right.T)[1] == ""
+    )  # the transpose of what is right is no mistake
+    assert reply_to(matrix, lockers, 0.3333 * mistaken.T)[1] == ""
+    reply = compare("a/b", matrix, to_plain(mistaken.T), lockers.get)
     assert reply.details == {"text": "Known."}
     rough = Question("matrix", salt="s", shape=(2, 2), tolerance=0.01)
     at = [[1, 5], [sm.Rational(1, 3), 4]]
@@ -325,38 +330,40 @@ def test_a_mistake_is_found_beside_a_slip():
         "mistake", (Note("authored", {"text": "Known."}),), (), numbers_of(rough, at)
     )
     cells = {text_of(rough, at): Locker((near,))}
-    assert said(rough, cells, [[1, 0.333], [5, 4]])[1] == "transposed, and authored"
+    assert reply_to(rough, cells, [[1, 0.333], [5, 4]])[1] == "transposed, and authored"
     rounded = sm.Matrix([[1, 3], [0.333, 4]])
     lockers[text_of(matrix, rounded.T)] = Locker((mistake("Known."),))
-    assert said(matrix, lockers, rounded)[1] == ""  # what was rounded is no mistake to the digit
+    assert (
+        reply_to(matrix, lockers, rounded)[1] == ""
+    )  # what was rounded is no mistake to the digit
     exact = sm.Matrix([[1, 3], [0.5, 4]])
     lockers[text_of(matrix, exact.T)] = Locker((mistake("Known."),))
-    assert said(matrix, lockers, exact)[1] == "transposed, and authored"
+    assert reply_to(matrix, lockers, exact)[1] == "transposed, and authored"
     wide = Question("matrix", salt="s", shape=(1, 2))
-    assert said(wide, {}, [[1, 2]])[:2] == ("wrong", "")
+    assert reply_to(wide, {}, [[1, 2]])[:2] == ("wrong", "")
 
 
 def test_in_an_exam_only_the_form_is_looked_at():
     unit = Question("vector", salt="s", unit_vector=True)
-    assert said(unit, None, [1, 0, 0])[:2] == ("recorded", "")
-    assert "nothing that you have tells whether it is right" in said(unit, None, [1, 0, 0])[2]
-    assert said(unit, None, [1, 1, 0])[:2] == ("invalid", "not unit length")
+    assert reply_to(unit, None, [1, 0, 0])[:2] == ("recorded", "")
+    assert "nothing that you have tells whether it is right" in reply_to(unit, None, [1, 0, 0])[2]
+    assert reply_to(unit, None, [1, 1, 0])[:2] == ("invalid", "not unit length")
     sealed = Sealed(Question("vector", salt="s", exam=True))
     reply = judge("a/b", sealed, to_plain([1, 1, 0]))
     assert (reply.question, reply.outcome) == ("a/b", "recorded")
     form = judge("a/b", Sealed(replace(sealed.question, unit_vector=True)), to_plain([1, 1, 0]))
     assert (form.question, form.outcome, form.note) == ("a/b", "invalid", "not unit length")
-    assert form.messages == list(said(unit, {}, [1, 1, 0])[2:])
+    assert form.messages == list(reply_to(unit, {}, [1, 1, 0])[2:])
 
 
 def test_words_and_what_a_person_reads():
     choice = Question("choice", salt="s", options=("up", "down"))
     lockers = {"up": Locker((CORRECT,))}
-    assert said(choice, lockers, "UP") == ("correct", "")
+    assert reply_to(choice, lockers, "UP") == ("correct", "")
     wrong = questions.kind_of_values(choice).wrong
-    assert said(choice, lockers, "down") == ("wrong", "", wrong)
+    assert reply_to(choice, lockers, "down") == ("wrong", "", wrong)
     number = Question("choice", salt="s", options=("1", "2"))
-    assert said(number, {}, 2.0) == ("wrong", "", wrong)
+    assert reply_to(number, {}, 2.0) == ("wrong", "", wrong)
     text = Question("free text")
     for answer, words in (("One", "1 word"), ("One  two", "2 words")):
         reply = compare("a/b", text, to_plain(answer), {}.get)
@@ -381,12 +388,12 @@ def locked(question, answer, outcome, *notes, **more):
 
 def test_lockers_and_pages_of_a_question_are_opened():
     page_key = bytes(range(8))
-    told = {
+    locker_data = {
         "cases": [CORRECT.as_json()],
         "solution": [1, "00" * 8, sealing.shorten("Two.", "One.")],
     }
     pages = (
-        sealing.seal(told, page_key),
+        sealing.seal(locker_data, page_key),
         sealing.seal({"words": "One."}, bytes(8)),
         sealing.seal({"solution": "Three."}, bytes(8)),
     )
@@ -396,9 +403,9 @@ def test_lockers_and_pages_of_a_question_are_opened():
         locked(EXACT, [x, 0, 0], 0),
     ])  # fmt: skip
     sealed = Sealed(EXACT, lockers, pages=pages)
-    found = questions.opened(sealed, text_of(EXACT, RIGHT))
-    assert found.place == Place(0, page_key.hex()) and found.answers == (CORRECT,)
-    assert questions.solution_on(sealed, found.solution) == "Two."
+    locker = questions.opened(sealed, text_of(EXACT, RIGHT))
+    assert locker.place == Place(0, page_key.hex()) and locker.answers == (CORRECT,)
+    assert questions.solution_on(sealed, locker.solution) == "Two."
     assert questions.solution_on(sealed, Place(2, "00" * 8)) == "Three."
     assert questions.solution_on(sealed, "Four.") == "Four."
     empty = Sealed(EXACT, pages=(sealing.seal({}, bytes(8)),))
@@ -458,8 +465,10 @@ def folder(tmp_path, monkeypatch):
         (sealed / name).write_text(json.dumps({"format": format, "questions": about}))
 
     write("levers.json", {"levers/arm": first, "levers/plain": plain})
-    for number, other in enumerate(others, 1):
-        write(f"variants/levers-{number}.json", {"levers/arm": questions.beside(other, first)})
+    for number, variant_data in enumerate(others, 1):
+        write(
+            f"variants/levers-{number}.json", {"levers/arm": questions.beside(variant_data, first)}
+        )
     write("later.json", {}, 5)
     write("third.json", {"third/a": plain})
     (sealed / "notes.txt").write_text("")
@@ -472,9 +481,9 @@ def folder(tmp_path, monkeypatch):
 
 def student_with(number):
     return next(
-        one
-        for one in (f"s{k}" for k in range(99))
-        if questions.own_numbers("levers/arm", one)[0] == number
+        student_name
+        for student_name in (f"s{k}" for k in range(99))
+        if questions.own_numbers("levers/arm", student_name)[0] == number
     )
 
 
@@ -483,10 +492,12 @@ def test_questions_are_found_in_the_variant_of_a_student(folder):
     assert first.question.variant.number == 0 and first.pages == ("p0", "p1")
     for number in (1, 2):
         student = student_with(number)
-        found = find_question("levers/arm", student)
-        assert found.question.given == {"arm": number} and found.answer == "arm"
-        assert found.pages == ("p0", "p1", "p2") and found.others == first.others
-        assert found.ladder == ()
+        sealed_question = find_question("levers/arm", student)
+        assert sealed_question.question.given == {"arm": number} and sealed_question.answer == "arm"
+        assert (
+            sealed_question.pages == ("p0", "p1", "p2") and sealed_question.others == first.others
+        )
+        assert sealed_question.ladder == ()
         siblings = [
             find_question(f"levers/arm/sibling{which}", student).question.given["arm"]
             for which in ("", "-2")
@@ -509,8 +520,8 @@ def test_questions_are_found_in_the_variant_of_a_student(folder):
 
 def test_a_variant_is_shown_with_its_own_numbers(folder, monkeypatch):
     monkeypatch.setattr(questions, "identity", lambda: "")
-    given = questions.variant("levers/arm")
-    assert given._repr_markdown_() == "An arm of 0." and given.arm == 0
+    own_numbers = questions.variant("levers/arm")
+    assert own_numbers._repr_markdown_() == "An arm of 0." and own_numbers.arm == 0
     assert questions.variant("levers/plain")._repr_markdown_() == ""
     student = student_with(2)
     monkeypatch.setattr(questions, "identity", lambda: student)
@@ -522,9 +533,9 @@ def test_an_answer_to_other_numbers_is_told(folder):
     sealed = find_question("levers/arm", student)
 
     def reply(answer, who=student, sealed=sealed):
-        found = judge("levers/arm", sealed, to_plain(answer), who)
-        assert found.question == "levers/arm"
-        return found.outcome, found.note, *found.messages
+        judged = judge("levers/arm", sealed, to_plain(answer), who)
+        assert judged.question == "levers/arm"
+        return judged.outcome, judged.note, *judged.messages
 
     others = ("wrong", "other numbers", questions.FOR_OTHERS)
     assert reply(71) == ("correct", "")

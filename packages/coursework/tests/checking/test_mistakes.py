@@ -29,7 +29,10 @@ def factors(answer):
 def symbols(answer):
     """Of answers that hold x and y."""
     return [
-        *(("sign of a symbol", {"symbol": str(one)}, answer.subs(one, -one)) for one in (x, y)),
+        *(
+            ("sign of a symbol", {"symbol": str(symbol)}, answer.subs(symbol, -symbol))
+            for symbol in (x, y)
+        ),
         (
             "symbols interchanged",
             {"first": "x", "second": "y"},
@@ -156,10 +159,10 @@ POWERS = (3, -3, 6, -6, 2, -2)
             ("a", "b", "c"),
             None,
             [
-                ("one wrong", {"number": 3}, [*"abc"[:place], other, *"abc"[place + 1 :]])
+                ("one wrong", {"number": 3}, [*"abc"[:place], choice, *"abc"[place + 1 :]])
                 for place, right in enumerate("abc")
-                for other in "abc"
-                if other != right
+                for choice in "abc"
+                if choice != right
             ],
         ),
         (
@@ -180,24 +183,33 @@ POWERS = (3, -3, 6, -6, 2, -2)
             ("a", "b", "c", "d"),
             None,
             [("turned round", {}, [*"dcba"])]
-            + [("two interchanged", {}, [*other]) for other in ("bacd", "acbd", "abdc")],
+            + [("two interchanged", {}, [*order]) for order in ("bacd", "acbd", "abdc")],
         ),
         (Question("choice"), "a", None, []),
     ],
 )  # fmt: skip
 def test_what_the_mistakes_of_a_kind_lead_to(question, answer, turned, expected):
-    found = [(one.note, one.details, one.answer) for one in mistakes(question, answer, (), turned)]
+    outcomes = [
+        (mistake.note, mistake.details, mistake.answer)
+        for mistake in mistakes(question, answer, (), turned)
+    ]
 
-    def is_one(one, other):
-        return one[:2] == other[:2] and _same(one[2], other[2])
+    def is_one(left, right):
+        return left[:2] == right[:2] and _same(left[2], right[2])
 
-    assert len(found) == len(expected)
-    assert all(any(is_one(one, other) for other in expected) for one in found)
-    assert all(any(is_one(one, other) for one in found) for other in expected)
-    for note, details, _ in found:
+    assert len(outcomes) == len(expected)
+    assert all(
+        any(is_one(outcome, expected_outcome) for expected_outcome in expected)
+        for outcome in outcomes
+    )
+    assert all(
+        any(is_one(outcome, expected_outcome) for outcome in outcomes)
+        for expected_outcome in expected
+    )
+    for note, details, _ in outcomes:
         assert by_short_name(_with_symbols(question))[short_name(note, details)] == (note, details)
-        said = message(question, note, details)
-        assert all(_word(*detail) in said for detail in details.items())
+        message_text = message(question, note, details)
+        assert all(_word(*detail) in message_text for detail in details.items())
 
 
 def _with_symbols(question):
@@ -208,14 +220,14 @@ def _word(name, value):
     return NUMBERS[value] if name == "number" else str(value)
 
 
-def _same(one, other):
-    if isinstance(one, (list, tuple)):
-        return len(one) == len(other) and all(map(_same, one, other))
-    if isinstance(one, (str, bool)):
-        return one == other
+def _same(left, right):
+    if isinstance(left, (list, tuple)):
+        return len(left) == len(right) and all(map(_same, left, right))
+    if isinstance(left, (str, bool)):
+        return left == right
     values = {q: sm.Rational(3, 7), t: 5, x: sm.Rational(2, 3), y: sm.Rational(7, 5)}
-    one, other = (sm.Matrix([part]).subs(values).evalf(20) for part in (one, other))
-    return one.shape == other.shape and (one - other).norm() < 1e-15
+    left, right = (sm.Matrix([part]).subs(values).evalf(20) for part in (left, right))
+    return left.shape == right.shape and (left - right).norm() < 1e-15
 
 
 def test_one_of_the_twenty_is_the_most_that_has_a_word():
@@ -235,8 +247,8 @@ def test_the_names_in_the_lockers_are_what_they_were():
 
 def test_a_plug_in_is_given_the_turns_and_the_question(monkeypatch):
     question = Question("rotation matrix", frames=("B", "A"))
-    found = mistakes(question, sm.eye(3), iter([("x", 30)]))
-    assert [one.note for one in found] == ["transposed", "sine for cosine"]
+    named = mistakes(question, sm.eye(3), iter([("x", 30)]))
+    assert [mistake.note for mistake in named] == ["transposed", "sine for cosine"]
     monkeypatch.setitem(catalogue.MESSAGES, "half", lambda question: f"Of {question.kind}.")
     assert message(question, "half", {}) == "Of rotation matrix."
 

@@ -61,17 +61,17 @@ def frames(count):
 def written(answer, calls=None):
     """The data of an answer on one line: each part of it in place of the number of its node."""
     data = read_plain(json.loads(json.dumps(to_plain(answer, calls))))
-    told = []
+    messages = []
     for operation, *parts in data["nodes"]:
-        parts = [told[part] if type(part) is int else part for part in parts]
-        told.append(f"{operation}({', '.join(parts)})")
+        parts = [messages[part] if type(part) is int else part for part in parts]
+        messages.append(f"{operation}({', '.join(parts)})")
 
     def entered(value):
         match value:
             case ["expression", place]:
-                return told[place]
+                return messages[place]
             case ["matrix", rows, columns, places]:
-                return f"{rows}x{columns}: " + " ".join(told[place] for place in places)
+                return f"{rows}x{columns}: " + " ".join(messages[place] for place in places)
             case [*parts]:
                 return [entered(part) for part in parts]
             case dict():
@@ -103,8 +103,8 @@ WRITTEN = [
     (sm.I, "constant(ImaginaryUnit)"),
     (sm.oo, "float(inf)"),
     *(
-        (one, "Add(float(1.0), Mul(constant(ImaginaryUnit), float(-2.0)))")
-        for one in (1 - 2j, np.complex64(1 - 2j), np.complex128(1 - 2j), mpmath.mpc(1, -2))
+        (number, "Add(float(1.0), Mul(constant(ImaginaryUnit), float(-2.0)))")
+        for number in (1 - 2j, np.complex64(1 - 2j), np.complex128(1 - 2j), mpmath.mpc(1, -2))
     ),
     (sm.UnevaluatedExpr(x), X),
     (sm.UnevaluatedExpr(sm.ImmutableMatrix([[1, x]])), f"1x2: {ONE} {X}"),
@@ -213,8 +213,8 @@ def test_what_calls_give_is_written_with_what_they_print_and_raise():
             print("more" * (number - 4))
             return [number]
 
-    said, raised = (" said " * 100)[:300], f"SystemExit: {'stopped' * 100}"[:300]
-    results = [["printed", said], ["raised", raised], ["blank"], listed("integer(4)")]
+    printed, raised = (" said " * 100)[:300], f"SystemExit: {'stopped' * 100}"[:300]
+    results = [["printed", printed], ["raised", raised], ["blank"], listed("integer(4)")]
     results.append(listed("integer(5)"))
     assert written(odd, [[1], [2], [3], [4], [5]]) == ["function", results, True]
 
@@ -259,9 +259,9 @@ def test_greek_letters_are_spelled_and_all_others_stay():
 def entries(matrix):
     data = read_plain(to_plain(matrix))
     kind, rows, columns, places = data["value"]
-    found = values(data["nodes"], {})
+    results = values(data["nodes"], {})
     return MP.matrix([
-        [number(found[places[row * columns + column]]) for column in range(columns)]
+        [number(results[places[row * columns + column]]) for column in range(columns)]
         for row in range(rows)
     ]), data["nodes"]  # fmt: skip
 
@@ -274,7 +274,11 @@ def numbers(rows, columns, seed):
 
 @pytest.mark.parametrize("size", [1, 2, 3, 4])
 def test_products_and_inverses_of_matrices_are_those_of_sympy(size):
-    square, other, wide = numbers(size, size, 1), numbers(size, size, 2), numbers(size, size + 1, 3)
+    square, second, wide = (
+        numbers(size, size, 1),
+        numbers(size, size, 2),
+        numbers(size, size + 1, 3),
+    )
     tall = numbers(size + 1, 2, 4)
     for form in (
         sm.MatMul(square, wide, tall),
@@ -286,16 +290,16 @@ def test_products_and_inverses_of_matrices_are_those_of_sympy(size):
         sm.MatPow(square, 0),
         sm.MatPow(square, 12),
         sm.MatPow(square, 13),
-        sm.MatMul(other, sm.Inverse(square)),
+        sm.MatMul(second, sm.Inverse(square)),
         sm.MatPow(square, -2),
-        sm.MatMul(sm.Transpose(sm.MatMul(square, wide)), sm.Inverse(other)),
+        sm.MatMul(sm.Transpose(sm.MatMul(square, wide)), sm.Inverse(second)),
     ):
-        found, nodes = entries(form)
+        computed, nodes = entries(form)
         right = form.doit().as_explicit()
-        assert (found.rows, found.cols) == right.shape
+        assert (computed.rows, computed.cols) == right.shape
         assert all(
             abs(a - MP.mpf(b.p) / b.q) < MP.mpf(10) ** -20 * max(1, abs(a))
-            for a, b in zip(found, right.flat())
+            for a, b in zip(computed, right.flat())
         )
     assert entries(sm.MatPow(square, 1))[0] == entries(square)[0]
     assert any(node[0] == "Pow" for node in entries(sm.Inverse(square))[1])
@@ -478,12 +482,16 @@ def is_value(value, depth, nodes):
             right = are_names(targets, 12) and all(
                 isinstance(sources, dict) and are_names(sources, 12) for sources in targets.values()
             )
-            inner = right and [one for sources in targets.values() for one in sources.values()]
+            inner = right and [
+                component for sources in targets.values() for component in sources.values()
+            ]
         case ["list", list(inner)] | ["function", list(inner), bool()]:
             right = len(inner) <= 400
         case _:
             right = False
-    return right and depth <= 8 and all(is_value(one, depth + 1, nodes) for one in inner)
+    return (
+        right and depth <= 8 and all(is_value(component, depth + 1, nodes) for component in inner)
+    )
 
 
 def are_names(names, most):
@@ -559,16 +567,16 @@ def is_read(data):
 def test_what_is_read_is_what_the_grammar_says(value):
     data = {"value": value, "nodes": NODES[:1]}
     assert is_read(data) and is_plain(data)
-    for one in changed(data):
-        assert is_read(one) == is_plain(one), one
+    for candidate in changed(data):
+        assert is_read(candidate) == is_plain(candidate), candidate
 
 
 NODES = [["integer", "1"], ["rational", "1", "2"], ["float", "2.5"], ["symbol", "x"], ["Add", 0, 3]]
 
 
 def test_nodes_are_read_as_the_grammar_says():
-    for one in changed({"value": ["expression", 4], "nodes": NODES}):
-        assert is_read(one) == is_plain(one), one
+    for candidate in changed({"value": ["expression", 4], "nodes": NODES}):
+        assert is_read(candidate) == is_plain(candidate), candidate
     assert not any(map(is_read, (None, [], "value nodes", {"value": ["blank"]}, {"nodes": []})))
     assert not is_read({"value": ["blank"], "nodes": [], "more": 1})
 
@@ -576,9 +584,9 @@ def test_nodes_are_read_as_the_grammar_says():
 def test_borders_of_what_is_read():
     for depth in (8, 9):
         for inner in (
-            lambda one: ["list", [one]],
-            lambda one: ["frame", "N", {"A": one}],
-            lambda one: ["frames", {"N": {"A": one}}],
+            lambda value: ["list", [value]],
+            lambda value: ["frame", "N", {"A": value}],
+            lambda value: ["frames", {"N": {"A": value}}],
         ):
             value = ["blank"]
             for _ in range(depth):

@@ -41,14 +41,14 @@ def test_where_symbols_are_sampled_is_what_it_was():
         },
         unit=(("b", "c"),),
     )
-    found = [
+    sampled = [
         [MP.nstr(point[name], 12) for name in question.symbols] for point in points.points(question)
     ]
-    assert found == SAMPLED
+    assert sampled == SAMPLED
 
 
 @pytest.mark.parametrize(
-    ("name", "other"),
+    ("name", "spellings"),
     [
         ("x", []),
         ("phi", ["varphi"]),
@@ -59,8 +59,8 @@ def test_where_symbols_are_sampled_is_what_it_was():
         ("epsilon''", ["varepsilon''"]),
     ],
 )
-def test_other_spellings_of_a_symbol(name, other):
-    assert points.spellings(name) == other
+def test_other_spellings_of_a_symbol(name, spellings):
+    assert points.spellings(name) == spellings
 
 
 def test_all_spellings_of_a_symbol_have_its_value_unless_they_are_another_symbol():
@@ -95,19 +95,21 @@ def test_where_no_choice_is_perfect_the_best_is_taken(monkeypatch):
         ]
         return len({pattern for pattern in patterns if not all(pattern)})
 
-    found = []
+    placements = []
     for tries in range(1, 9):
         monkeypatch.setattr(points, "MOST_TRIES", tries)
-        found.append(points._placed("salt", symbols))
-    numbers = [*map(different, found)]
+        placements.append(points._placed("salt", symbols))
+    numbers = [*map(different, placements)]
     assert numbers == sorted(numbers) and numbers[0] < numbers[-1]
-    assert len({tuple(rows[0]) for rows in found}) == len(set(numbers))  # of equals the first
+    assert len({tuple(rows[0]) for rows in placements}) == len(set(numbers))  # of equals the first
 
 
 def test_a_range_within_a_quadrant_leaves_nothing_to_place(monkeypatch):
     made = []
     column = points._column
-    monkeypatch.setattr(points, "_column", lambda *given: made.append(given) or column(*given))
+    monkeypatch.setattr(
+        points, "_column", lambda *arguments: made.append(arguments) or column(*arguments)
+    )
     assert len(points._placed("salt", [(0.1, 1.0)])) == points.POINTS and len(made) == 1
 
 
@@ -122,9 +124,9 @@ def test_without_symbols_there_is_one_point_and_none_is_shared():
 
 
 def shown(**about):
-    one = Reply("levers/<one>", "wrong", "a note", ["Say *so*: $x_1 < 2$.", "And on."])
-    vars(one).update(about)
-    return one
+    reply = Reply("levers/<one>", "wrong", "a note", ["Say *so*: $x_1 < 2$.", "And on."])
+    vars(reply).update(about)
+    return reply
 
 
 def test_a_reply_as_text():
@@ -176,8 +178,8 @@ def test_a_reply_as_a_page(about, known, tries):
 
 
 def test_a_new_reply_knows_nothing_that_it_was_not_told():
-    one = Reply("a", "correct")
-    assert vars(one) == {
+    reply = Reply("a", "correct")
+    assert vars(reply) == {
         "question": "a", "outcome": "correct", "note": "", "messages": [], "solution": "",
         "answer": "", "tries": 0, "tried": [], "help": "", "sibling": "", "details": {},
         "shown": None, "opened": None, "known": None,
@@ -260,6 +262,6 @@ def test_what_is_sealed_is_fetched_from_where_the_pages_lie(status, tmp_path, mo
         why = "the server says 404" if status else "no network"
         with pytest.raises(RuntimeError) as error:
             fetched(tmp_path / "where", "one.json")
-        said = f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
-        assert str(error.value) == said
+        message = f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
+        assert str(error.value) == message
     assert asked == [("GET", address, False)]

@@ -47,7 +47,7 @@ def test_every_field_is_read_and_written():
     assert Sealed.from_json(WHOLE, "here") == sealed and sealed.as_json() == WHOLE
     assert Question.from_json(WHOLE) == QUESTION
     assert QUESTION.as_json() == OF_QUESTION | OF_VARIANT | OWN
-    about = {one.name.replace("_", " ") for kind in (Question, Sealed) for one in fields(kind)}
+    about = {field.name.replace("_", " ") for kind in (Question, Sealed) for field in fields(kind)}
     inner = {"question", "variant", "arguments"}
     assert about - inner == OF_QUESTION.keys() | OF_SEALED.keys()  # a new field stands here, too
 
@@ -57,11 +57,11 @@ def test_what_is_empty_is_left_out():
     assert sealed == Sealed(Question("vector"))
     assert sealed.as_json() == {"kind": "vector", "salt": "", "lockers": "", "worth": 1}
     assert Question.from_json({"kind": "function", "takes": "lists"}).takes == "lists"
-    one = Question.from_json({"kind": "vector", "variants": 2})
-    assert one == Question("vector", variant=Variant(0, 2))
+    question = Question.from_json({"kind": "vector", "variants": 2})
+    assert question == Question("vector", variant=Variant(0, 2))
     empty = {"variant": 0, "variants": 2, "given": {}, "shown": {}, "text": ""}
-    assert one.as_json() == {"kind": "vector", "salt": ""} | empty
-    assert (one.variants, one.given, Question("vector").variants) == (2, {}, 1)
+    assert question.as_json() == {"kind": "vector", "salt": ""} | empty
+    assert (question.variants, question.given, Question("vector").variants) == (2, {}, 1)
     assert (QUESTION.variants, QUESTION.given) == (9, VARIANT.given)
     kinds = [Question("function", result="vector"), Question("function"), Question("a", result="b")]
     assert [question.kind_of_values for question in kinds] == ["vector", "function", "a"]
@@ -95,9 +95,9 @@ def test_what_a_locker_holds_is_read_and_written():
         KnownAnswer("mistake", (Note("sign", {"of": "x"}),), ("Look.",), ("1.5",)),
         KnownAnswer("correct"),
     )
-    found = Locker.from_json(LOCKER, "here", Place(1, "ab"))
-    assert found == Locker(answers, {"a/b": ("Now this.",)}, None, Place(1, "ab"))
-    assert found.as_json() == LOCKER and Locker.from_json({}, "here") == Locker()
+    locker = Locker.from_json(LOCKER, "here", Place(1, "ab"))
+    assert locker == Locker(answers, {"a/b": ("Now this.",)}, None, Place(1, "ab"))
+    assert locker.as_json() == LOCKER and Locker.from_json({}, "here") == Locker()
     assert Locker().as_json() == {"cases": []}
     for solution, read in (
         ("text", "text"),
@@ -108,7 +108,7 @@ def test_what_a_locker_holds_is_read_and_written():
 
 
 @pytest.mark.parametrize(
-    ("about", "said"),
+    ("about", "message"),
     [
         ({"cases": [{"notes": []}]}, "here: 'cases' should be an object with 'outcome'"),
         ({"cases": [KNOWN | {"outcome": "wrong"}]}, "here: 'cases': 'outcome' should be one of"),
@@ -125,7 +125,7 @@ def test_what_a_locker_holds_is_read_and_written():
         ({"solution": [1, 2]}, "here: 'solution' should be a text, and is 2"),
     ],
 )
-def test_what_a_locker_cannot_hold_is_said(about, said):
+def test_what_a_locker_cannot_hold_is_said(about, message):
     with pytest.raises(Misread) as error:
         Locker.from_json(about, "here")
-    assert str(error.value).startswith(said)
+    assert str(error.value).startswith(message)

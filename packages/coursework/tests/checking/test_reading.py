@@ -99,7 +99,7 @@ ROWS = "a list of rows, one of which has"
 
 
 @pytest.mark.parametrize(
-    ("question", "answer", "told"),
+    ("question", "answer", "description"),
     [
         (EXPRESSION, sm.eye(2), "a matrix of 2 × 2"),
         (EXPRESSION, sm.Matrix([[1, 2]]), "a matrix of 1 × 2"),
@@ -179,20 +179,20 @@ ROWS = "a list of rows, one of which has"
         (CHOICE, ["1", 2], "a list with 2 entries"),
     ],
 )
-def test_what_is_said_of_another_form(question, answer, told):
+def test_what_is_said_of_another_form(question, answer, description):
     answer = answer if isinstance(answer, dict) else to_plain(answer)
-    with pytest.raises(Fault) as found:
+    with pytest.raises(Fault) as raised:
         read(question, answer)
-    wanted, said = WANTED[question.kind], found.value.message
-    assert found.value.note == "shape" and str(found.value) == said
-    assert said == f"Give {wanted}; this is {told}."
+    expected, message = WANTED[question.kind], raised.value.message
+    assert raised.value.note == "shape" and str(raised.value) == message
+    assert message == f"Give {expected}; this is {description}."
 
 
 OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
 
 
 @pytest.mark.parametrize(
-    ("question", "answer", "note", "said"),
+    ("question", "answer", "note", "message"),
     [
         (WORDS, ["1"], "shape", f"a list of 2 words, each one of {OPTIONS}; this is a list with 1"),
         (WORDS, "1", "shape", f"a list of 2 words, each one of {OPTIONS}; this is a string."),
@@ -241,11 +241,11 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
         ),
     ],
 )
-def test_what_is_said_of_an_answer_that_has_no_value(question, answer, note, said):
+def test_what_is_said_of_an_answer_that_has_no_value(question, answer, note, message):
     answer = answer if isinstance(answer, dict) else to_plain(answer)
-    with pytest.raises(Fault) as found:
+    with pytest.raises(Fault) as raised:
         read(question, answer)
-    assert found.value.note == note and said in found.value.message
+    assert raised.value.note == note and message in raised.value.message
 
 
 @pytest.mark.parametrize(
@@ -296,10 +296,10 @@ def test_arguments_are_made_anew_for_each_call():
 @pytest.mark.parametrize(
     ("question", "answer", "meant"),
     [
-        *((CHOICE, said, "-i") for said in ("-i", "- I", "\u2212i", "\uff0di", " '-i' ")),
+        *((CHOICE, spelling, "-i") for spelling in ("-i", "- I", "\u2212i", "\uff0di", " '-i' ")),
         (CHOICE, "\u201e\u2011i\u201c", "-i"),
-        *((CHOICE, said, "1") for said in (1, 1.0, "+1", "+ 1", "'1'", ["1"])),
-        *((CHOICE, said, "+x") for said in (x, "x", "+ X", "+x")),
+        *((CHOICE, spelling, "1") for spelling in (1, 1.0, "+1", "+ 1", "'1'", ["1"])),
+        *((CHOICE, spelling, "+x") for spelling in (x, "x", "+ X", "+x")),
         (CHOICE, plain(STRAY, MINUS, NAME, ["Mul", 0, 1]), "-i"),
         (CHOICE, plain(STRAY, NAME, MINUS, ["Mul", 0, 1]), "-i"),
         (CHOICE, "-  2  -", "- 2 -"),
@@ -345,8 +345,8 @@ def test_another_unit_is_farther_than_any_tolerance():
         [same] = read(question, to_plain((2000, "kg m^2/s^2"))).numbers
         assert right == same and right[0] == 2
         for unit in ("kN", "kN/m", "kN m s", "N m K"):
-            [other] = read(question, to_plain((2, unit))).numbers
-            assert reading.distance(question, other, right) > 10**5
+            [other_unit] = read(question, to_plain((2, unit))).numbers
+            assert reading.distance(question, other_unit, right) > 10**5
     assert read(MEASUREMENT, to_plain((2, "kN"))).numbers[0][0] == 2000  # in an exam
     assert kinds.scale_of((5, "km/h")) == {"scale": "0.277777777777778"}
 
@@ -383,7 +383,7 @@ NEARLY = "near 69 -87"
 def test_where_the_cells_lie_is_what_it_was():
     """Every file that was ever sealed depends on it."""
     answer = Reading([[MP.mpf(2), MP.mpf(-3)]])
-    assert [reading.fingerprint(one, answer) for one in QUESTIONS] == WHERE
+    assert [reading.fingerprint(case, answer) for case in QUESTIONS] == WHERE
     assert reading.fingerprint(QUESTIONS[0], answer, near=True) == NEARLY
 
 
@@ -394,8 +394,8 @@ def test_the_cells_around_an_answer_hold_all_that_is_as_near(question, near):
     for _ in range(40):
         numbers = [MP.mpf(chance.uniform(-4, 4)) for _ in range(2)]
         answer, reach = Reading([numbers]), chance.choice([1, 2.5])
-        found = reading.fingerprints(question, answer, reach, near, most=99)
-        assert found[0] == reading.fingerprint(question, answer, near)
+        texts = reading.fingerprints(question, answer, reach, near, most=99)
+        assert texts[0] == reading.fingerprint(question, answer, near)
         absolute, relative = (NEAR, NEAR) if near else reading.tolerances(question)
         cells = []
         for order, number in enumerate(numbers):
@@ -420,14 +420,14 @@ def test_the_cells_around_an_answer_hold_all_that_is_as_near(question, near):
                 moved.append(new)
             own = []
             for new in (number, *moved):
-                told = reading.fingerprint(
+                changed_text = reading.fingerprint(
                     question, Reading([[*numbers[:order], new, *numbers[order + 1 :]]]), near
                 )
-                own.append(told.removeprefix("near ").split()[order])
+                own.append(changed_text.removeprefix("near ").split()[order])
             cells.append(set(own))
         expected = {" ".join(chosen) for chosen in itertools.product(*cells)}
-        assert {one.removeprefix("near ") for one in found} == expected
-        assert all(one.startswith("near ") == near for one in found)
+        assert {text.removeprefix("near ") for text in texts} == expected
+        assert all(text.startswith("near ") == near for text in texts)
 
 
 def test_of_many_edges_the_nearest_are_taken():
@@ -482,25 +482,25 @@ def test_of_two_opposites_the_one_that_begins_above_zero(tolerance, limit):
 def test_the_length_of_a_unit_vector(tolerance, slack):
     question = Question("vector", unit_vector=True, tolerance=tolerance)
 
-    def found(length):
+    def fault_of(length):
         numbers = [length * 2 / MP.mpf(3), -length / 3, length * 2 / MP.mpf(3)]
         assert reading.fault(Question("vector"), Reading([numbers])) is None
         return reading.fault(question, Reading([[0, 1, 0], numbers]))
 
     for sign in (1, -1):
-        assert found(1 + sign * MP.mpf(slack) * MP.mpf("0.99")) is None
-        assert found(1 + sign * MP.mpf(slack) * MP.mpf("1.01")).note == "not unit length"
-    assert found(MP.mpf(2)).message.endswith("this one has length 2.")
+        assert fault_of(1 + sign * MP.mpf(slack) * MP.mpf("0.99")) is None
+        assert fault_of(1 + sign * MP.mpf(slack) * MP.mpf("1.01")).note == "not unit length"
+    assert fault_of(MP.mpf(2)).message.endswith("this one has length 2.")
     assert reading.fault(question, Reading([], "a")) is None
     assert reading.fault(EXPRESSION, Reading([[1]])) is None
 
 
 @pytest.mark.parametrize(
-    ("length", "said"),
+    ("length", "words"),
     [("1.0437", "1.04"), ("1.0000437", "1.00004"), ("2", "2"), ("1.000000001", "1.000000001")],
 )
-def test_a_length_with_the_digits_that_show_that_it_is_not_one(length, said):
-    assert kinds.length_in_words(MP.mpf(length)) == said
+def test_a_length_with_the_digits_that_show_that_it_is_not_one(length, words):
+    assert kinds.length_in_words(MP.mpf(length)) == words
     assert kinds.short(MP.mpf(length)) == str(MP.nstr(MP.mpf(length), 3))
 
 

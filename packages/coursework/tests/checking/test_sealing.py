@@ -108,7 +108,12 @@ PICTURE = '<svg width="9" height="7"><rect width="3"/><text>é &amp; "x"</text><
 def test_who_gets_which_variant_never_changes():
     """A student who comes back, and the grader, find the same one."""
     students = ["Ada@Uni.example ", "ada@uni.example", "eda", ""]
-    assert [variants.variant_of(one, "levers/see-saw", 16) for one in students] == [11, 11, 5, 0]
+    assert [variants.variant_of(student, "levers/see-saw", 16) for student in students] == [
+        11,
+        11,
+        5,
+        0,
+    ]
     assert [variants.variant_of("ada", "a/b", count) for count in (0, 1, 2, 7)] == [0, 0, 1, 1]
     assert variants.variant_of("ada", "a/b", 97, "2027") == 41
     plain, named = (
@@ -116,29 +121,30 @@ def test_who_gets_which_variant_never_changes():
         Variant(count=5, edition="e", names=tuple("vwxyz")),
     )
     orders = [
-        variants.numbers_of_variants(student, "a/b", one, 5)
+        variants.numbers_of_variants(student, "a/b", case, 5)
         for student in ("", " ADA ", "ben")
-        for one in (plain, named)
+        for case in (plain, named)
     ]
     assert orders == [
         [0, 1, 2, 3, 4], [0, 1, 2, 3, 4], [1, 2, 3, 4, 0], [0, 3, 2, 1, 4], [1, 2, 3, 4, 0],
         [2, 4, 0, 3, 1],
     ]  # fmt: skip
-    for one in (plain, named):
-        order = variants.numbers_of_variants("ben", "a/b", one, 5)
-        question = Question("vector", variant=one)
-        found = [variants.own_variant("ben", "a/b", question, place) for place in range(6)]
+    for case in (plain, named):
+        order = variants.numbers_of_variants("ben", "a/b", case, 5)
+        question = Question("vector", variant=case)
+        numbers = [variants.own_variant("ben", "a/b", question, place) for place in range(6)]
         assert (
-            found == [*order, order[0]] and variants.own_variant("ben", "a/b", question) == order[0]
+            numbers == [*order, order[0]]
+            and variants.own_variant("ben", "a/b", question) == order[0]
         )
     assert variants.own_variant("ben", "a/b", Question("vector"), 1) == 0
 
 
 def test_names_of_variants_follow_from_what_is_given_and_shown():
-    one = Variant(given={"b": 1, "a": 2}, shown={"c": "3"})
-    found = variants.names_of_variants([one, one, Variant(), one, Variant(given={"c": "3"})])
+    full = Variant(given={"b": 1, "a": 2}, shown={"c": "3"})
+    names = variants.names_of_variants([full, full, Variant(), full, Variant(given={"c": "3"})])
     first, empty, last = "bb4224fbae1c", "44136fa355b3", "b71907f1f20f"
-    assert found == [first, f"{first}+", empty, f"{first}++", last]
+    assert names == [first, f"{first}+", empty, f"{first}++", last]
 
 
 def test_siblings_are_two_and_have_names():
@@ -156,11 +162,11 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
     many = "".join(random.Random(4).choice("abc") for _ in range(3000))
     best = base64.b85encode(zlib.compress(json.dumps([many, ""]).encode(), 9)).decode()
     assert variants.packed(many, "") == best
-    one = Variant(
+    variant = Variant(
         text="*See* {{picture}}, `{{arm}}` {{arm}} $F$ {{leg}}", shown={"arm": "2"},
         picture=variants.packed(PICTURE, 'Up & "on"'),
     )  # fmt: skip
-    text = variants.text_of(one)
+    text = variants.text_of(variant)
     data = base64.b64encode(PICTURE.encode()).decode()
     assert text == (
         '*See* <p><img alt="Up &amp; &quot;on&quot;" width="9" '
@@ -168,13 +174,16 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
     )
     with pytest.raises(Misread, match="^A picture should be a list of two"):
         variants.text_of(Variant(picture=base64.b85encode(zlib.compress(b"[1]")).decode()))
-    given = variants.Given(text, {"arm": 2, "_leg": 3})
-    assert repr(given) == 'See Up & "on", 2 2 F {{leg}}' and given._repr_markdown_() == text
-    assert given.arm == given["arm"] == 2 and not hasattr(given, "_leg")
+    shown_variant = variants.Given(text, {"arm": 2, "_leg": 3})
+    assert (
+        repr(shown_variant) == 'See Up & "on", 2 2 F {{leg}}'
+        and shown_variant._repr_markdown_() == text
+    )
+    assert shown_variant.arm == shown_variant["arm"] == 2 and not hasattr(shown_variant, "_leg")
     with pytest.raises(AttributeError, match="^_leg$"):
-        given.__getattr__("_leg")
+        shown_variant.__getattr__("_leg")
     with pytest.raises(AttributeError, match="gives `arm`, `_leg`; `force` is not among them"):
-        given.__getattr__("force")
+        shown_variant.__getattr__("force")
 
 
 # ---- plug-ins ----------------------------------------------------------------------------------

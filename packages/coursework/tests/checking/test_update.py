@@ -93,11 +93,11 @@ def test_what_becomes_of_each_file(work, tmp_path):
     ]
     now = contents(work)
     known = json.loads(now.pop("manifest.json"))["files"]
-    kept = {"kept.txt": b"changed", "mine.ipynb": notebook("changed"), "levers.whl": b""}
-    kept |= {"unknown.txt": b"of a student", "another-1-py3-none-any.whl": b""}
-    kept |= {"requirements.txt": f"numpy\n./{NEW_WHEEL}\nscipy\n".encode()}
+    students_files = {"kept.txt": b"changed", "mine.ipynb": notebook("changed"), "levers.whl": b""}
+    students_files |= {"unknown.txt": b"of a student", "another-1-py3-none-any.whl": b""}
+    students_files |= {"requirements.txt": f"numpy\n./{NEW_WHEEL}\nscipy\n".encode()}
     beside = {"mine-new-1.ipynb": notebook("two"), "unknown-new-1.txt": b"two"}
-    assert now == files | kept | beside
+    assert now == files | students_files | beside
     digests = {name: digest_of(name, data) for name, data in (files | beside).items()}
     assert known == digests | {OLD_WHEEL: digest_of(OLD_WHEEL, b"one")}
     # Once more: everything is there already.
@@ -110,10 +110,10 @@ def test_what_is_put_beside_takes_no_other_files_place(work, tmp_path):
     (work / "a.txt").write_bytes(b"mine")
     for number, data in enumerate((b"two", b"three", b"four"), 1):
         archive = zipped(tmp_path / "new.zip", {"a.txt": data, "b.ipynb": notebook()})
-        said = update(archive, work)[0]
+        line = update(archive, work)[0]
         # What was put there before and nobody has changed gives way; what somebody changed stays.
         place = 1 if number < 3 else 2
-        assert said == f"kept yours  a.txt; the new one is a-new-{place}.txt"
+        assert line == f"kept yours  a.txt; the new one is a-new-{place}.txt"
         assert (work / f"a-new-{place}.txt").read_bytes() == data
         if number == 2:
             (work / "a-new-1.txt").write_bytes(b"mine, too")
@@ -166,27 +166,27 @@ def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
     and so are the times of the files.
     """
     files = [{"a.ipynb": notebook(word), NEW_WHEEL: b""} for word in ("one", "two", "three")]
-    one, two, three = (
+    first, second, third = (
         zipped(tmp_path / f"{k}.zip", {**these, "manifest.json": manifest(these).encode()})
         for k, these in enumerate(files)
     )
-    with zipfile.ZipFile(one) as box:
+    with zipfile.ZipFile(first) as box:
         for entry in box.namelist():
             if not entry.endswith("/"):
                 (work / entry.removeprefix("exercises/")).write_bytes(box.read(entry))
-    update(one, work)
-    assert update(two, work)[0].startswith("replaced")
+    update(first, work)
+    assert update(second, work)[0].startswith("replaced")
     before = contents(work)
     with pytest.raises(ArchiveRefused, match="0.zip was in this folder before, and a newer one"):
-        update(one, work)
+        update(first, work)
     assert contents(work) == before
-    assert [line[:8] for line in update(two, work)[:1]] == ["the same"]
-    assert contents(work) == before and update(three, work)[0].startswith("replaced")
-    for older in (one, two):
+    assert [line[:8] for line in update(second, work)[:1]] == ["the same"]
+    assert contents(work) == before and update(third, work)[0].startswith("replaced")
+    for older in (first, second):
         with pytest.raises(ArchiveRefused, match="was in this folder before"):
             update(older, work)
     with pytest.raises(ArchiveRefused, match="There is no folder .*elsewhere"):
-        update(three, tmp_path / "elsewhere")
+        update(third, tmp_path / "elsewhere")
 
 
 def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(work, tmp_path):
@@ -203,9 +203,16 @@ def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(wo
 def test_the_digest_of_a_notebook_is_of_what_its_cells_say():
     same = [notebook("a\nb", "c"), notebook(["a\n", "b"], ["c"]), notebook("a\nb", "c", outputs=1)]
     assert {digest_of("a.ipynb", data) for data in same} == {"2ee94483cbd98ccc4a6ee492ac20b795"}
-    other = [notebook("a\nb c"), notebook("c", "a\nb"), b"", b"[]", b'{"cells": [1]}', b'{"a": 1}']
-    other += [same[0].replace(b"code", b"markdown")]
-    assert len({digest_of("a.ipynb", data) for data in same + other}) == 1 + len(other)
+    different = [
+        notebook("a\nb c"),
+        notebook("c", "a\nb"),
+        b"",
+        b"[]",
+        b'{"cells": [1]}',
+        b'{"a": 1}',
+    ]
+    different += [same[0].replace(b"code", b"markdown")]
+    assert len({digest_of("a.ipynb", data) for data in same + different}) == 1 + len(different)
     assert digest_of("a.txt", b"text") == "982d9e3eb996f559e633f4d194def376"
     assert len({digest_of("a.txt", data) for data in same}) == 3
     assert manifest({"b": b"text", "a": b"text"}) == (
@@ -231,8 +238,8 @@ def test_what_is_installed_is_not_installed_again(work, tmp_path, monkeypatch):
         monkeypatch.setattr(
             module, "sys", SimpleNamespace(platform=platform, executable="/a python")
         )
-        said = update(archive, folder)[-1]
-        assert said == f"Now run this:\n\n    {command} -m pip install {both}\n"
+        line = update(archive, folder)[-1]
+        assert line == f"Now run this:\n\n    {command} -m pip install {both}\n"
 
 
 def test_the_extra_files_of_a_mac_are_left_out(work, tmp_path):

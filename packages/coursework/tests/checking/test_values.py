@@ -54,11 +54,11 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize(("error", "said", "nodes"), REFUSED)
-def test_what_has_no_value_is_told(error, said, nodes):
-    with pytest.raises(error) as found:
+@pytest.mark.parametrize(("error", "message", "nodes"), REFUSED)
+def test_what_has_no_value_is_told(error, message, nodes):
+    with pytest.raises(error) as raised:
         value(*nodes, theta=MP.one)
-    assert str(found.value) == said
+    assert str(raised.value) == message
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ def test_a_sealed_question_is_written_as_it_was_read():
 
 
 @pytest.mark.parametrize(
-    "reader, found, change, said",
+    "reader, content, change, message",
     [
         (Question.from_json, LEVER, {"kind": None}, "'kind'"),
         (
@@ -72,14 +72,14 @@ def test_a_sealed_question_is_written_as_it_was_read():
         ),
     ],
 )
-def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, found, change, said):
+def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, content, change, message):
     with pytest.raises(Misread) as error:
-        reader({**found, **change}, "here")
-    assert said in str(error.value) and str(error.value).startswith("here")
+        reader({**content, **change}, "here")
+    assert message in str(error.value) and str(error.value).startswith("here")
 
 
 @pytest.mark.parametrize(
-    "change, share, said",
+    "change, share, message",
     [
         ({"worth": "two"}, 1, "levers/one: 'worth' should be a number.*Unpack the exercises"),
         ({}, 0.5, "of levers are no whole file. Unpack the exercises"),
@@ -88,7 +88,7 @@ def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, found, change,
     ],
 )
 def test_a_student_whose_sealed_file_cannot_be_used_is_told_what_to_do(
-    change, share, said, tmp_path, monkeypatch
+    change, share, message, tmp_path, monkeypatch
 ):
     (tmp_path / "sealed").mkdir()
     content = json.dumps(
@@ -97,6 +97,6 @@ def test_a_student_whose_sealed_file_cannot_be_used_is_told_what_to_do(
     (tmp_path / "sealed" / "levers.json").write_text(content[: int(share * len(content))])
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
-    with pytest.raises(RuntimeError, match=said):
+    with pytest.raises(RuntimeError, match=message):
         questions.find_question("levers/one", "")
     questions.notebook_questions.cache_clear()

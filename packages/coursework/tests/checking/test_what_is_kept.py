@@ -91,22 +91,22 @@ def test_what_is_known_with_other_numbers_stays_beside_it():
     assert second == Entry(variant=2, numbers="two", after=first.after, others=(first,))
     worked = Entry("correct", variant=2, numbers="two", after=(("b", later),), others=second.others)
     third = worked.with_numbers(3, "three")
-    kept = Entry("correct", variant=2, numbers="two", after=(("b", later),))
-    assert third.others == (kept, first) and third.after == worked.after
+    entry = Entry("correct", variant=2, numbers="two", after=(("b", later),))
+    assert third.others == (entry, first) and third.after == worked.after
     again = third.with_numbers(1, "one")
     assert (again.outcome, again.variant) == ("wrong", 1)
     assert again.after == (("a", place), ("b", later))
-    assert [one.numbers for one in again.others] == ["three", "two"]
+    assert [entry.numbers for entry in again.others] == ["three", "two"]
 
 
 def test_numbers_are_known_by_their_name_where_both_have_one():
-    one, nameless = Entry("wrong", variant=1, numbers="one"), Entry("wrong", variant=1)
-    assert one.with_numbers(1, "two").others == (one,)
+    named, nameless = Entry("wrong", variant=1, numbers="one"), Entry("wrong", variant=1)
+    assert named.with_numbers(1, "two").others == (named,)
     three = Entry("correct", variant=3, numbers="three")
-    for known, variant, found in ((one, 1, False), (one, 2, False), (nameless, 1, True)):
+    for known, variant, expected in ((named, 1, False), (named, 2, False), (nameless, 1, True)):
         asked = replace(three, others=(known,)).with_numbers(variant, "other")
-        assert asked.outcome == ("wrong" if found else "")
-        assert asked.others == ((three,) if found else (three, known))
+        assert asked.outcome == ("wrong" if expected else "")
+        assert asked.others == ((three,) if expected else (three, known))
 
 
 # --- the file -----------------------------------------------------------------------------------
@@ -119,11 +119,11 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.setattr(identity, "_identity", "")
 
 
-@pytest.mark.parametrize("found", [None, b"[]", b"{", b"\xff", b'{"levers/one": 3}'])
-def test_what_is_no_record_is_none(folder, found):
-    if found is not None:
+@pytest.mark.parametrize("content", [None, b"[]", b"{", b"\xff", b'{"levers/one": 3}'])
+def test_what_is_no_record_is_none(folder, content):
+    if content is not None:
         KEPT.parent.mkdir()
-        KEPT.write_bytes(found)
+        KEPT.write_bytes(content)
     assert Progress.read().entry("levers/one") == Entry()
 
 
@@ -200,7 +200,7 @@ MAKES = {
 
 
 @pytest.mark.parametrize(
-    ("reader", "right", "wrong", "wanted"),
+    ("reader", "right", "wrong", "expected"),
     [
         (fields.text, ["", "a"], [1, None, ["a"]], "a text"),
         (fields.number, [1, 2.5, 0], ["1", True, None], "a number"),
@@ -213,14 +213,14 @@ MAKES = {
         ("by name", [{"a": "b"}, {}], [["a"], "a"], "an object"),
     ],
 )
-def test_a_reader_gives_what_it_is_for_and_refuses_the_rest(reader, right, wrong, wanted):
+def test_a_reader_gives_what_it_is_for_and_refuses_the_rest(reader, right, wrong, expected):
     reader = MAKES[reader]() if reader in MAKES else reader
     for value in right:
         assert reader(value, "here") == value and type(reader(value, "here")) is type(value)
     for value in wrong:
         with pytest.raises(Misread) as error:
             reader(value, "here")
-        assert str(error.value) == f"here should be {wanted}, and is {value!r}."
+        assert str(error.value) == f"here should be {expected}, and is {value!r}."
 
 
 @pytest.mark.parametrize(

@@ -110,9 +110,9 @@ def roots_for_cosines(answer: Answer) -> list[Form]:
     entries, put = flat(answer)
     entries = [sympy.sympify(entry) for entry in entries]
     forms = []
-    for function, other in ((cos, sin), (sin, cos)):
+    for function, cofunction in ((cos, sin), (sin, cos)):
         for part in sorted(set().union(*(entry.atoms(function) for entry in entries)), key=str):
-            root = sqrt(1 - other(part.args[0]) ** 2)
+            root = sqrt(1 - cofunction(part.args[0]) ** 2)
             forms.append(
                 (f"{root} for {part}", put([entry.xreplace({part: root}) for entry in entries]))
             )

@@ -119,7 +119,14 @@ def student(tmp_path, monkeypatch):
 
     def prepare(*authored):
         # As a student has it: read back from a file, with nothing of the author's left in it.
-        as_json = json.loads(json.dumps({one.name: one.sealed().as_json() for one in authored}))
+        as_json = json.loads(
+            json.dumps(
+                {
+                    authored_question.name: authored_question.sealed().as_json()
+                    for authored_question in authored
+                }
+            )
+        )
         sealed = {name: Sealed.from_json(about, name) for name, about in as_json.items()}
 
         def find(name, student):
@@ -133,46 +140,46 @@ def student(tmp_path, monkeypatch):
     return prepare
 
 
-def passes(one, answer):
-    return one.reply_to(one.to_plain(answer)).outcome == "correct"
+def passes(authored, answer):
+    return authored.reply_to(authored.to_plain(answer)).outcome == "correct"
 
 
 # --- any right form passes ----------------------------------------------------------------------
 
 
-def try_forms(one, number):
+def try_forms(authored, number):
     """Draw forms of the right answer by this run's lot; there are few
     where algebra has nothing to change.
     """
-    chance = random.Random(f"{SEED} {one.name}")
-    if one.public.kind in ("sequence", "truth values", "words", "function"):
+    chance = random.Random(f"{SEED} {authored.name}")
+    if authored.public.kind in ("sequence", "truth values", "words", "function"):
         number = min(number, 20)
     for _ in range(number):
-        form = random_form(one.public, one.answer, chance)
-        assert passes(one, form), form
+        form = random_form(authored.public, authored.answer, chance)
+        assert passes(authored, form), form
 
 
-@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
-def test_any_form_of_the_right_answer_passes(one):
-    try_forms(one, 50)
+@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
+def test_any_form_of_the_right_answer_passes(authored):
+    try_forms(authored, 50)
 
 
 @pytest.mark.long
 @pytest.mark.sampled(3)
-@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
-def test_a_thousand_forms_of_the_right_answer_pass(one):
-    try_forms(one, 1000)
+@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
+def test_a_thousand_forms_of_the_right_answer_pass(authored):
+    try_forms(authored, 1000)
 
 
-@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
-def test_named_forms_pass(one):
-    for form, answer in equivalent_forms(one.public, one.answer):
-        assert passes(one, answer), form
+@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
+def test_named_forms_pass(authored):
+    for form, answer in equivalent_forms(authored.public, authored.answer):
+        assert passes(authored, answer), form
 
 
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_euler_angles_pass_if_their_orientation_is_right(sequence):
-    one = make("trial/a", "Euler angles", [0.4, 0.9, -1.1], sequence=sequence)
+    authored = make("trial/a", "Euler angles", [0.4, 0.9, -1.1], sequence=sequence)
     psi, middle, last = 0.4, 0.9, -1.1
     proper = sequence[0] == sequence[2]
     twin = [psi - sm.pi, -middle if proper else sm.pi - middle, last + sm.pi]
@@ -181,23 +188,23 @@ def test_euler_angles_pass_if_their_orientation_is_right(sequence):
         [psi + 2 * sm.pi, middle, last],
         body_fixed_from_dcm(dcm_from_body_fixed((psi, middle, last), sequence), sequence),
     ):
-        assert passes(one, answer)
+        assert passes(authored, answer)
 
 
 # --- each mistake has its message, and no answer a wrong one -------------------------------------
 
 
 @cache
-def sealed(one):
+def sealed(authored):
     """The question with its locks, which are slow to make on purpose and the same each time."""
-    return one.sealed()
+    return authored.sealed()
 
 
-def reply_to(one, answer):
+def reply_to(authored, answer):
     try:
-        return questions.judge(one.name, sealed(one), one.to_plain(answer))
+        return questions.judge(authored.name, sealed(authored), authored.to_plain(answer))
     except NotPlain as refused:
-        return questions.Reply(one.name, "invalid", "unreadable", [str(refused)])
+        return questions.Reply(authored.name, "invalid", "unreadable", [str(refused)])
 
 
 @pytest.mark.parametrize(
@@ -312,7 +319,7 @@ AXES = make(
 
 
 @pytest.mark.parametrize(
-    ("one", "answer"),
+    ("authored", "answer"),
     [
         (SIGNS, ["-i", 1, "k"]),
         (SIGNS, ["\u2212i", 1.0, sm.Symbol("k")]),
@@ -332,8 +339,8 @@ AXES = make(
         (KINDS["a vector"], TWO * sm.Matrix([1, 2, 0]) * units.radian),
     ],
 )
-def test_words_and_truth_values_pass_as_beginners_write_them(one, answer):
-    assert passes(one, answer)
+def test_words_and_truth_values_pass_as_beginners_write_them(authored, answer):
+    assert passes(authored, answer)
 
 
 THREE, MATRIX = (
@@ -413,10 +420,10 @@ def test_a_function_that_ends_python_ends_nothing_but_its_own_answer():
 def test_a_frame_is_not_said_to_be_connected_with_itself():
     A, B = ReferenceFrame("A"), ReferenceFrame("B")
     B.orient_axis(A, A.z, theta)
-    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
-    assert "This is the frame `B`, connected with `A`." in said
-    [said] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
-    assert "connected with no other." in said
+    [message] = KINDS["symbols in a matrix"].reply_to(to_plain(B)).messages
+    assert "This is the frame `B`, connected with `A`." in message
+    [message] = KINDS["symbols in a matrix"].reply_to(to_plain(ReferenceFrame("C"))).messages
+    assert "connected with no other." in message
 
 
 @pytest.mark.parametrize(("digits", "rounded"), [(2, True), (1, False)])
@@ -426,7 +433,7 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
     """
     matrix = sm.Matrix([[8, 1, 4], [-4, 4, 7], [-1, -8, 4]]) / 9
     axis = [sm.Rational(2, 7), sm.Rational(3, 7), sm.Rational(6, 7)]
-    for kind, answer, given in (
+    for kind, answer, digits_given in (
         ("direction cosine matrix", matrix, np.array(matrix, dtype=float).round(digits)),
         (
             "axis and angle",
@@ -434,10 +441,10 @@ def test_numbers_that_nearly_fit_together_were_rounded(digits, rounded):
             ([round(float(part), digits) for part in axis], 0.79),
         ),
     ):
-        one = make(
+        authored = make(
             "trial/round", kind, answer, **({"frames": ("S", "B")} if kind[0] == "d" else {})
         )
-        reply = one.reply_to(to_plain(given))
+        reply = authored.reply_to(to_plain(digits_given))
         assert reply.outcome == "invalid"
         assert ("If you rounded" in reply.messages[0]) == rounded, reply.messages
 
@@ -455,22 +462,26 @@ def test_whoever_has_rounded_right_work_hears_of_the_rounding_first(kind, answer
     """And not that the value is wrong, which is the most discouraging thing
     to hear of one's own right work.
     """
-    one = make("trial/rounded", kind, answer, **({"shape": (2, 2)} if kind == "matrix" else {}))
-    reply = one.reply_to(to_plain(np.array(answer).round(digits).tolist()))
-    said = reply.messages[0]
-    assert reply.outcome == "wrong" and "ounded" in said, said
-    assert "value" not in said or said.index("ounded") < said.index("value"), said
-    precise = one.reply_to(to_plain((np.array(answer) * 1.31 + 0.01234567).tolist())).messages[0]
+    authored = make(
+        "trial/rounded", kind, answer, **({"shape": (2, 2)} if kind == "matrix" else {})
+    )
+    reply = authored.reply_to(to_plain(np.array(answer).round(digits).tolist()))
+    message = reply.messages[0]
+    assert reply.outcome == "wrong" and "ounded" in message, message
+    assert "value" not in message or message.index("ounded") < message.index("value"), message
+    precise = authored.reply_to(to_plain((np.array(answer) * 1.31 + 0.01234567).tolist())).messages[
+        0
+    ]
     assert "ounded" not in precise, precise
 
 
 def test_no_turn_at_all_is_not_called_twice_half_a_turn():
     axis = [sm.Rational(2, 3), sm.Rational(1, 3), sm.Rational(2, 3)]
     for half_turn in (sm.pi, np.pi, -3 * sm.pi):
-        one = make("trial/half", "axis and angle", [axis, half_turn])
+        authored = make("trial/half", "axis and angle", [axis, half_turn])
         assert (
-            one.reply_to(to_plain((axis, 0))).note == ""
-            and one.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
+            authored.reply_to(to_plain((axis, 0))).note == ""
+            and authored.reply_to(to_plain((axis, sm.pi / 2))).note == "half"
         )
     reply = KINDS["axis and angle"].reply_to(to_plain((axis, sm.pi / 2)))
     assert reply.note == "double" and reply.messages[0].startswith("The angle is twice")
@@ -482,7 +493,7 @@ def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
     """The transpose of what is nearly right is in the cell of the mistake
     "transposed"; but that is no mistake here.
     """
-    one = KINDS[kind]
+    authored = KINDS[kind]
     turned = np.array(
         dcm_from_body_fixed((np.pi / 3, np.pi / 5, -np.pi / 7), "zxy")
         if "matrix" in kind
@@ -496,29 +507,29 @@ def test_what_is_close_is_not_said_to_be_a_slip_undone_twice(kind, off):
             answer = turned @ dcm_from_rotation_vector(small)
         else:
             answer = multiply_quaternions(turned, [np.sqrt(1 - small @ small), *small])
-        notes.add(one.reply_to(to_plain(answer)).note)
+        notes.add(authored.reply_to(to_plain(answer)).note)
     assert "rounded too far" in notes and notes <= {"rounded too far", ""}, notes
 
 
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_mistake_of_the_catalogue_is_named_in_all_twelve_sequences(sequence):
-    one = make(
+    authored = make(
         "trial/g",
         answer=dcm_from_body_fixed((theta, alpha, phi), sequence),
         frames=("D", "A"),
         symbols="theta alpha varphi",
         turns=[*zip(sequence, (theta, alpha, phi))],
     )
-    for mistake in one.mistakes:
-        text = one.fingerprint_of(one.to_plain(mistake.answer))
-        assert (mistake.note, mistake.details) in one.entries[text].notes or passes(
-            one, mistake.answer
+    for mistake in authored.mistakes:
+        text = authored.fingerprint_of(authored.to_plain(mistake.answer))
+        assert (mistake.note, mistake.details) in authored.entries[text].notes or passes(
+            authored, mistake.answer
         )
 
 
 def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
-    one, chance = KINDS["symbols in a matrix"], random.Random(4)
+    authored, chance = KINDS["symbols in a matrix"], random.Random(4)
     for _ in range(300):
         axes = "".join(chance.choice("xyz") for _ in range(3))
         angles = [
@@ -528,16 +539,16 @@ def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
         answer = sm.eye(3)
         for axis, angle in zip(axes, angles):
             answer = simple_dcm(axis, angle) * answer
-        entry = one.entries.get(one.fingerprint_of(one.to_plain(answer)))
+        entry = authored.entries.get(authored.fingerprint_of(authored.to_plain(answer)))
         if entry and entry.outcome == "mistake":
-            said = [
+            notes = [
                 mistake
-                for mistake in one.mistakes
+                for mistake in authored.mistakes
                 if (mistake.note, mistake.details) in entry.notes
             ]
-            assert said and all(
+            assert notes and all(
                 (mistake.answer - answer).subs({theta: 0.3, alpha: 1.1, phi: -0.7}).norm() < 1e-12
-                for mistake in said
+                for mistake in notes
             )
 
 
@@ -554,14 +565,14 @@ def test_no_mistake_is_named_for_an_answer_that_does_not_have_it():
 def test_decimals_cost_no_more_than_two_slow_hashes(change, digits, note, monkeypatch):
     turns = [("x", sm.pi / 4), ("z", theta)]
     right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
-    one = make("trial/decimals", answer=right, frames=("B", "N"), symbols="theta", turns=turns)
-    hidden, hashed = sealed(one), []
+    authored = make("trial/decimals", answer=right, frames=("B", "N"), symbols="theta", turns=turns)
+    hidden, hashed = sealed(authored), []
     monkeypatch.setattr(
         sealing,
         "slow_key",
         lambda *known, slow=sealing.slow_key: hashed.append(known) or slow(*known),
     )
-    reply = questions.judge(one.name, hidden, one.to_plain(change(right).evalf(digits)))
+    reply = questions.judge(authored.name, hidden, authored.to_plain(change(right).evalf(digits)))
     assert reply.note == note and ("decimal fractions" in repr(reply) or digits == 15)
     assert len(hashed) <= 2
 
@@ -574,7 +585,7 @@ def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(
     with a slip? Both cost a slow hash.
     """
     right = simple_dcm("z", theta) * simple_dcm("x", sm.pi / 4)
-    one = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
+    authored = make("trial/at-once", answer=right, frames=("B", "N"), symbols="theta")
     both, looked = threading.Barrier(2), []
 
     def find(text):
@@ -588,7 +599,10 @@ def test_what_is_looked_up_besides_is_looked_up_at_once_where_there_are_threads(
     if not threads:
         monkeypatch.setattr(threading.Thread, "start", refuse)
     reply = questions.compare(
-        one.name, one.public, one.to_plain((simple_dcm("y", 0.3) * right).evalf()), find
+        authored.name,
+        authored.public,
+        authored.to_plain((simple_dcm("y", 0.3) * right).evalf()),
+        find,
     )
     assert reply.outcome == "wrong" and len(looked) == len(set(looked)) == 3
 
@@ -608,14 +622,14 @@ TOLERANT = {
 }
 
 
-@pytest.mark.parametrize("one", TOLERANT.values(), ids=TOLERANT)
-def test_the_tolerance_is_exact_on_both_sides(one):
+@pytest.mark.parametrize("authored", TOLERANT.values(), ids=TOLERANT)
+def test_the_tolerance_is_exact_on_both_sides(authored):
     """An answer within `tolerance + relative * |right|` passes, one just beyond
     does not: whatever cell it is in.
     """
-    entries, put = flat(one.answer)
-    absolute, relative = one.public.tolerance, one.public.relative or 0
-    sealed, chance = one.sealed(), random.Random(2)
+    entries, put = flat(authored.answer)
+    absolute, relative = authored.public.tolerance, authored.public.relative or 0
+    sealed, chance = authored.sealed(), random.Random(2)
     for place in range(len(entries)):
         for share, right in ((-0.9999, True), (0.9999, True), (-1.0001, False), (1.0001, False)):
             answer = [float(entry) for entry in entries]
@@ -624,7 +638,7 @@ def test_the_tolerance_is_exact_on_both_sides(one):
             ]
             exact = float(entries[place])
             answer[place] = exact + share * (absolute + relative * abs(exact))
-            reply = questions.judge(one.name, sealed, one.to_plain(put(answer)))
+            reply = questions.judge(authored.name, sealed, authored.to_plain(put(answer)))
             assert (reply.outcome == "correct") == right, (place, share)
             if not right:
                 assert reply.note == "rounded too far" and "close" in repr(reply)
@@ -674,30 +688,32 @@ def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_n
     assert shown(GIMBAL.subs(theta, -theta)) == ["Hint: Begin with one turn."]
     assert len(shown(GIMBAL.T)) == 1 and len(shown(GIMBAL.subs(phi, -phi))) == 1
     assert shown(GIMBAL.T) == ["Hint: Look at the rows.", "Hint: Whose unit vectors are they?"]
-    said = repr(check_module.hint("trial/gimbal"))
-    assert "Whose" in said and "Begin" not in said and "1 more can be earned" in said
-    assert not said.startswith("Not attempted")
+    shown_hint = repr(check_module.hint("trial/gimbal"))
+    assert (
+        "Whose" in shown_hint and "Begin" not in shown_hint and "1 more can be earned" in shown_hint
+    )
+    assert not shown_hint.startswith("Not attempted")
 
 
 def test_no_hint_that_is_not_yet_earned_stands_in_clear_on_the_disk(student, tmp_path):
-    one = make(
+    authored = make(
         hints={"transposed": ["Look at the rows."]},
         ladder=["Begin with one turn."],
         solution="By hand.",
     )
-    check = student(one)
+    check = student(authored)
     check("trial/gimbal", GIMBAL.T)
-    text = json.dumps(one.sealed("CODE").as_json()) + "".join(
+    text = json.dumps(authored.sealed("CODE").as_json()) + "".join(
         path.read_text() for path in tmp_path.rglob("*") if path.is_file()
     )
     assert not any(words in text for words in ("Look at", "Begin with", "By hand"))
 
 
 def test_who_gives_up_sees_the_worked_solution_with_the_code_of_the_instructor(student):
-    one = make(solution="Take $x$ **first**.")
-    student(one)
+    authored = make(solution="Take $x$ **first**.")
+    student(authored)
     assert "opens no solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
-    sealed = one.sealed("PYGG-ZGV7-G94A")
+    sealed = authored.sealed("PYGG-ZGV7-G94A")
     check_module.find_question = lambda name, student: sealed
     assert "first" in check_module.worked_solution("trial/gimbal", "pygg zgv7 g94a").solution
     assert check_module.worked_solution("trial/gimbal", "PYGG-ZGV7-G94B").solution == ""
@@ -716,8 +732,12 @@ def test_progress_is_kept_beside_the_notebook_and_right_stays_right(student, tmp
     check("trial/gimbal", GIMBAL)
     check("trial/gimbal", GIMBAL.T)
     assert [path.name for path in tmp_path.rglob("*.json")] == ["progress.json"]
-    said = repr(check_module.progress())
-    assert "1 of the 2" in said and "trial/s" in said and "Still open: trial/s" in said
+    shown_progress = repr(check_module.progress())
+    assert (
+        "1 of the 2" in shown_progress
+        and "trial/s" in shown_progress
+        and "Still open: trial/s" in shown_progress
+    )
 
 
 def test_a_folder_that_cannot_be_written_costs_no_check(student, tmp_path):
@@ -786,12 +806,12 @@ def test_the_slow_hash_is_the_standard_one_without_openssl_too():
 
 
 def test_a_lock_opens_with_its_key_only_and_notices_a_change():
-    key, other = sealing.slow_key("00", "1"), sealing.slow_key("00", "2")
+    key, wrong_key = sealing.slow_key("00", "1"), sealing.slow_key("00", "2")
     sealed = sealing.seal({"a": "ü"}, key)
     assert sealing.unseal(sealed, key) == {"a": "ü"}
     data = bytearray(base64.b85decode(sealed))
     data[3] ^= 1
-    for wrong in ((sealed, other), (base64.b85encode(data), key)):
+    for wrong in ((sealed, wrong_key), (base64.b85encode(data), key)):
         with pytest.raises(ValueError):
             sealing.unseal(*wrong)
 
@@ -817,14 +837,14 @@ def test_a_locker_opens_with_its_key_only_and_notices_a_change():
                 assert "changed" in str(error)
 
 
-@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
-def test_no_page_can_be_tried_without_the_slow_hash(one):
+@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
+def test_no_page_can_be_tried_without_the_slow_hash(authored):
     """What a page says can often be known beforehand: so its key must
     cost as much as that of a locker.
     """
-    sealed, text = one.sealed(), one.fingerprint_of(one.plain)
+    sealed, text = authored.sealed(), authored.fingerprint_of(authored.plain)
     secrets = [hashlib.sha256(text.encode()).digest(), text.encode()[:64], b""]
-    for content, _ in one.pages.contents.values():
+    for content, _ in authored.pages.contents.values():
         known = json.dumps(content, ensure_ascii=False, sort_keys=True).encode()
         for secret in secrets:
             key = hashlib.blake2b(known, key=secret, digest_size=sealing.PAGE_KEY).digest()
@@ -834,17 +854,17 @@ def test_no_page_can_be_tried_without_the_slow_hash(one):
 
 
 @pytest.mark.sampled(4)
-@pytest.mark.parametrize("one", KINDS.values(), ids=KINDS)
-def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(one):
-    sealed = one.sealed()
+@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
+def test_nothing_tells_the_locker_of_the_right_answer_from_the_others(authored):
+    sealed = authored.sealed()
     data = base64.b85decode(sealed.lockers)
     lockers = [
         data[start : start + sealing.LOCKER] for start in range(0, len(data), sealing.LOCKER)
     ]
-    assert lockers == sorted(lockers) and len(lockers) == len(one.entries) + len(one.near)
+    assert lockers == sorted(lockers) and len(lockers) == len(authored.entries) + len(authored.near)
     assert len(sealed.lockers) == 20 * len(lockers)
-    assert one.sealed() == sealed
-    assert questions.judge(one.name, sealed, one.plain).outcome == "correct"
+    assert authored.sealed() == sealed
+    assert questions.judge(authored.name, sealed, authored.plain).outcome == "correct"
 
 
 def test_only_hints_that_fit_every_question_of_a_kind_come_by_themselves():
@@ -860,14 +880,14 @@ def test_what_a_question_may_tell_is_no_more_than_what_its_author_wrote():
     """Nothing public but the seed of the points follows from the answer: no bit
     of a number, no order of lockers.
     """
-    for one in KINDS.values():
-        assert set(one.sealed().as_json()) <= {
+    for authored in KINDS.values():
+        assert set(authored.sealed().as_json()) <= {
             "kind", "frames", "symbols", "unit", "shape", "length", "sequence", "options",
             "tolerance", "relative", "calls", "takes", "result", "quantity", "either sign",
             "unit vector", "every symbol", "salt", "lockers", "pages", "ladder", "worth", "answer",
         }  # fmt: skip
-        assert one.public.salt in [
-            hashlib.sha256(f"{one.name} {attempt}".encode()).hexdigest()[:16]
+        assert authored.public.salt in [
+            hashlib.sha256(f"{authored.name} {attempt}".encode()).hexdigest()[:16]
             for attempt in range(50)
         ]
 
@@ -905,8 +925,8 @@ def test_a_question_that_is_not_well_posed_is_refused(about, words):
 
 
 def test_a_form_fault_is_found_only_where_there_is_one():
-    for one in KINDS.values():
-        assert fault(one.public, read(one.public, one.plain)) is None
+    for authored in KINDS.values():
+        assert fault(authored.public, read(authored.public, authored.plain)) is None
     with pytest.raises(Fault):
         read(KINDS["symbols in a matrix"].public, to_plain([1, 2]))
 
@@ -917,14 +937,14 @@ def test_products_of_quaternions_in_the_other_order_are_named():
         quaternion_from_axis_angle(axis, angle)
         for axis, angle in (((1, 0, 0), theta), ((0, 1, 0), alpha))
     )
-    one = make(
+    authored = make(
         "trial/qq",
         "quaternion",
         multiply_quaternions(first, second),
         symbols="theta alpha",
         turns=turns,
     )
-    reply = reply_to(one, multiply_quaternions(second, first))
+    reply = reply_to(authored, multiply_quaternions(second, first))
     assert reply.note == "other order"
     # The rule for matrices is another one, and this answer already follows it.
     assert "quaternion" in reply.messages[0] and "matrix" not in reply.messages[0]
@@ -938,7 +958,7 @@ def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
     """
     turns = [("z", theta), ("x", alpha), ("y", phi), ("z", theta / 3)][:count]
     build = plugins.kinds()[kind].build
-    one = make(
+    authored = make(
         "trial/os",
         kind,
         build(turns),
@@ -950,7 +970,7 @@ def test_the_other_order_and_one_sign_are_told_as_what_they_are(kind, count):
         slipped = [
             (axis, -angle if order == place else angle) for order, (axis, angle) in enumerate(turns)
         ]
-        reply = reply_to(one, build(slipped[::-1]))
+        reply = reply_to(authored, build(slipped[::-1]))
         assert (reply.note, reply.details) == ("other order, sign of one turn", {"turn": place})
         assert "wrong order, and the angle of" in reply.messages[0] and len(reply.messages) == 1
 
@@ -969,46 +989,46 @@ def test_messages_speak_of_what_was_asked_for():
     )
     tried = [
         product,
-        *(one for one in KINDS.values() if one.public.kind in ("quaternion", "axis and angle")),
+        *(kind for kind in KINDS.values() if kind.public.kind in ("quaternion", "axis and angle")),
     ]
-    for one in tried:
-        for mistake in one.mistakes:
+    for authored in tried:
+        for mistake in authored.mistakes:
             if mistake.note != "authored":
-                assert "matrix" not in message(one.public, mistake.note, mistake.details).replace(
-                    "with matrices", ""
-                )
+                assert "matrix" not in message(
+                    authored.public, mistake.note, mistake.details
+                ).replace("with matrices", "")
 
 
 def test_one_answer_gets_one_diagnosis():
     """Where two mistakes lead to one answer, both are true of it;
     being told two things helps nobody.
     """
-    one = KINDS["symbols in a matrix"]
-    for entry in one.entries.values():
+    authored = KINDS["symbols in a matrix"]
+    for entry in authored.entries.values():
         if entry.outcome == "mistake":
-            assert len(one.reply_to(entry.plain).messages) == 1
+            assert len(authored.reply_to(entry.plain).messages) == 1
 
 
 @pytest.mark.parametrize(
     ("answer", "rounded"), [("0.87", True), ("0.9", True), ("0.8660254", False), ("0.5", False)]
 )
 def test_numbers_with_fewer_places_than_the_tolerance_are_called_rounded(answer, rounded):
-    one = make("trial/few", "vector", [0.8660254, 0.31], length=2)
-    reply = reply_to(one, [sm.Float(answer), 0.4711])
+    authored = make("trial/few", "vector", [0.8660254, 0.31], length=2)
+    reply = reply_to(authored, [sm.Float(answer), 0.4711])
     assert reply.outcome == "wrong" and ("keep all digits" in repr(reply)) == rounded
     exact = make("trial/few", "expression", theta, symbols="theta")
     assert "places after" not in repr(reply_to(exact, theta + sm.Float("0.87")))
 
 
 def test_a_sequence_is_not_given_away():
-    one = make("trial/seq", "sequence", "yxz")
-    reply = reply_to(one, "zxy")
+    authored = make("trial/seq", "sequence", "yxz")
+    reply = reply_to(authored, "zxy")
     assert reply.note == "sequence reversed" and "reverse" not in reply.messages[0]
 
 
 def test_what_sympy_has_put_off_and_what_mechanics_makes_is_read():
     k, time = sm.Symbol("k"), dynamicsymbols._t
-    one = make("trial/late", "expression", 3 * sm.sin(phi), symbols="varphi")
+    authored = make("trial/late", "expression", 3 * sm.sin(phi), symbols="varphi")
     for answer in (
         sm.Sum(sm.sin(phi), (k, 1, 3)),
         sm.Limit(3 * sm.sin(phi) * sm.sin(k) / k, k, 0),
@@ -1016,7 +1036,7 @@ def test_what_sympy_has_put_off_and_what_mechanics_makes_is_read():
         sm.Determinant(sm.diag(3, sm.sin(phi))),
         3 * sm.sin(dynamicsymbols("phi")),
     ):
-        assert passes(one, answer), answer
+        assert passes(authored, answer), answer
     rate = make(
         "trial/rate", "expression", 2 * dynamicsymbols("varphi").diff(time), symbols="varphi'"
     )
@@ -1037,7 +1057,7 @@ def test_what_is_wanted_is_said_in_a_whole_sentence(kind):
     for answer in ("no such text", [1, "two"], {1, 2}, 3, sm.eye(2)):
         try:
             read(asked, to_plain(answer))
-        except Fault as found:
-            assert not re.search(r"[,;:.] ?[,;:.]", found.message), found.message
+        except Fault as form_fault:
+            assert not re.search(r"[,;:.] ?[,;:.]", form_fault.message), form_fault.message
         except (NotPlain, KeyError):
             pass  # it says so elsewhere; an answer in words that is none of the options

@@ -51,7 +51,7 @@ def shown():
     return [word for number, word in enumerate(words) if not {number, number - 1} & set(volumes)]
 
 
-def podman(place, *command, given=None):
+def podman(place, *command, input_text=None):
     """Run a command in a container with these options, and the files of
     this machine in place of an image's.
     """
@@ -71,10 +71,10 @@ def podman(place, *command, given=None):
     volumes = [
         argument
         for path in sorted(path for path in paths if os.path.exists(path))
-        if not any(path != other and Path(path).is_relative_to(other) for other in paths)
+        if not any(path != folder and Path(path).is_relative_to(folder) for folder in paths)
         for argument in ("--volume", f"{path}:{path}:ro")
     ]
-    volumes += ["--volume", f"{given}:/class"] if given else []
+    volumes += ["--volume", f"{input_text}:/class"] if input_text else []
     own = [
         "--root",
         place / "root",
@@ -199,11 +199,11 @@ def test_isolation_holds_inside(place, engine, monkeypatch):
         monkeypatch.setattr(sys.modules[__name__], "shown", lambda: options)
     done = podman(place, sys.executable, "-c", PROBE)
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert found["user"] == 65534 and set(found["capabilities"]) == {"0"}
-    assert found["interfaces"] in ([], ["lo"]) and found["writable"] == []
-    assert found["lacking"] == [], found
-    assert ("namespaces" in found["layers"]) == (engine == "podman") and "landlock" in found[
+    report = json.loads(done.stdout)
+    assert report["user"] == 65534 and set(report["capabilities"]) == {"0"}
+    assert report["interfaces"] in ([], ["lo"]) and report["writable"] == []
+    assert report["lacking"] == [], report
+    assert ("namespaces" in report["layers"]) == (engine == "podman") and "landlock" in report[
         "layers"
     ]
 
@@ -219,7 +219,9 @@ def test_a_class_is_graded_inside(place):
     for path in (folder, solutions, folder / "graded"):
         path.chmod(0o777)
     command = ["-m", "coursework", "grade", "/class/submissions", "--out", "/class/graded"]
-    done = podman(place, sys.executable, *command, "--solutions", "/class/solutions", given=folder)
+    done = podman(
+        place, sys.executable, *command, "--solutions", "/class/solutions", input_text=folder
+    )
     assert done.returncode == 0, done.stderr
     assert "2 of 2 graded" in done.stderr and "WEAK" not in done.stderr
     store = Store(folder / "graded")
@@ -230,8 +232,8 @@ def test_a_class_is_graded_inside(place):
         {str(path.relative_to(out)): path.read_bytes() for path in out.rglob("*") if path.is_file()}
         for out in (folder / "graded", place / "outside")
     )
-    for found in (inside, outside):
-        del found["run.log"], found["lock"]
+    for results in (inside, outside):
+        del results["run.log"], results["lock"]
     assert {
         "report.html",
         "grades.csv",

@@ -89,16 +89,16 @@ def test_every_authors_solution_is_right_before_the_grader(path):
             answer["secret"]["calls"] = questions[name].secret.digest
     for name, about in questions.items():
         by_a_person = about.question.kind == "free text"
-        found = mark(name, Asked(about), Answer.from_json(result["answers"][name]))
-        assert found.outcome == ("undecided" if by_a_person else "correct"), (name, found)
+        verdict = mark(name, Asked(about), Answer.from_json(result["answers"][name]))
+        assert verdict.outcome == ("undecided" if by_a_person else "correct"), (name, verdict)
 
 
 @cache
 def plain_results(door):
     cells = [["from orientation import *", f"tell({call!r}, {call})"] for call in doors.RESULTS]
     return {
-        call: told[call]
-        for call, (told, _) in zip(doors.RESULTS, doors.through(door, cells), strict=True)
+        call: result[call]
+        for call, (result, _) in zip(doors.RESULTS, doors.through(door, cells), strict=True)
     }
 
 
@@ -149,6 +149,6 @@ def test_the_symbols_of_a_question_are_defined_where_its_answer_is_typed(path):
                 symbol.rstrip("'")
                 for symbol in notebook_questions(name.partition("/")[0])[name].question.symbols
             }
-            missing = {one for one in symbols if not {one, *spellings(one)} & named}
+            missing = {symbol for symbol in symbols if not {symbol, *spellings(symbol)} & named}
             assert not missing, f"{name}: {missing}"
             assert not symbols or "sympy" in modules, name

@@ -59,14 +59,14 @@ def test_a_new_mistake_changes_nothing_of_what_is_sealed(tmp_path, monkeypatch, 
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
     request.getfixturevalue("catalogue_in_another_order")
-    told = {}
+    replies = {}
     for mistake in question.mistakes:
         reply = judge(
             question.name, questions.find_question(question.name, ""), to_plain(mistake.answer)
         )
-        told[mistake.note] = reply.note
-    assert told["scalar last"] == "scalar last" and told["conjugate"] == "conjugate"
-    assert len(set(told.values())) > 2
+        replies[mistake.note] = reply.note
+    assert replies["scalar last"] == "scalar last" and replies["conjugate"] == "conjugate"
+    assert len(set(replies.values())) > 2
 
 
 def test_a_mistake_that_this_version_has_no_words_for_is_still_one(tmp_path, monkeypatch):

@@ -20,16 +20,16 @@ PAGE = Path(__file__).parents[4] / "appendix" / "instructors.md"
 
 def reference():
     """All commands, as their help says it; what several take is said once."""
-    times = Counter(str(one) for _, arguments in ARGUMENTS.values() for one in arguments)
+    times = Counter(str(argument) for _, arguments in ARGUMENTS.values() for argument in arguments)
     several = {
-        str(one): one
+        str(argument): argument
         for _, arguments in ARGUMENTS.values()
-        for one in arguments
-        if times[str(one)] > 1
+        for argument in arguments
+        if times[str(argument)] > 1
     }
     parts = [("several commands", "what they have in common", list(several.values()))]
     for command, (does, arguments) in ARGUMENTS.items():
-        own = [one for one in arguments if str(one) not in several]
+        own = [argument for argument in arguments if str(argument) not in several]
         parts.append((f"coursework {command}", does, own))
     lines = []
     for command, does, arguments in parts:
@@ -38,8 +38,8 @@ def reference():
             name = names[0] if names[0].startswith("--") else options.get("metavar", names[0])
             if name.startswith("--") and options.get("action") != "store_true":
                 name += f" {options.get('metavar', name.strip('-').upper())}"
-            said = options["help"].replace("%(default)s", str(options.get("default")))
-            text = f"- `{name}`: {said}"
+            help_text = options["help"].replace("%(default)s", str(options.get("default")))
+            text = f"- `{name}`: {help_text}"
             lines += textwrap.wrap(text, 120, subsequent_indent="  ", break_on_hyphens=False)
         lines += [""] if arguments else []
     return "\n".join(lines).rstrip() + "\n"
@@ -59,33 +59,37 @@ def _toml():
 
 @pytest.mark.long
 def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
-    said = io.StringIO()
+    output = io.StringIO()
     notebooks = ["simple-orientations", "unit-quaternions"]
     submissions = sample_class.make_class(tmp_path / "class", 200, 1, notebooks)
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "term.toml").write_text(_toml()[0])
-    grade(submissions, tmp_path / "out", show=said)
+    grade(submissions, tmp_path / "out", show=output)
     manual = PAGE.read_text("utf8")
     report = (tmp_path / "out" / "report.html").read_text("utf8")
-    for line in said.getvalue().splitlines():
+    for line in output.getvalue().splitlines():
         if line.startswith(("196 to grade", "Isolation:")):
             assert line.partition("(")[0] in manual
     (about,) = re.findall(r"<p>(\d+ students)\. The (mean is .*?)\.</p>", report)
     assert "; the ".join(about) in manual
     rows = re.findall(r"^\| (\d+) % \| .*\((\d+) of (\d+)\) \|$", manual, re.M)
-    found = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
-    assert len(rows) == 4 and rows == found[:4]
+    shares = re.findall(r"<strong>(\d+) %</strong>.*?\((\d+) of (\d+)\)</span>", report, re.S)
+    assert len(rows) == 4 and rows == shares[:4]
     # Something is decided, and the gradebook filled, line for line as the page
     # prints it; only places are others.
     store, journal = Store(tmp_path / "out"), Journal(tmp_path / "out")
-    (record,) = [one for one in store.all() if one.student == "student-068"]
+    (record,) = [
+        record_of_class
+        for record_of_class in store.all()
+        if record_of_class.student == "student-068"
+    ]
     journal.add(record, "unit-quaternions/two-ways", 0.5, who="Ann")
-    (move,) = regrade(tmp_path / "out", show=said).moves
+    (move,) = regrade(tmp_path / "out", show=output).moves
     assert f"\n  {move}\n1 moved.\n" in manual
     (printed,) = re.findall(
         r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S
     )
-    told = gradebooks.fill(tmp_path / "class" / "gradebook.csv", gradebooks.Marks(store))
+    fill_report = gradebooks.fill(tmp_path / "class" / "gradebook.csv", gradebooks.Marks(store))
     feedback = gradebooks.write_feedback(tmp_path / "feedback.zip", gradebooks.Marks(store), store)
-    told = "\n".join([*told, f"{feedback} pages of feedback: feedback.zip\n"])
-    assert told.replace(f"{tmp_path}/", "") == printed
+    fill_report = "\n".join([*fill_report, f"{feedback} pages of feedback: feedback.zip\n"])
+    assert fill_report.replace(f"{tmp_path}/", "") == printed

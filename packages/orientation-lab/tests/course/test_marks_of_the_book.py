@@ -29,14 +29,14 @@ def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name, la
             read_source(path, number, only=having).questions,
         )
         assert list(whole) == list(part)
-        for one, other in zip(whole.values(), part.values(), strict=True):
+        for full, partial in zip(whole.values(), part.values(), strict=True):
             without_pictures = [
-                {**question.public.as_json(), "picture": None} for question in (one, other)
+                {**question.public.as_json(), "picture": None} for question in (full, partial)
             ]
             assert without_pictures[0] == without_pictures[1]
-            assert (one.plain, one.entries, one.near, one.credit) == (
-                other.plain,
-                other.entries,
-                other.near,
-                other.credit,
+            assert (full.plain, full.entries, full.near, full.credit) == (
+                partial.plain,
+                partial.entries,
+                partial.near,
+                partial.credit,
             )

@@ -135,14 +135,17 @@ def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
             author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
             for noise in (0, 3e-16, -3e-16, 2e-15)
         ]
-        told = [
+        sealed_forms = [
             [
-                one.public.as_json(),
-                {text: [known.as_json() for known in e.answers] for text, e in one.entries.items()},
+                form.public.as_json(),
+                {
+                    text: [known.as_json() for known in e.answers]
+                    for text, e in form.entries.items()
+                },
             ]
-            for one in sealed
+            for form in sealed
         ]
-        assert len({json.dumps(one, sort_keys=True) for one in told}) == 1, right
+        assert len({json.dumps(form, sort_keys=True) for form in sealed_forms}) == 1, right
         for known in (known for entry in sealed[0].entries.values() for known in entry.answers):
             assert all(len(number.strip("-")) < 17 for number in known.numbers)
 
@@ -164,8 +167,8 @@ def test_a_planted_secret_is_found(trial, tmp_path):
             if "sin" not in planted
             else ("markdown", str(source.questions["trial/about-x"].answer)),
         )
-        found = found_in(released_texts(folder, sealed, none), secrets)
-        assert found or "turns" in planted
+        leaks = found_in(released_texts(folder, sealed, none), secrets)
+        assert leaks or "turns" in planted
     with zipfile.ZipFile(tmp_path / "box.zip", "w") as box:
         box.writestr("inner.txt", source.questions["trial/about-x"].solution)
     assert found_in(released_texts(trial / "exercises", sealed, tmp_path / "box.zip"), secrets)
@@ -223,15 +226,16 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     write_to = tmp_path / "sources", tmp_path / "exercises", tmp_path / "sealed"
     # All of them: what a right answer opens hints for may stand in another notebook.
     shutil.copytree(COURSE.sources, write_to[0])
-    one = random.Random(f"{SEED} {name}").randrange(1, 8)
+    chosen_variant = random.Random(f"{SEED} {name}").randrange(1, 8)
     # The other variants say how many lockers each of them is filled up to.
     (write_to[2] / "variants").mkdir(parents=True)
     for path in (COURSE.sealed / "variants").glob(f"{name}-*.json"):
-        if path.stem.removeprefix(f"{name}-") != str(one):
+        if path.stem.removeprefix(f"{name}-") != str(chosen_variant):
             shutil.copy(path, write_to[2] / "variants")
-    release.release(made_in(tmp_path), [name], variants=[one])
+    release.release(made_in(tmp_path), [name], variants=[chosen_variant])
     variants = [
-        folder / "variants" / f"{name}-{one}.json" for folder in (write_to[2], COURSE.sealed)
+        folder / "variants" / f"{name}-{chosen_variant}.json"
+        for folder in (write_to[2], COURSE.sealed)
     ]
     message = (
         "Run `make release` and commit what it changes: "
@@ -248,7 +252,7 @@ def test_what_is_committed_is_what_the_source_makes(name, tmp_path):
     assert {key for key, about in here.items() if about.pop("others", None)} == set(others), message
     assert here == there, message
     # What is right for others comes from all variants: here it is that of the two that were made.
-    for number in (0, one):
+    for number in (0, chosen_variant):
         for key, asked in release.read_source(
             COURSE.sources / f"{name}.ipynb", number
         ).questions.items():
@@ -333,15 +337,15 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
     two = handed_out(
         tmp_path / "two.zip", a="a, mended", b="b, mended", c="c, mended", d="d", e="e"
     )
-    said = "\n".join(update(two, work))
+    report = "\n".join(update(two, work))
     there = {
         "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended",
         "d": "my answer", "e": "e",
     }  # fmt: skip
     assert code_in(work) == there
     assert (
-        "kept yours  a.ipynb; the new one is a-new-1.ipynb" in said
-        and "replaced    c.ipynb" in said
+        "kept yours  a.ipynb; the new one is a-new-1.ipynb" in report
+        and "replaced    c.ipynb" in report
     )
     update(two, work)
     assert code_in(work) == there
@@ -416,9 +420,9 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
             box.writestr("exercises/a.ipynb", notebook)
         return tmp_path / f"{version}.zip"
 
-    def install(said):
+    def install(report):
         (line,) = [
-            line.strip() for line in "\n".join(said).splitlines() if " -m pip install " in line
+            line.strip() for line in "\n".join(report).splitlines() if " -m pip install " in line
         ]
         arguments = shlex.split(line)[3:]
         pip = [
@@ -441,8 +445,8 @@ def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, m
     assert install(update(old, work)) == "sealed in 1.1.0.dev20261122093000\n"
     (work / "a.ipynb").write_text("my answer")
     (work / "requirements.txt").write_text((work / "requirements.txt").read_text() + "pandas\n")
-    said = update(new, work)
-    assert install(said) == "sealed in 1.1.0.dev20261201080000\n"
+    report = update(new, work)
+    assert install(report) == "sealed in 1.1.0.dev20261201080000\n"
     assert {path.name for path in work.iterdir()} == {
         "sealed_trial-1.1.0.dev20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
         "a-new-1.ipynb", MANIFEST,
@@ -481,10 +485,12 @@ def test_what_is_no_archive_of_exercises_is_refused(tmp_path):
     for name in (*data, "absent"):
         if name in data:
             (tmp_path / f"{name}.zip").write_bytes(data[name])
-        with pytest.raises(SystemExit) as said:
+        with pytest.raises(SystemExit) as refusal:
             command(["update", str(tmp_path / f"{name}.zip"), "--folder", str(work)])
-        assert str(said.value).startswith("coursework update:") and f"{name}.zip" in str(said.value)
-        assert "Errno" not in str(said.value) and list(work.iterdir()) == []
+        assert str(refusal.value).startswith("coursework update:") and f"{name}.zip" in str(
+            refusal.value
+        )
+        assert "Errno" not in str(refusal.value) and list(work.iterdir()) == []
 
 
 def in_bash(text, prompt):
@@ -502,8 +508,8 @@ def test_what_the_archive_says_of_itself_can_be_followed(tmp_path):
     index.mkdir()
     for name in ("jupyterlab", "latex2mathml"):
         fake_wheel(index, "1.0", "", name)
-    said = (work / "README.txt").read_text("utf8")
-    first, second, third, windows, *_, offline, lab, _ = in_bash(said, " " * 7)
+    readme = (work / "README.txt").read_text("utf8")
+    first, second, third, windows, *_, offline, lab, _ = in_bash(readme, " " * 7)
     assert (windows, lab) == ("py -m venv environment", "jupyter lab")
     environment = {
         **os.environ,

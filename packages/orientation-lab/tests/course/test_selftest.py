@@ -76,7 +76,7 @@ def test_a_question_with_a_fault_is_found(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("step", "said"),
+    ("step", "message"),
     [
         ("It is `3 * sm.cos(x) * sm.sin(x)` all along.", "gives the right answer"),
         ("It is `answer = 1.5*sin(2*x)`.", "gives the right answer"),
@@ -84,7 +84,7 @@ def test_a_question_with_a_fault_is_found(tmp_path):
         ("Begin with `sm.sin(x)`, and ask what is missing.", ""),
     ],
 )
-def test_a_step_of_the_ladder_that_holds_the_answer_is_refused_and_listed(tmp_path, step, said):
+def test_a_step_of_the_ladder_that_holds_the_answer_is_refused_and_listed(tmp_path, step, message):
     """No secret locks the ladder: whoever reads our code can open it."""
     made = made_in(tmp_path)
     write_source(
@@ -100,10 +100,12 @@ def test_a_step_of_the_ladder_that_holds_the_answer_is_refused_and_listed(tmp_pa
             "### END HIDDEN TESTS",
         ),
     )
-    if said:
-        with pytest.raises(AuthorError, match=f"trial/one.*anybody can open.*{said}"):
+    if message:
+        with pytest.raises(AuthorError, match=f"trial/one.*anybody can open.*{message}"):
             release.release(made, run=False)
     else:
         release.release(made, run=False)
     faults = selftest(made, None)
-    assert any("anybody can open" in fault and said in fault for fault in faults) == bool(said)
+    assert any("anybody can open" in fault and message in fault for fault in faults) == bool(
+        message
+    )

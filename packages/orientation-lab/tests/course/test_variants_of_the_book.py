@@ -33,11 +33,11 @@ def test_how_many_lockers_there_are_tells_nothing_of_the_answer():
             if about.get("lockers"):
                 counts[name].append(sealing.count_of(about["lockers"]))
     assert len(counts) > 150
-    for name, found in counts.items():
-        if len(found) > 2:
-            assert len(set(sorted(found)[:-1])) == 1, name
+    for name, numbers_of_lockers in counts.items():
+        if len(numbers_of_lockers) > 2:
+            assert len(set(sorted(numbers_of_lockers)[:-1])) == 1, name
         else:
-            assert max(found) % 8 == 0 and len(set(found)) == 1, name
+            assert max(numbers_of_lockers) % 8 == 0 and len(set(numbers_of_lockers)) == 1, name
 
 
 def test_how_many_pages_there_are_tells_nothing_of_the_answer():
@@ -48,7 +48,7 @@ def test_how_many_pages_there_are_tells_nothing_of_the_answer():
     for path in (COURSE.sealed / "variants").glob("*.json"):
         for name, about in json.loads(path.read_text("utf8"))["questions"].items():
             counts[name].add(len(about.get("pages") or []))
-    assert len(counts) > 60 and all(len(found) == 1 for found in counts.values())
+    assert len(counts) > 60 and all(len(numbers) == 1 for numbers in counts.values())
 
 
 def test_the_book_has_variants_that_stay_small():
@@ -86,10 +86,10 @@ def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
         )
         coursework.student(student)
         assert "{{" not in repr(coursework.variant(name))
-        for other, theirs in asked.items():
+        for other_number, theirs in asked.items():
             # Their function is called as this variant calls it, as grading would call a copy.
             outcome = questions.judge(
                 name, questions.find_question(name, student), question.to_plain(theirs.answer)
             ).outcome
-            assert (outcome == "correct") == (number == other), (name, number, other)
+            assert (outcome == "correct") == (number == other_number), (name, number, other_number)
     coursework.student("")

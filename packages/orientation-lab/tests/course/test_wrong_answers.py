@@ -28,20 +28,21 @@ NAMES = sorted(path.stem for path in COURSE.sources.glob("*.ipynb"))
 
 def with_formulas(names):
     for name in names:
-        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
-            if one.public.symbols and not hasattr(one.answer, "to_matrix"):
-                yield one
+        for authored in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
+            if authored.public.symbols and not hasattr(authored.answer, "to_matrix"):
+                yield authored
 
 
-def differs(one, answer):
+def differs(authored, answer):
     """Whether an answer is another one somewhere in its domain: by
     SymPy's numbers, at points of its own.
     """
     first, second = (
-        [in_symbols(sm.sympify(entry)) for entry in flat(form)[0]] for form in (one.answer, answer)
+        [in_symbols(sm.sympify(entry)) for entry in flat(form)[0]]
+        for form in (authored.answer, answer)
     )
-    chance = random.Random(one.name)
-    limits = one.public.symbols
+    chance = random.Random(authored.name)
+    limits = authored.public.symbols
     for _ in range(25):
         point = {
             sm.Symbol(name): sm.Float(chance.uniform(*limit), 30) for name, limit in limits.items()
@@ -51,13 +52,13 @@ def differs(one, answer):
             for symbol in unknown(first)
             if symbol not in point
         }
-        for group in one.public.unit:
+        for group in authored.public.unit:
             length = sm.sqrt(sum(point[sm.Symbol(name)] ** 2 for name in group))
             point |= {sm.Symbol(name): point[sm.Symbol(name)] / length for name in group}
         values = [
             [sm.N(entry.xreplace(point), 25) for entry in entries] for entries in (first, second)
         ]
-        signs = (1, -1) if one.public.either_sign else (1,)
+        signs = (1, -1) if authored.public.either_sign else (1,)
         if not any(all(abs(a - s * b) < 1e-8 for a, b in zip(*values, strict=True)) for s in signs):
             return True
     return False
@@ -78,25 +79,31 @@ def unknown(entries):
     return {symbol for entry in entries for symbol in entry.free_symbols}
 
 
-def accepted(one, answer):
+def accepted(authored, answer):
     try:
-        return one.reply_to(one.to_plain(answer)).outcome == "correct"
+        return authored.reply_to(authored.to_plain(answer)).outcome == "correct"
     except NotPlain:
         return False
 
 
 def test_functions_of_time_are_told_apart():
     x, dx = dynamicsymbols("x"), dynamicsymbols("x", 1)
-    one = question("trial/rates", "expression", x * dx, symbols={"x": (-2, 2), "x'": (-2, 2)})
-    assert differs(one, x * dx / 2) and differs(one, x * x) and not differs(one, (x + x) * dx / 2)
+    rates_question = question(
+        "trial/rates", "expression", x * dx, symbols={"x": (-2, 2), "x'": (-2, 2)}
+    )
+    assert (
+        differs(rates_question, x * dx / 2)
+        and differs(rates_question, x * x)
+        and not differs(rates_question, (x + x) * dx / 2)
+    )
 
 
 def try_roots(names):
     tried = 0
-    for one in with_formulas(names):
-        for name, wrong in roots_for_cosines(one.answer):
-            if accepted(one, wrong):
-                assert not differs(one, wrong), f"{one.name} takes {name}"
+    for authored in with_formulas(names):
+        for name, wrong in roots_for_cosines(authored.answer):
+            if accepted(authored, wrong):
+                assert not differs(authored, wrong), f"{authored.name} takes {name}"
             tried += 1
     return tried
 
@@ -116,13 +123,13 @@ def test_no_root_passes_for_a_cosine_in_any_question():
 
 def try_mutants(names, each):
     tried, passed = 0, []
-    for one in with_formulas(names):
-        chance = random.Random(f"{SEED} {one.name}")
+    for authored in with_formulas(names):
+        chance = random.Random(f"{SEED} {authored.name}")
         for _ in range(each):
-            wrong = mutant(one.answer, chance)
+            wrong = mutant(authored.answer, chance)
             tried += 1
-            if accepted(one, wrong) and differs(one, wrong):
-                passed.append((one.name, wrong))
+            if accepted(authored, wrong) and differs(authored, wrong):
+                passed.append((authored.name, wrong))
     assert not passed
     return tried
 
@@ -142,23 +149,24 @@ def try_forms(names, number):
     """
     tried, secretly = 0, 0
     for name in names:
-        for one in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
-            chance = random.Random(f"{SEED} {one.name}")
-            known = marking.contract_of(one, f"a secret of {SEED}".encode())
+        for authored in sources.read_source(COURSE.sources / f"{name}.ipynb").questions.values():
+            chance = random.Random(f"{SEED} {authored.name}")
+            known = marking.contract_of(authored, f"a secret of {SEED}".encode())
             secretly += known.secret is not None
-            for _ in range(number if not hasattr(one.answer, "to_matrix") else 1):
-                form = random_form(one.public, one.answer, chance)
-                plain = one.to_plain(form)
-                reply = one.reply_to(plain)
-                assert reply.outcome == "correct", (one.name, form, reply)
-                said = Answer("recorded", json.loads(json.dumps(plain)))
+            for _ in range(number if not hasattr(authored.answer, "to_matrix") else 1):
+                form = random_form(authored.public, authored.answer, chance)
+                plain = authored.to_plain(form)
+                reply = authored.reply_to(plain)
+                assert reply.outcome == "correct", (authored.name, form, reply)
+                recorded = Answer("recorded", json.loads(json.dumps(plain)))
                 if known.secret and known.secret.calls:
-                    calls = calls_for(known.secret.of(one.public))
-                    said = replace(
-                        said, secret={"plain": to_plain(form, calls), "calls": known.secret.digest}
+                    calls = calls_for(known.secret.of(authored.public))
+                    recorded = replace(
+                        recorded,
+                        secret={"plain": to_plain(form, calls), "calls": known.secret.digest},
                     )
-                found = marking.mark(one.name, Asked(known), said)
-                assert found.points == one.worth, (one.name, form, found)
+                verdict = marking.mark(authored.name, Asked(known), recorded)
+                assert verdict.points == authored.worth, (authored.name, form, verdict)
                 tried += 1
     assert secretly
     return tried
@@ -178,13 +186,13 @@ def test_every_angle_is_tried_in_all_four_quadrants(salt):
     from coursework.checking.points import points
 
     names = "alpha beta gamma psi".split()
-    found = points(Question("expression", f"{salt}", symbols={name: [-3, 3] for name in names}))
+    sampled = points(Question("expression", f"{salt}", symbols={name: [-3, 3] for name in names}))
     signs = []
     for name in names:
-        quadrants = {(MP.sin(point[name]) > 0, MP.cos(point[name]) > 0) for point in found}
+        quadrants = {(MP.sin(point[name]) > 0, MP.cos(point[name]) > 0) for point in sampled}
         assert len(quadrants) == 4
         for function in (MP.sin, MP.cos):
-            column = tuple(function(point[name]) > 0 for point in found)
+            column = tuple(function(point[name]) > 0 for point in sampled)
             signs.append(tuple(sign == column[0] for sign in column))
     # So the root of a product of two squares does not pass for the product either.
     assert len(set(signs)) == len(signs)

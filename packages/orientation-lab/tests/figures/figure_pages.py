@@ -88,7 +88,7 @@ def open_figure(browser, front_end):
 
     def open_page(figures, theme="light", viewport=WIDE, **options):
         figures = figures if isinstance(figures, list) else [figures]
-        figures = [FIGURES[one]() if isinstance(one, str) else one for one in figures]
+        figures = [FIGURES[figure]() if isinstance(figure, str) else figure for figure in figures]
         kinds = ["shared", *dict.fromkeys(figure.kind for figure in figures)]
         file = front_end / f"page-{next(count)}.html"
         scripts = "".join(f'<script defer src="{name}.js"></script>' for name in kinds)

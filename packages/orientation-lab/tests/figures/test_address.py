@@ -75,12 +75,12 @@ def contents(chance, count):
 
 def test_both_languages_carry_the_same(in_browser_language):
     chance = random.Random(20)
-    given = contents(chance, 300)
-    ours = [fragment_of("fig-one", content) for content in given]
+    samples = contents(chance, 300)
+    ours = [fragment_of("fig-one", content) for content in samples]
     theirs = [
-        found
-        for (found,) in in_browser_language(
-            *(["fragmentOf", "fig-one", content] for content in given)
+        carried
+        for (carried,) in in_browser_language(
+            *(["fragmentOf", "fig-one", content] for content in samples)
         )
     ]
     for fragment in ours + theirs:
@@ -88,11 +88,11 @@ def test_both_languages_carry_the_same(in_browser_language):
             "a program that passes it on would change it"
         )
     assert [carried_by(fragment) for fragment in theirs] == [
-        ("fig-one", content) for content in given
+        ("fig-one", content) for content in samples
     ]
     read = in_browser_language(*(["carriedBy", fragment] for fragment in ours))
-    assert [found for (found,) in read] == [
-        {"place": "fig-one", "content": content} for content in given
+    assert [carried for (carried,) in read] == [
+        {"place": "fig-one", "content": content} for content in samples
     ]
 
 
@@ -103,7 +103,7 @@ def test_what_was_kept_is_read_for_ever(in_browser_language):
         range(1, VERSION + 1)
     )
     read = in_browser_language(*(["carriedBy", fragment] for fragment in KEPT))
-    assert [(found["place"], found["content"]) for (found,) in read] == list(KEPT.values())
+    assert [(carried["place"], carried["content"]) for (carried,) in read] == list(KEPT.values())
 
 
 def test_a_plain_place_carries_nothing(in_browser_language):
@@ -139,8 +139,8 @@ def test_what_cannot_be_read_is_said_in_words(in_browser_language):
         with pytest.raises(BadAddress, match="not whole"):
             carried_by(fragment)
     assert all(
-        "not whole" in said
-        for said in in_browser_language(*(["carriedBy", one] for one in cut + no_data))
+        "not whole" in message
+        for message in in_browser_language(*(["carriedBy", fragment] for fragment in cut + no_data))
     )
     with pytest.raises(BadAddress, match="format 2.*reads 1"):
         carried_by("#fig-one=2.anything at all")

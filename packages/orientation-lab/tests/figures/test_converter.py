@@ -49,8 +49,8 @@ def test_each_line_makes_the_orientation_in_its_library(program):
     jobs = [{"side": side, "dcm": dcm.tolist()} for side in sides(program) for dcm in examples()]
     for job, answer in zip(jobs, converted(jobs), strict=True):
         assert answer["line"], job["side"]
-        found = np.asarray(run_line(program, answer["line"]), float)
-        assert np.allclose(found, job["dcm"], atol=1e-8), (job["side"], answer)
+        matrix = np.asarray(run_line(program, answer["line"]), float)
+        assert np.allclose(matrix, job["dcm"], atol=1e-8), (job["side"], answer)
 
 
 def test_what_one_side_writes_every_other_reads():
@@ -65,7 +65,7 @@ def test_what_one_side_writes_every_other_reads():
             everything[second][random.integers(len(everything[second]))],
         )
         for first, second in itertools.product(everything, repeat=2)
-    ] + [(side, side) for found in everything.values() for side in found]
+    ] + [(side, side) for sides in everything.values() for side in sides]
     dcms = random_dcms(len(pairs), 4)
     texts = converted(
         [{"side": first, "dcm": dcm.tolist()} for (first, _), dcm in zip(pairs, dcms)]
@@ -74,7 +74,7 @@ def test_what_one_side_writes_every_other_reads():
         [{"side": first, "text": text["text"]} for (first, _), text in zip(pairs, texts)]
     )
     texts = converted(
-        [{"side": second, "dcm": one["dcm"]} for (_, second), one in zip(pairs, between)]
+        [{"side": second, "dcm": answer["dcm"]} for (_, second), answer in zip(pairs, between)]
     )
     ends = converted(
         [{"side": second, "text": text["text"]} for (_, second), text in zip(pairs, texts)]
@@ -118,29 +118,29 @@ def test_converter_and_workbench_mean_the_same_by_a_program(everything):
             ]
     answers, exchanged = converted(jobs), 0
     for which, pair in enumerate(pairs):
-        job, other, *_ = jobs[4 * which : 4 * which + 4]
+        job, other_job, *_ = jobs[4 * which : 4 * which + 4]
         texts = [
             "\n".join(answers[4 * which + k]["text"] for k in those) for those in ((0, 2), (1, 3))
         ]
-        said = answers[4 * which + 1]["said"]
-        exchanged += "x, y, z point" in said
-        if "none are exchanged" in said:
+        sentence = answers[4 * which + 1]["said"]
+        exchanged += "x, y, z point" in sentence
+        if "none are exchanged" in sentence:
             continue
-        found = explain(
+        explanation = explain(
             *texts,
             first_program=pair[0],
             second_program=pair[1],
             first_declared=known(job["side"]),
-            second_declared=known(other["side"]),
+            second_declared=known(other_job["side"]),
         )
-        assert found.verdict == "same", (pair, texts, str(found))
+        assert explanation.verdict == "same", (pair, texts, str(explanation))
     assert exchanged >= 8
 
 
 def test_numbers_that_libraries_give_are_read_as_they_mean_them():
     D_C_A = orientation.dcm_from_body_fixed((0.4, 0.7, -0.3), "zxy")
     theirs = Rotation.from_matrix(D_C_A.T)
-    given = [
+    sources = [
         ("SciPy", "quaternion", "zxy", theirs.as_quat()),
         ("SciPy", "matrix", "zxy", theirs.as_matrix()),
         ("SciPy", "axis times angle", "zxy", theirs.as_rotvec()),
@@ -153,10 +153,10 @@ def test_numbers_that_libraries_give_are_read_as_they_mean_them():
             "side": {"program": program, "form": form, "sequence": sequence},
             "text": str(np.asarray(numbers).tolist()),
         }
-        for program, form, sequence, numbers in given
+        for program, form, sequence, numbers in sources
     ]
-    for one, answer in zip(given, converted(jobs), strict=True):
-        assert rotation_error(np.array(answer["dcm"]), D_C_A) < 1e-12, one
+    for source, answer in zip(sources, converted(jobs), strict=True):
+        assert rotation_error(np.array(answer["dcm"]), D_C_A) < 1e-12, source
         assert answer["said"] == ""
 
 

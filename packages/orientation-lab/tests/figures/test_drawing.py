@@ -170,7 +170,7 @@ def test_plane_figures_turn_the_second_frame_the_way_they_say(axis, name):
     np.testing.assert_allclose(drawing.view[2], direction)
     assert np.linalg.det(drawing.view) == pytest.approx(1)
     turned = [
-        row for row, other in zip(dcm_from_axis_angle(direction, 0.4), "xyz") if other != axis[-1]
+        row for row, letter in zip(dcm_from_axis_angle(direction, 0.4), "xyz") if letter != axis[-1]
     ]
     np.testing.assert_allclose(arrows(drawing, "D")[:2], drawing.on_sheet(turned), atol=1e-9)
     assert f"through {name}" in drawing.alt and "counterclockwise" in drawing.alt
@@ -455,7 +455,9 @@ def test_the_words_of_the_exercise_are_what_is_seen():
     named moves, and nothing else does.
     """
     animation = SAMPLES["turning"]
-    told = [sentence for sentence in animation.drawings[0].alt.split(". ") if "marked" in sentence]
+    sentences = [
+        sentence for sentence in animation.drawings[0].alt.split(". ") if "marked" in sentence
+    ]
     moments = [
         next(k for k, moment in enumerate(animation.moments) if moment == step) for step in range(4)
     ]
@@ -464,9 +466,12 @@ def test_the_words_of_the_exercise_are_what_is_seen():
         named, axis = re.findall(r"\b[A-D]\b", words), re.search(r"the ([xyz]) arrow", more)[1]
         for letter in "ABCD":
             moved = np.linalg.norm(arrows(after, letter) - arrows(before, letter), axis=1) > 1
-            assert list(moved) == [letter in named and other != axis for other in "xyz"]
+            assert list(moved) == [letter in named and axis_drawn != axis for axis_drawn in "xyz"]
         assert more.strip("; ").startswith(f"the {axis} arrow")
-        assert f"marked {axis} of" in told[step] and f"turn{'s' if step == 2 else ''}" in told[step]
+        assert (
+            f"marked {axis} of" in sentences[step]
+            and f"turn{'s' if step == 2 else ''}" in sentences[step]
+        )
 
 
 def test_the_exercise_page_does_not_tell_the_sequence():
@@ -536,7 +541,7 @@ TIP = """figure => { const d = getComputedStyle([...figure.querySelectorAll('pat
 
 def test_keyboard_button_and_slider(moving_page):
     animation = SAMPLES["moving"]
-    first, other, second = moving_page.query_selector_all("figure")
+    first, middle, second = moving_page.query_selector_all("figure")
     slider, button = first.query_selector("input"), first.query_selector("button")
     untouched = second.query_selector("input").input_value()
     tips = key_frames(animation, "D", 2)
@@ -561,13 +566,13 @@ def test_keyboard_button_and_slider(moving_page):
     assert slider.input_value() == stopped and button.inner_text() == "Play"
     assert second.query_selector("input").input_value() == untouched
     # Played from the end, it starts again.
-    other.query_selector("button").click()
+    middle.query_selector("button").click()
     between = (
         'figure => { const { value, min, max } = figure.querySelector("input"); return +value > '
         "+min && "
         "+value < +max; }"
     )
-    moving_page.wait_for_function(between, arg=other)
+    moving_page.wait_for_function(between, arg=middle)
     assert moving_page.errors == []
 
 
@@ -587,21 +592,21 @@ def test_without_a_script_the_figure_is_a_still(browser, tmp_path):
 
 def test_labels_at_hand_are_those_that_matplotlib_sets():
     """``python -m tools.labels`` writes them; a page without Matplotlib draws with them."""
-    kept = json.loads(drawings.LABELS.read_text("utf8"))
-    assert len(kept["labels"]) > 100
-    assert drawings.labels_to_keep(kept["labels"]) == kept
+    stored = json.loads(drawings.LABELS.read_text("utf8"))
+    assert len(stored["labels"]) > 100
+    assert drawings.labels_to_keep(stored["labels"]) == stored
 
 
 def test_a_drawing_without_matplotlib_is_the_same(monkeypatch):
-    def one():
+    def example():
         return Drawing(
             "n x points right, n y up, and an arrow leads to the label of an angle."
         ).triad("N", np.eye(3))
 
-    before = one().svg()
+    before = example().svg()
     drawings.typeset.cache_clear()
     monkeypatch.setitem(sys.modules, "matplotlib.font_manager", None)
-    assert one().svg() == before
+    assert example().svg() == before
     with pytest.raises(ModuleNotFoundError):
         drawings.typeset("$no such label$")
     drawings.typeset.cache_clear()

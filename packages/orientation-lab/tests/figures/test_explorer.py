@@ -54,7 +54,7 @@ def test_it_shows_the_factors_their_product_and_what_lock_leaves(sequence, fixed
     assert (order[0] * order[1] * order[2] - dcm).subs(somewhere).norm() < 1e-15
     assert explorer.dcm == dcm and list(explorer.factors) == turns
     *factors, product, locked = [
-        [[entry.strip() for entry in row] for row in one] for one in shown_matrices(explorer)
+        [[entry.strip() for entry in row] for row in matrix] for matrix in shown_matrices(explorer)
     ]
     assert factors == [tex_of(turn) for turn in order] and product == tex_of(dcm)
     lock = 0 if sequence in PROPER_EULER else sm.pi / 2

@@ -115,7 +115,8 @@ def without_twin(shapes, others):
         (colour, place)
         for colour, place in shapes
         if not any(
-            colour == other and place == pytest.approx(twin, abs=0.16) for other, twin in others
+            colour == twin_colour and place == pytest.approx(twin, abs=0.16)
+            for twin_colour, twin in others
         )
     ]
 
@@ -352,15 +353,15 @@ def test_numbers_of_the_triad_are_those_of_the_module(open_figure, axis, angle):
 
 def test_every_number_of_the_triad_says_what_it_means(open_figure):
     page = open_figure("triad")
-    plain, said = drawing(page), set()
+    plain, meanings = drawing(page), set()
     cells = page.locator(".live button.number")
     assert cells.count() == 9 + 3 + 4 + 4
     for k in range(cells.count()):
         cells.nth(k).hover()
         settle(page)
-        said.add(words(page))
+        meanings.add(words(page))
         assert drawing(page) != plain and page.locator(".sheet .faded").count() > 5
-    assert len(said) == cells.count()
+    assert len(meanings) == cells.count()
     page.mouse.move(1, 1)
     settle(page)
     assert drawing(page) == plain

@@ -168,8 +168,10 @@ def test_half_a_turn_has_no_shorter_way():
 )
 def test_still_has_the_state_and_stands_for_the_figure(figure):
     soup = BeautifulSoup(figure.still(), "html.parser")
-    told = {name: getattr(figure, name) for name in figure.trait_names(constant=True)}
-    assert json.loads(soup.figure["data-state"]) == told | json.loads(json.dumps(figure.state()))
+    constants = {name: getattr(figure, name) for name in figure.trait_names(constant=True)}
+    assert json.loads(soup.figure["data-state"]) == constants | json.loads(
+        json.dumps(figure.state())
+    )
     assert soup.figure["data-figure"] == figure.kind
     alt = soup.svg["aria-label"]
     assert len(alt) > 150
@@ -232,7 +234,7 @@ def test_chain_shows_the_numbers_of_the_module(open_figure, chain):
         "s.textContent.replace('\u2212', '-')))",
     )
     product = np.linalg.multi_dot(
-        [np.eye(3), *(np.reshape([float(e) for e in one], (3, 3)) for one in shown)]
+        [np.eye(3), *(np.reshape([float(e) for e in entries], (3, 3)) for entries in shown)]
     )
     assert len(shown) == len(figure.turns)
     assert np.abs(product - figure.dcm).max() < 0.03
@@ -275,10 +277,10 @@ def test_speeds_in_the_words_are_those_of_the_table(open_figure, ends):
     """
     figure = QuaternionFigure(view="way", **ends)
     page = open_figure(figure)
-    said = re.search(r"at ([\d.]+) to ([\d.]+) °/s", words(page))
+    match = re.search(r"at ([\d.]+) to ([\d.]+) °/s", words(page))
     shares = np.linspace(0, 1, 401)
     speeds = np.degrees([figure.speeds(share)[1] for share in shares])
-    for word, place in ((said[1], speeds.argmin()), (said[2], speeds.argmax())):
+    for word, place in ((match[1], speeds.argmin()), (match[2], speeds.argmax())):
         page.evaluate(
             "share => { const { model } = document.querySelector('.moving'); model.move({ "
             "...model.moved, share }); }",

@@ -33,7 +33,7 @@ FULL = 2 * math.pi
 @pytest.mark.parametrize("seed", range(3))
 def test_the_turn_that_remains_is_that_of_scipy(seed):
     random = np.random.default_rng(seed)
-    given, turns = (list(zip("zxy", random.uniform(-3, 3, 3))) for _ in range(2))
+    rotations, turns = (list(zip("zxy", random.uniform(-3, 3, 3))) for _ in range(2))
 
     def end(chain):
         # A chain about the box's own axes is an intrinsic sequence, and SciPy's
@@ -42,15 +42,17 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
             "".join(axis for axis, _ in chain).upper(), [angle for _, angle in chain]
         )
 
-    match = ChallengeFigure(task="match", given=given, turns=turns)
-    assert match.remaining == pytest.approx((end(given).inv() * end(turns)).magnitude(), abs=1e-12)
-    ghost = ChallengeFigure(task="ghost", given=given, turns=turns)
+    match = ChallengeFigure(task="match", given=rotations, turns=turns)
+    assert match.remaining == pytest.approx(
+        (end(rotations).inv() * end(turns)).magnitude(), abs=1e-12
+    )
+    ghost = ChallengeFigure(task="ghost", given=rotations, turns=turns)
     assert ghost.remaining == match.remaining
-    undo = ChallengeFigure(task="undo", given=given, turns=turns)
-    assert undo.remaining == pytest.approx((end(given) * end(turns)).magnitude(), abs=1e-12)
-    back = [(axis, -angle) for axis, angle in reversed(given)]
-    assert ChallengeFigure(task="undo", given=given, turns=back).remaining < 1e-12
-    assert ChallengeFigure(task="undo", given=given, turns=back[::-1]).remaining > 0.1
+    undo = ChallengeFigure(task="undo", given=rotations, turns=turns)
+    assert undo.remaining == pytest.approx((end(rotations) * end(turns)).magnitude(), abs=1e-12)
+    back = [(axis, -angle) for axis, angle in reversed(rotations)]
+    assert ChallengeFigure(task="undo", given=rotations, turns=back).remaining < 1e-12
+    assert ChallengeFigure(task="undo", given=rotations, turns=back[::-1]).remaining > 0.1
 
 
 def test_no_challenge_without_turns_and_no_more_turns_than_fit():

@@ -34,8 +34,8 @@ def in_browser_language(tmp_path_factory):
     """``run(name, *columns)``: the JavaScript function on each row of the columns, as a list."""
     names = [
         name
-        for one in ("formulas", "mathematics")
-        for name in bundle.EXPORT.findall(bundle.source(one))
+        for module_name in ("formulas", "mathematics")
+        for name in bundle.EXPORT.findall(bundle.source(module_name))
     ]
     script = tmp_path_factory.mktemp("node") / "apply.mjs"
     body = bundle.body("formulas") + bundle.body("mathematics")
@@ -88,7 +88,7 @@ CALLS = [
 ]
 
 
-def given(kind, seed, choice):
+def arguments_for(kind, seed, choice):
     random = np.random.default_rng(seed)
     if kind == "matrix":
         return orientations(choice or "zxy")
@@ -103,14 +103,16 @@ def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
     """Recorded from the module, and still held to its numbers: the
     recording itself could be wrong.
     """
-    columns = [given(kind, seed, choice) for seed, kind in enumerate(FORMULAS[name][0].values())]
+    columns = [
+        arguments_for(kind, seed, choice) for seed, kind in enumerate(FORMULAS[name][0].values())
+    ]
     count = min(map(len, columns))
     columns = [column[:count] for column in columns]
     chosen = [] if choice is None else [choice]
     first = name == "simple_dcm"
     expected = getattr(module, name)(*(chosen * first), *columns, *(chosen * (not first)))
     lists = [[choice] * count] * len(chosen)
-    found = np.array(
+    computed = np.array(
         in_browser_language(
             formulas.camel(name), *(lists * first), *columns, *(lists * (not first))
         )
@@ -118,27 +120,27 @@ def test_formulas_give_what_the_module_gives(in_browser_language, name, choice):
     # Where the angles have no meaning of their own, the orientation has.
     if name == "body_fixed_from_dcm":
         make = module.dcm_from_body_fixed
-        assert rotation_error(make(found, choice), columns[0]) < LARGEST
+        assert rotation_error(make(computed, choice), columns[0]) < LARGEST
         clear = module.gimbal_lock_margin(expected, choice) > 1e-2
         assert (
             clear.sum() > 250
-            and np.abs(np.angle(np.exp(1j * (found - expected))))[clear].max() < LARGEST
+            and np.abs(np.angle(np.exp(1j * (computed - expected))))[clear].max() < LARGEST
         )
         exact = columns[0][-4:]
         assert np.allclose(
-            found[-4:],
+            computed[-4:],
             [module.body_fixed_from_dcm(dcm, choice) for dcm in exact],
             rtol=0,
             atol=1e-15,
         )
     else:
-        assert np.abs(found - expected).max() < LARGEST
+        assert np.abs(computed - expected).max() < LARGEST
 
 
 def test_what_is_made_of_formulas(in_browser_language):
     dcms = orientations()
-    found = in_browser_language("axisAngleFromDcm", dcms)
-    axes, angles = map(np.array, zip(*found))
+    computed = in_browser_language("axisAngleFromDcm", dcms)
+    axes, angles = map(np.array, zip(*computed))
     assert rotation_error(module.dcm_from_axis_angle(axes, angles), dcms) < LARGEST
     assert np.abs(angles - module.axis_angle_from_dcm(dcms)[1]).max() < LARGEST
     for sequence in ("zxz", "xyz"):
@@ -164,8 +166,8 @@ def test_slerp_is_that_of_the_module_and_of_scipy(in_browser_language):
     second[:3] = first[:3]
     second[3] = (first[3] + 1e-10 * second[3]) / np.linalg.norm(first[3] + 1e-10 * second[3])
     parts = np.linspace(0, 1, 300)
-    found = np.array(in_browser_language("slerp", first, second, parts))
-    for q, p, part, between in zip(first, second, parts, found):
+    computed = np.array(in_browser_language("slerp", first, second, parts))
+    for q, p, part, between in zip(first, second, parts, computed):
         ends = Rotation.from_quat([q, p], scalar_first=True)
         expected = Slerp([0, 1], ends)(part).as_quat(scalar_first=True)
         assert np.abs(between - module.interpolate_quaternions(q, p, part)).max() < LARGEST
@@ -186,9 +188,12 @@ def test_nearest_matrix(in_browser_language):
     matrices = matrices[gap > 0.05 * scales[:, 0]]
     assert len(matrices) > 2500 and (np.linalg.det(matrices) < 0).any()
     expected = module.nearest_dcm(matrices)
-    found = in_browser_language("nearestDcm", matrices)
-    assert rotation_error([one["dcm"] for one in found], expected.dcm) < LARGEST
-    assert np.abs(np.array([one["distance"] for one in found]) - expected.distance).max() < LARGEST
+    computed = in_browser_language("nearestDcm", matrices)
+    assert rotation_error([nearest["dcm"] for nearest in computed], expected.dcm) < LARGEST
+    assert (
+        np.abs(np.array([nearest["distance"] for nearest in computed]) - expected.distance).max()
+        < LARGEST
+    )
 
 
 SEVERAL_NEAREST = [

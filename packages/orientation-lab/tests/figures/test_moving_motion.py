@@ -61,7 +61,7 @@ def integrated(moments, axis, disturbance, method, step, restored, seconds):
     angular velocity that SciPy finds.
     """
     moments = np.array(moments)
-    start = np.array([SPIN if axis == other else disturbance for other in "xyz"])
+    start = np.array([SPIN if axis == letter else disturbance for letter in "xyz"])
     solution = solve_ivp(
         lambda t, omega: -np.cross(omega, moments * omega) / moments,
         (0, seconds),
@@ -512,12 +512,12 @@ def test_moments_that_no_body_has_are_refused_and_not_drawn(open_figure):
     field = {axis: f"Moment of inertia about {axis} in gram square metres" for axis in "xyz"}
     before = curves(page), drawing(page)
     type_number(page, field["z"], 20)
-    said = words(page)
+    shown_words = words(page)
     assert (
-        said.startswith("No body has the moments of inertia 1.2, 16, 20")
-        and "sum of the others, 17.2" in said
+        shown_words.startswith("No body has the moments of inertia 1.2, 16, 20")
+        and "sum of the others, 17.2" in shown_words
     )
-    assert "Still drawn: 1.2, 16, 17" in said and (curves(page), drawing(page)) == before
+    assert "Still drawn: 1.2, 16, 17" in shown_words and (curves(page), drawing(page)) == before
     assert page.locator(".slider.refused").count() == 3
     assert page.get_by_label(field["z"]).input_value() == "20", "the reader's number is taken away"
     # The way to moments that are possible may lead through some that are not.
@@ -584,8 +584,8 @@ def test_keyboard_alone(open_figure):
             for unit in ("", " in gram square metres")
         ),
     ]
-    found = [name for name in names if name in expected]
-    assert found[: len(expected)] == expected
+    present = [name for name in names if name in expected]
+    assert present[: len(expected)] == expected
     page.get_by_label("Time", exact=True).and_(page.locator("input")).focus()
     page.keyboard.press("ArrowRight")
     page.wait_for_function("document.querySelector('.player input').value == 6.05")
@@ -612,14 +612,14 @@ def test_keyboard_alone(open_figure):
 
 def test_sliders_tell_their_values_and_units(open_figure):
     page = open_figure("motion")
-    for name, told in (
+    for name, value_text in (
         ("Time", "Time, 6 seconds"),
         ("Step", "Step, 10 milliseconds"),
         ("Disturbance", "Disturbance, 0.01 radians per second"),
         ("Moment of inertia about y", "Moment of inertia about y, 16 gram square metres"),
     ):
         slider = page.locator(f'input[type=range][aria-label="{name}"]')
-        assert slider.get_attribute("aria-valuetext") == told
+        assert slider.get_attribute("aria-valuetext") == value_text
     page.wait_for_function(
         "document.querySelector('[role=status]').textContent.startsWith('After 6.0 s')"
     )

@@ -119,8 +119,8 @@ def test_figures_are_alive_without_numpy():
 
 
 def test_the_labels_are_kept_as_they_are_set():
-    kept = glyphs.FILE.read_text("utf8")
-    assert kept == glyphs.glyphs(), (
+    stored = glyphs.FILE.read_text("utf8")
+    assert stored == glyphs.glyphs(), (
         f"{glyphs.FILE.name} is not what its generator makes: run `{glyphs.COMMAND}`"
     )
 
@@ -138,11 +138,11 @@ def test_what_the_page_takes_in_order_is_not_named():
 
 def texts_of(source):
     """The strings in a module of the front end, with a null where a value is filled in."""
-    found, stack = [], []
+    strings, stack = [], []
     for token in re.findall(r"\\.|\$\{|.", re.sub(" {2,}// .*", "", source), re.DOTALL):
         if stack and stack[-1][0] in "'`":
             if token == stack[-1][0]:
-                found.append(stack.pop()[1])
+                strings.append(stack.pop()[1])
             elif token == "${" and stack[-1][0] == "`":
                 stack[-1][1] += "\0"
                 stack.append(["{", ""])
@@ -153,7 +153,7 @@ def texts_of(source):
         elif token == "}":
             stack.pop()
     assert stack == []
-    return found
+    return strings
 
 
 @pytest.mark.parametrize("kind", [figure.kind for figure in FIGURES])
@@ -161,13 +161,13 @@ def test_every_formula_of_a_figure_can_be_set(kind):
     source = "".join(
         map(bundle.source, (kind, f"{kind}_picture") if kind in bundle.PICTURES else (kind,))
     )
-    found = [formula for text in texts_of(source) for formula in text.split("$")[1::2]]
-    patterns = {formula: "[^ ]+".join(map(re.escape, formula.split("\0"))) for formula in found}
+    formulas = [formula for text in texts_of(source) for formula in text.split("$")[1::2]]
+    patterns = {formula: "[^ ]+".join(map(re.escape, formula.split("\0"))) for formula in formulas}
     assert patterns, "no formulas were found"
     missing = [
         formula
-        for formula in found
-        if not any(re.fullmatch(patterns[formula], one) for one in glyphs.LABELS)
+        for formula in formulas
+        if not any(re.fullmatch(patterns[formula], label) for label in glyphs.LABELS)
     ]
     assert missing == [], (
         f"add them to LABELS in orientation/moving/glyphs.py, then run `{glyphs.COMMAND}`"
@@ -206,8 +206,8 @@ def test_state_goes_to_the_page_and_back(figure):
     _, still = bundle_of(first)
     state = json.loads(still["data-state"])
     # Constants of the front end.
-    told = {name: state.pop(name) for name in first.trait_names(constant=True)}
-    assert told == {name: getattr(first, name) for name in told}
+    constants = {name: state.pop(name) for name in first.trait_names(constant=True)}
+    assert constants == {name: getattr(first, name) for name in constants}
     assert state and set(state) == set(first.state())
     second = figure(**state)
     assert second.state() == first.state()
@@ -246,13 +246,13 @@ def test_a_misspelt_attribute_is_an_error(figure):
     )
     with pytest.raises(TypeError, match=message):
         figure(**{misspelt: 1})
-    one = figure()
-    before = one.state()
+    instance = figure()
+    before = instance.state()
     with pytest.raises(AttributeError, match=message):
-        setattr(one, misspelt, 1)
+        setattr(instance, misspelt, 1)
     with pytest.raises(AttributeError, match=f"{figure.__name__} has no xyzzy; what"):
-        one.xyzzy = 1
-    assert one.state() == before and not hasattr(one, misspelt)
+        instance.xyzzy = 1
+    assert instance.state() == before and not hasattr(instance, misspelt)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -327,11 +327,11 @@ def test_angel_is_not_angle():
     ],
 )
 def test_bad_values_are_refused_and_change_nothing(figure, name, value, message):
-    one = figure()
-    before = one.state()
+    instance = figure()
+    before = instance.state()
     with pytest.raises(TraitError, match=message):
-        setattr(one, name, value)
-    assert one.state() == before
+        setattr(instance, name, value)
+    assert instance.state() == before
     with pytest.raises(TraitError, match=message):
         figure(**{name: value})
 

@@ -107,8 +107,8 @@ def test_short_paths_lead_along_the_same_points():
         )
         short = _short_path(path)
         assert len(short) < 0.7 * len(path)
-        for found, expected in zip(points(short), points(path), strict=True):
-            assert np.abs(np.array(found) - expected).max() <= tolerance
+        for point, expected in zip(points(short), points(path), strict=True):
+            assert np.abs(np.array(point) - expected).max() <= tolerance
 
 
 def test_steps_along_one_axis_become_one_and_turning_back_does_not():

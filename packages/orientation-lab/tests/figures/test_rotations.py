@@ -41,16 +41,16 @@ def tried():
 
 def test_what_is_written_down_is_what_the_page_shows():
     fresh = json.loads(written_down.written())
-    kept = scenes()
+    stored = scenes()
     assert [still["id"] for still in fresh["stills"]] == list(STILLS)
-    for one, other in zip(fresh["stills"], kept["stills"]):
-        assert len(one["items"]) == len(other["items"]), (
-            f"{one['id']}: run `python -m tools.rotations`"
+    for fresh_still, stored_still in zip(fresh["stills"], stored["stills"]):
+        assert len(fresh_still["items"]) == len(stored_still["items"]), (
+            f"{fresh_still['id']}: run `python -m tools.rotations`"
         )
-        for shape, known in zip(one["items"], other["items"]):
+        for shape, known in zip(fresh_still["items"], stored_still["items"]):
             assert shape[0] == known[0] and shape[5] == known[5]
             for k in (1, 2, 3, 4, 6):
-                assert np.allclose(shape[k], known[k], atol=2e-3), one["id"]
+                assert np.allclose(shape[k], known[k], atol=2e-3), fresh_still["id"]
 
 
 @pytest.mark.parametrize("number", range(32))
@@ -353,16 +353,16 @@ def test_the_camera_is_thrown_and_the_small_turns_add_up(open_essay):
     content = page.evaluate("document.querySelector('.world').world.content()")
     rate, start = np.array(content["rate"]), dcm_from_body_fixed(content["angles"], "zxy")
     assert 0.5 < np.linalg.norm(rate) < 2.6 and content["time"] == 24
-    truth, told = free_body(start, rate, 24), free_body(start, rate, 24, np.radians(1.5))
+    truth, reported = free_body(start, rate, 24), free_body(start, rate, 24, np.radians(1.5))
     assert axis_angle_from_dcm(camera(page) @ truth.T)[1] < 0.02
-    off = np.degrees(axis_angle_from_dcm(told @ truth.T)[1])
-    said = re.search(r"are (\d+) degrees off", page.locator(".look").inner_text())
-    assert abs(float(said[1]) - off) < 2
+    off = np.degrees(axis_angle_from_dcm(reported @ truth.T)[1])
+    match = re.search(r"are (\d+) degrees off", page.locator(".look").inner_text())
+    assert abs(float(match[1]) - off) < 2
     # Its address opens it as it flies, and the text takes it back.
-    other = open_essay(fragment_of("rotations", content))
-    assert axis_angle_from_dcm(camera(other) @ camera(page).T)[1] < 0.02
-    scroll_to(other, "your-turn")
-    assert other.evaluate("document.querySelector('.world').world.state.thrown") is None
+    reopened = open_essay(fragment_of("rotations", content))
+    assert axis_angle_from_dcm(camera(reopened) @ camera(page).T)[1] < 0.02
+    scroll_to(reopened, "your-turn")
+    assert reopened.evaluate("document.querySelector('.world').world.state.thrown") is None
     # Without a pointer there is a button.
     page.get_by_role("button", name="Give it a swing").press("Enter")
     rest(page)
@@ -387,10 +387,13 @@ def test_an_address_opens_the_gimbal_as_it_was(open_essay):
     for key in ("ArrowUp", "ArrowLeft", ","):
         page.keyboard.press(key)
     rest(page)
-    kept, content = camera(page), page.evaluate("document.querySelector('.world').world.content()")
-    other = open_essay(fragment_of("rotations", content))
-    assert other.locator(".world").get_attribute("data-state") == "lock"
-    assert camera(other) == pytest.approx(kept, abs=1e-3)
+    before, content = (
+        camera(page),
+        page.evaluate("document.querySelector('.world').world.content()"),
+    )
+    reopened = open_essay(fragment_of("rotations", content))
+    assert reopened.locator(".world").get_attribute("data-state") == "lock"
+    assert camera(reopened) == pytest.approx(before, abs=1e-3)
     # What somebody has made up is not taken.
     for content in (
         {"stop": "lock", "angles": ["x", 0, 0]},

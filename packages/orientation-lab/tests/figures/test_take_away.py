@@ -30,9 +30,11 @@ class Formula:
 def test_texts_are_those_of_python(language):
     texts = take_away.texts_in(language)
     assert set(texts) == set(FORMULAS)
-    wanted = formula_in(language, "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees")
-    assert texts["body_fixed_from_dcm"]["texts"]["zyx transposed degrees"] == wanted
-    assert all(text for one in texts.values() for text in one["texts"].values())
+    expected = formula_in(
+        language, "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees"
+    )
+    assert texts["body_fixed_from_dcm"]["texts"]["zyx transposed degrees"] == expected
+    assert all(text for formula in texts.values() for text in formula["texts"].values())
 
 
 def run_in_page(page, text, name, *arguments):
@@ -50,18 +52,18 @@ def test_a_formula_is_taken_from_the_reference(open_figure):
     page.select_option("select[aria-label=Sequence]", "zyx")
     page.select_option("select[aria-label=Matrix]", "transposed")
     page.select_option("select[aria-label='Angles in']", "degrees")
-    wanted = formula_in(
+    expected = formula_in(
         "JavaScript", "body_fixed_from_dcm", "zyx", matrix="transposed", unit="degrees"
     )
     page.wait_for_function(
         "(text) => document.querySelector('.taken output').textContent.trim() === text",
-        arg=wanted.strip(),
+        arg=expected.strip(),
     )
     assert page.locator("dd .taken").count() == 1  # where the reader is
     text = page.text_content(".taken output")
     dcm = orientation.dcm_from_body_fixed((0.3, -0.4, 1.1), "zyx")
-    found = run_in_page(page, text, "body_fixed_from_dcm_zyx", dcm.T.ravel().tolist())
-    assert np.abs(np.array(found) - np.degrees([0.3, -0.4, 1.1])).max() < 1e-12
+    computed = run_in_page(page, text, "body_fixed_from_dcm_zyx", dcm.T.ravel().tolist())
+    assert np.abs(np.array(computed) - np.degrees([0.3, -0.4, 1.1])).max() < 1e-12
     with page.expect_download() as saved:
         page.click("text=Save as a file")
     assert saved.value.suggested_filename == "body_fixed_from_dcm.js"
@@ -77,10 +79,10 @@ def test_the_converter_gives_the_formulas_that_it_uses(open_figure):
     # From SciPy's quaternion, scalar last, to this book's angles.
     quaternion = page.evaluate("document.querySelector('.moving').model.get('quaternion')")
     typed = page.input_value("textarea").replace(",", " ").split()
-    found = run_in_page(page, text, "dcm_from_quaternion", [float(one) for one in typed])
+    computed = run_in_page(page, text, "dcm_from_quaternion", [float(number) for number in typed])
     expected = orientation.dcm_from_quaternion(np.array(quaternion) / np.linalg.norm(quaternion))
-    assert np.abs(np.reshape(found, (3, 3)) - expected).max() < 1e-9
-    angles = run_in_page(page, text, "body_fixed_from_dcm_zxy", found)
+    assert np.abs(np.reshape(computed, (3, 3)) - expected).max() < 1e-9
+    angles = run_in_page(page, text, "body_fixed_from_dcm_zxy", computed)
     assert np.abs(np.array(angles) - orientation.body_fixed_from_dcm(expected, "zxy")).max() < 1e-9
 
 
