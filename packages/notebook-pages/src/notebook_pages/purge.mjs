@@ -15,8 +15,8 @@ const require = createRequire(join(modules, "package.json"));
 
 // Every word of a script that stands in quotes.
 function quoted(script) {
-  const found = script.replace(/^\s*\/\/.*$/gm, "").match(/"[^"\n]*"|'[^'\n]*'|`[^`]*`/g) ?? [];
-  return found.join(" ").match(/[A-Za-z][\w-]*/g) ?? [];
+  const strings = script.replace(/^\s*\/\/.*$/gm, "").match(/"[^"\n]*"|'[^'\n]*'|`[^`]*`/g) ?? [];
+  return strings.join(" ").match(/[A-Za-z][\w-]*/g) ?? [];
 }
 // Of a page, its elements, ids, classes and attributes: a word of the text is none. To them come the words of the scripts
 // that stand in it, for these run before it is seen, and those of a comment that keeps a place for what comes last.

@@ -55,11 +55,11 @@
 // laid out, never before: to measure a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
   // What has been folded away has no size, and is looked at when it is unfolded.
-  const found = entries.filter(({ contentRect }) => contentRect.width).map(({ target }) => {
+  const boxes = entries.filter(({ contentRect }) => contentRect.width).map(({ target }) => {
     const wide = target.scrollWidth > target.clientWidth + 1;
     return [target, wide || (!target.matches(".math-box, figure") && target.scrollHeight > target.clientHeight)];
   });
-  for (const [target, scrolls] of found) {
+  for (const [target, scrolls] of boxes) {
     const words = target.matches(".math-box") ? "Wide equation" : target.matches("figure") && "Wide figure";
     for (const [name, value] of Object.entries({ tabindex: "0", ...(words && { role: "group", "aria-label": words }) })) {
       if (scrolls) target.setAttribute(name, value);

@@ -134,28 +134,28 @@
       return;
     }
     const shapes = figures.map(shapeOf);
-    const shape = shapes.reduce((sum, one) => sum + one.shape, 0);
-    const panel = shapes.reduce((sum, one) => sum + one.panel, 0);
+    const shape = shapes.reduce((sum, shape) => sum + shape.shape, 0);
+    const panel = shapes.reduce((sum, part) => sum + part.panel, 0);
     const foot = parseFloat(getComputedStyle(article).paddingBottom);
     const [wide, high] = [article.clientWidth - 2 * GAP, article.clientHeight - GAP - foot];
     const area = (width, height) => Math.min(height, Math.max(0, width - panel) / shape) ** 2 * shape;
     // Words may be smaller or stand in a narrower column for the sake of the drawing, but not by much.
     const worth = ({ width, height, size, tall }) => area(width, height) * size ** 0.8 * (tall ? 0.75 : 1);
-    const found = [];
+    const layouts = [];
     article.dataset.words = "below";
     for (const size of SIZES.slice(0, 3)) {
       set("type", size);
       const words = [line, ...steps[now].blocks.filter((block) => !block.matches("figure"))];
-      const height = high - words.reduce((sum, one) => sum + one.offsetHeight + GAP, 0);
-      found.push({ words: "below", width: wide + GAP, height, size });
+      const height = high - words.reduce((sum, line) => sum + line.offsetHeight + GAP, 0);
+      layouts.push({ words: "below", width: wide + GAP, height, size });
     }
     article.dataset.words = "beside";
     for (const share of [0.18, 0.22, 0.26, 0.3, 0.36, 0.44, 0.52]) {
       set("left", `${(1 - share) * 100}%`);
-      const size = SIZES.find((one) => (set("type", one), !overflows()));
-      if (size) found.push({ words: "beside", width: wide * (1 - share), height: high, size, tall: line.offsetHeight > high / 3 });
+      const size = SIZES.find((size) => (set("type", size), !overflows()));
+      if (size) layouts.push({ words: "beside", width: wide * (1 - share), height: high, size, tall: line.offsetHeight > high / 3 });
     }
-    const best = found.reduce((one, other) => (worth(other) >= worth(one) ? other : one));
+    const best = layouts.reduce((best, candidate) => (worth(candidate) >= worth(best) ? candidate : best));
     article.dataset.words = best.words;
     set("type", best.size);
     set("left", best.words === "beside" ? `${best.width + GAP}px` : "0px");

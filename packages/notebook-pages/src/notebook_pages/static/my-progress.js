@@ -41,9 +41,9 @@
   bring.addEventListener("click", () => file.click());
   file.addEventListener("change", async () => {
     try {
-      const found = JSON.parse(await file.files[0].text());
-      if (typeof found?.pages !== "object") throw new Error("no pages");
-      progress.replace(found);
+      const imported = JSON.parse(await file.files[0].text());
+      if (typeof imported?.pages !== "object") throw new Error("no pages");
+      progress.replace(imported);
       fill();
       say("Imported: your record is back.");
     } catch {

@@ -39,9 +39,9 @@
   // A number as one writes it: "0,5", "1/2", "45°", "45 degrees". A unit says nothing new where the question names it, too.
   const DEGREES = /^(°|deg\b|degrees?\b)/i;
   const numberIn = (text, asked) => {
-    const found = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s*\/\s*(\d+\.?\d*))?\s*(\D*)$/i.exec(text.trim().replace(",", ".").replace("\u2212", "-"));
-    if (!found) return NaN;
-    const [, above, below = 1, unit] = found;
+    const match = /^([-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)(?:\s*\/\s*(\d+\.?\d*))?\s*(\D*)$/i.exec(text.trim().replace(",", ".").replace("\u2212", "-"));
+    if (!match) return NaN;
+    const [, above, below = 1, unit] = match;
     const named = DEGREES.test(unit) ? /°|degree/i.test(asked) : asked.toLowerCase().includes(unit.trim().toLowerCase());
     return named ? above / below : NaN;
   };

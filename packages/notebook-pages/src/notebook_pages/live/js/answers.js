@@ -79,7 +79,7 @@ export class Answers {
   // The texts that this cell has held, the newest first, without those in ``shown``.
   earlier(name, ...shown) {
     return store.entries(`${this.aside}${name} `).map(([, entry]) => entry)
-      .filter(({ code }) => !shown.includes(code)).sort((one, other) => other.at - one.at);
+      .filter(({ code }) => !shown.includes(code)).sort((earlier, later) => later.at - earlier.at);
   }
 
   // What a question gives its reader, whose numbers are nobody else's, by the cell's name: {student, text, original,

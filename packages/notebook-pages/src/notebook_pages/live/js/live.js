@@ -248,7 +248,7 @@ class Page {
 
   // Run one cell, and before it what has not run yet; without a cell, the whole page.
   run(cell) {
-    if (!cell && this.cells.every((other) => this.leftOut(other))) {
+    if (!cell && this.cells.every((another) => this.leftOut(another))) {
       return this.bar.say("Each cell of this page draws a picture that is already there. Run below a cell draws it again.");
     }
     // Asked twice by a quick hand: it is on its way.

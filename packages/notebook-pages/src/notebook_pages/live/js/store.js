@@ -56,7 +56,7 @@ function parsed(text) {
   }
 }
 
-const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+const same = (first, second) => JSON.stringify(first) === JSON.stringify(second);
 const isObject = (value) => value !== null && typeof value === "object" && !Array.isArray(value);
 
 export class Store {
@@ -204,8 +204,8 @@ export class Store {
     if (!isObject(tried)) return null;
     const { student } = this;
     const all = [tried, ...Object.values(tried[OTHERS] ?? {})].filter((one) => isObject(one) && one.outcome);
-    const whose = (one) => one.whose ?? (varies ? "" : student);
-    const own = all.find((one) => plainName(whose(one)) === student);
+    const whose = (entry) => entry.whose ?? (varies ? "" : student);
+    const own = all.find((entry) => plainName(whose(entry)) === student);
     if (own) return { outcome: own.outcome };
     const other = all.find(({ outcome }) => outcome === "correct") ?? all[0];
     return other ? { outcome: other.outcome, whose: whose(other) } : null;
@@ -242,16 +242,16 @@ function sound(text) {
 export const plainName = (name) => name.normalize("NFKC").replace(/\p{Cf}/gu, "").trim().split(/\s+/).join(" ").toUpperCase();
 
 // Whether two entries are of the same numbers; one of a question without variants knows its place among them alone.
-const ofSameNumbers = (one, other) =>
-  one.numbers && other.numbers ? one.numbers === other.numbers : (one.variant ?? 0) === (other.variant ?? 0);
+const ofSameNumbers = (first, second) =>
+  first.numbers && second.numbers ? first.numbers === second.numbers : (first.variant ?? 0) === (second.variant ?? 0);
 
-// What is known of one question, made one: with the numbers of the newer entry, and beside it with all others.
+// The joined record of a question: that with the numbers of the newer entry, and the others beside it.
 function joinTries(older, newer) {
   if (!isObject(older) || !isObject(newer)) return newer ?? older;
   const apart = ({ [OTHERS]: others, ...own }) => [own, ...Object.values(others ?? {}).filter(isObject)];
   const all = apart(newer);
   for (const entry of apart(older)) {
-    const place = all.findIndex((one) => ofSameNumbers(one, entry));
+    const place = all.findIndex((candidate) => ofSameNumbers(candidate, entry));
     if (place < 0) all.push(entry);
     else all[place] = joinEntries(entry, all[place]);
   }
@@ -273,8 +273,8 @@ function joinEntries(older, newer) {
   else delete joined.help;
   for (const list of ["answers", "after"]) {
     if (!joined[list]) continue;
-    const known = [...(older[list] ?? []), ...(newer[list] ?? [])].map((one) => JSON.stringify(one));
-    joined[list] = [...new Set(known)].map((one) => JSON.parse(one));
+    const known = [...(older[list] ?? []), ...(newer[list] ?? [])].map((item) => JSON.stringify(item));
+    joined[list] = [...new Set(known)].map((text) => JSON.parse(text));
   }
   return joined;
 }

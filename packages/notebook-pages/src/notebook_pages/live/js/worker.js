@@ -43,9 +43,9 @@ function tellWhatIsMissing() {
     reasons[name] = `${named(name)} is not part of this site`;
   }
   for (const [module, name] of absentModules()) reasons[module] = refused[name] ?? `${named(name)} is not loaded yet`;
-  const given = python.toPy(reasons);
-  shell.lack(given);
-  given.destroy();
+  const missing = python.toPy(reasons);
+  shell.lack(missing);
+  missing.destroy();
 }
 
 const fileOf = (url) => new URL(url, location.href).pathname.split("/").at(-1);
@@ -236,10 +236,10 @@ async function bring(module) {
 }
 
 // What a reader has given a cell of the page.
-function putDropped(given) {
+function putDropped(files) {
   python.FS.mkdirTree(DROPPED);
   for (const name of python.FS.readdir(DROPPED)) if (!/^\.+$/.test(name)) python.FS.unlink(`${DROPPED}/${name}`);
-  for (const [name, bytes] of given) python.FS.writeFile(`${DROPPED}/${name.replaceAll("/", "_")}`, bytes);
+  for (const [name, bytes] of files) python.FS.writeFile(`${DROPPED}/${name.replaceAll("/", "_")}`, bytes);
 }
 
 async function run({ code, name, needs = [], retry, kept }) {

@@ -96,7 +96,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     // Which name of several words each word belongs to: the longest.
     const names = list.map((_, k) => signs.filter(({ start, end }) => end - start > 1 && start <= k && k < end)
       .reduce((best, sign) => (best && best.end - best.start >= sign.end - sign.start ? best : sign), null)?.term);
-    spans.sort((one, other) => one.first - other.first || other.last - one.last);
+    spans.sort((left, right) => left.first - right.first || right.last - left.last);
     for (let k = 0; k < spans.length; k += 1) while (spans[k + 1]?.first <= spans[k].last) spans.splice(k + 1, 1);
     for (const [k, other] of spans.entries()) if (k) {
       const one = spans[k - 1];
@@ -141,8 +141,8 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       * (isWeak(word) ? OF_WEAK : ofSubject.has(word) || /\d/.test(word) ? 1 : OF_OTHERS);
   });
   const sorted = (word) => [...word].sort().join("");
-  const sum = (list) => list.reduce((all, one) => all + one, 0);
-  for (const one of documents) if (!one.within) one.worths = worths(one), one.worth = sum(one.worths);
+  const sum = (list) => list.reduce((all, worth) => all + worth, 0);
+  for (const document of documents) if (!document.within) document.worths = worths(document), document.worth = sum(document.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
 
   // A question in the words of the book: written together or apart as there, and without slips.
@@ -205,10 +205,10 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     }
     for (const sign of signs) {
       const like = isWay(sign) ? 1 : SYNONYM;
-      for (const one of having.get(sign.term) ?? []) {
-        const { likes, own } = state(one);
+      for (const document of having.get(sign.term) ?? []) {
+        const { likes, own } = state(document);
         for (let k = sign.start; k < sign.end; k += 1) raise(likes, k, like);
-        for (const its of one.signs) if (its.term === sign.term) {
+        for (const its of document.signs) if (its.term === sign.term) {
           for (let j = its.start; j < its.end; j += 1) raise(own, j, like);
         }
       }
@@ -279,7 +279,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       const place = kind === "page" ? ` ${headed(title)}`.indexOf(` ${begun}`) : -1;
       return place < 0 ? [] : [[id, (scores.get(id) ?? 0) + BEGUN * (place ? 0.5 : 1) * (number ? 2 : pages[page][3])]];
     }));
-    return [...scores].filter(([, score]) => score > 0.06).sort((one, other) => other[1] - one[1]).slice(0, most)
+    return [...scores].filter(([, score]) => score > 0.06).sort((left, right) => right[1] - left[1]).slice(0, most)
       .map(([id, score]) => ({ ...entries[id], score }));
   };
 }

@@ -74,7 +74,7 @@ export function render({ model, el }) {
     const [, angle] = axisAngleFromDcm(multiply(goal, transpose(dcm)));
     task.show(now);
     const full = made.length >= (now === 'ghost' ? given.length : MOST);
-    for (const one of turns) one.disabled = full;
+    for (const button of turns) button.disabled = full;
     back.disabled = !made.length;
     show.hidden = now !== 'match';
     put(show, 'aria-pressed', String(shown));

@@ -160,10 +160,10 @@ export function render({ model, el }) {
   function take(typed) {
     text = typed;
     try {
-      const found = read(side('source'), typed);
+      const reading = read(side('source'), typed);
       fault = '';
-      said = found.said;
-      change(model, { quaternion: quaternionFromDcm(found.dcm) });
+      said = reading.said;
+      change(model, { quaternion: quaternionFromDcm(reading.dcm) });
     } catch (error) {
       fault = error.message;
     }
@@ -232,7 +232,7 @@ export function render({ model, el }) {
   function draw() {
     const dcm = dcmFromQuaternion(model.get('quaternion')), to = side('target'), exchanged = byAxesOf(side('source'), to, programs, dcm);
     const numbers = told(to, exchanged.dcm);
-    for (const one of panels) one.show();
+    for (const panel of panels) panel.show();
     matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     quaternion.show([quaternionFromDcm(dcm).map((entry) => fixed(entry))]);
     write(result, fault ? '\u2013' : shown(numbers));

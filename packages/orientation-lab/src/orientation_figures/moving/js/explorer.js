@@ -19,7 +19,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, element('div', { class: 'controls alone' },
     group('What is turned', 'row-of-controls', sequence.element, fixed.element),
-    group('Angles', 'row-of-controls', ...fields.map((one) => one.element)), result, text.element));
+    group('Angles', 'row-of-controls', ...fields.map((field) => field.element)), result, text.element));
 
   function draw() {
     sequence.show(model.get('sequence'));

@@ -31,7 +31,7 @@ export function render({ model, el }) {
   const reference = element('span', {});
   const axis = choice({ name: 'about', options: AXES, change: (value) => turnTo({ 2: value }) });
   const adders = LETTERS.split('').map((letter) => button(letter, () => {
-    chosen = LETTERS.slice(1).split('').find((one) => !edges().some(([made]) => made === one));
+    chosen = LETTERS.slice(1).split('').find((letter) => !edges().some(([made]) => made === letter));
     change(model, { edges: [...edges(), [chosen, letter, 'y', radians(30)]] });
   }, { 'aria-label': `add a frame turned in ${letter}` }));
   const fewer = button('Remove the last', () => {

@@ -57,7 +57,7 @@ export const range = (first, end) => Array.from({ length: end === undefined ? fi
   (_, k) => (end === undefined ? k : first + k));
 export const enumerate = (list) => [...list].map((one, k) => [k, one]);
 export const zip = (first, ...others) => [...first].map((one, k) => [one, ...others.map((list) => list[k])]);
-export const sum = (numbers) => numbers.reduce((before, one) => before + one, 0);
+export const sum = (numbers) => numbers.reduce((total, number) => total + number, 0);
 
 // What a matrix is, and which is near.
 

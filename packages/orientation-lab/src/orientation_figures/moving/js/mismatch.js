@@ -100,14 +100,14 @@ function columnsOf(given, spelling) {
 function namedColumns(names, spelling) {
   const bare = names.map((name) => name.replace(spelling['unit of a column'], ''));
   const entries = bare.map((name, column) => [[...name.matchAll(spelling['entry of a matrix'])][0], column]).filter(([found]) => found);
-  if (entries.length === 9) return { which: entries.map(([[, row, column], at]) => [row + column, at]).sort((one, other) => one[0] - other[0]).map(([, at]) => at), more: {} };
+  if (entries.length === 9) return { which: entries.map(([[, row, column], at]) => [row + column, at]).sort((left, right) => left[0] - right[0]).map(([, at]) => at), more: {} };
   for (const own of [bare.map((name) => has(spelling['of a quaternion'], name)), bare.map(() => true)]) {
     const keys = bare.map((name, k) => (own[k] ? name.replace(/^(.*[_.])?q?_*/, '') : ''));
     for (const [place, more] of spelling.names.slice(0, 2)) {
       const each = Array.from({ length: Math.max(...Object.values(place)) + 1 }, (_, at) => keys.flatMap((key, column) => (Object.hasOwn(place, key) && place[key] === at ? [column] : [])));
       if (each.every((columns) => columns.length === 1)) {
         // As they stand, so that what is said of the numbers holds for the reader's own.
-        const order = each.map((_, at) => at).sort((one, other) => each[one][0] - each[other][0]), [name, letters] = more.order ? ['order', 'wxyz'] : ['places', '123'];
+        const order = each.map((_, at) => at).sort((left, right) => each[left][0] - each[right][0]), [name, letters] = more.order ? ['order', 'wxyz'] : ['places', '123'];
         return { which: order.map((at) => each[at][0]), more: { ...more, [name]: order.map((at) => letters[at]).join('') } };
       }
     }
@@ -141,8 +141,8 @@ function withoutPlaces(text, spelling) {
   for (const line of text.replace(spelling.value, ' ').split('\n')) {
     const inset = line.length - line.trimStart().length;
     if (below !== null && line.trim() && inset > below) continue;
-    const found = [...line.matchAll(spelling['not turns'])][0];
-    below = found && !line.slice(found.index + found[0].length).trim() ? inset : null;
+    const match = [...line.matchAll(spelling['not turns'])][0];
+    below = match && !line.slice(match.index + match[0].length).trim() ? inset : null;
     kept.push(line.replace(spelling['not turns'], ' '));
   }
   return kept.join('\n');
@@ -243,7 +243,7 @@ function kindsOf(numbers, kind, doubt, name) {
   }
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
   if (kinds[0] === 'quaternion' && !isUnit(numbers, Math.max(doubt, 0.01))) {
-    const worst = numbers.map(length).reduce((one, other) => (Math.abs(other - 1) > Math.abs(one - 1) ? other : one));
+    const worst = numbers.map(length).reduce((worst, size) => (Math.abs(size - 1) > Math.abs(worst - 1) ? size : worst));
     throw new Error(`a quaternion of the ${name} side has length ${short(worst)}, not 1`);
   }
   if (kinds[0] === 'axis and angle' && ![[0, 3], [1, 4]].some(([from, to]) => isUnit(numbers.map((pose) => pose.slice(from, to)), doubt))) {
@@ -380,7 +380,7 @@ export function relationsOf(mirrored, table) {
       }
     }
   }
-  return [...best.values()].sort((one, other) => one.faults - other.faults || one.rarity - other.rarity || one.inverse - other.inverse);
+  return [...best.values()].sort((left, right) => left.faults - right.faults || left.rarity - right.rarity || left.inverse - right.inverse);
 }
 
 const isShared = (group, value, table) => table.shared.some(([own, one]) => own === group && one === value);
@@ -390,8 +390,8 @@ function ofBoth(first, second) {
   const alike = first.shared.filter((words) => second.shared.includes(words));
   const units = unitChanges(first, second) ? [`the first numbers are in ${first.unit}, the second in ${second.unit}`] : [];
   return { faults: first.faults + second.faults - 2 * alike.length + units.length + sequenceChanges(first, second), rarity: first.rarity + second.rarity + 0.1 * alike.length,
-    words: [['first', first], ['second', second]].flatMap(([side, { words }]) => words.filter((one) => !alike.includes(one))
-      .map((one) => `in the ${side} numbers ${one}`)).concat(units) };
+    words: [['first', first], ['second', second]].flatMap(([side, { words }]) => words.filter((word) => !alike.includes(word))
+      .map((word) => `in the ${side} numbers ${word}`)).concat(units) };
 }
 
 function readingsOf(kind, declared, large, table) {
@@ -418,7 +418,7 @@ function readingsOf(kind, declared, large, table) {
 }
 
 // Whether the unit changes between two readings, and the sequence, where not both are declared.
-const unitChanges = (one, other) => Boolean(one.unit && other.unit && one.unit !== other.unit && !(one.known.unit && other.known.unit));
+const unitChanges = (first, second) => Boolean(first.unit && second.unit && first.unit !== second.unit && !(first.known.unit && second.known.unit));
 const sequenceChanges = (one, other) => Boolean(one.letters && other.letters && one.letters !== other.letters && one.canonical !== other.canonical
   && !(one.known.sequence && other.known.sequence));
 
@@ -432,7 +432,7 @@ function readingKey({ kind, choices }) {
 // ---- the search ----------------------------------------------------------------------------------------
 
 const fourthPowers = (dcm) => dcm.flat().reduce((sum, entry) => sum + entry ** 4, 0);
-const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), price = (one, other) => costOf(one) - costOf(other);
+const costOf = ({ faults, rarity }) => Math.round((faults + rarity) * 1e6), price = (first, second) => costOf(first) - costOf(second);
 
 function sideOf(poses, declared, table, noise) {
   const cheapest = new Map();
@@ -663,7 +663,7 @@ function predictionsOf(chains, samples, decimals, table) {
     const plain = plainReading(chain.second.kind, table);
     const eachSample = dcms.get(chain.first).map((dcm) => [...new Set(numbersFromDcm(chain.second, related(chain.relation, dcm))
       .map((numbers) => dcmFromNumbers(plain, numbers).flat().map((entry) => Math.round(entry * factor) + 0).join()))]);
-    return eachSample.reduce((keys, own) => keys.flatMap((key) => own.map((one) => `${key};${one}`)), [`${chain.first.kind};${chain.second.kind}`]);
+    return eachSample.reduce((keys, own) => keys.flatMap((key) => own.map((sample) => `${key};${sample}`)), [`${chain.first.kind};${chain.second.kind}`]);
   });
 }
 

@@ -38,7 +38,7 @@ export class Model {
 
   on(event, listener) { this.heard.set(event, [...this.heard.get(event) ?? [], listener]); }
 
-  off(event, listener) { this.heard.set(event, (this.heard.get(event) ?? []).filter((other) => other !== listener)); }
+  off(event, listener) { this.heard.set(event, (this.heard.get(event) ?? []).filter((registered) => registered !== listener)); }
 
   save_changes() {
     const changes = this.unsaved;

@@ -75,7 +75,7 @@ export function error(matrix, truth) {
 export class Run {
   constructor({ moments, axis, disturbance, method, step, restored }) {
     Object.assign(this, { step, method, restored, moments, axis: AXES.indexOf(axis) });
-    const omega = AXES.map((other) => (other === axis ? SPIN : disturbance));
+    const omega = AXES.map((letter) => (letter === axis ? SPIN : disturbance));
     this.momentum = unit(omega.map((entry, k) => entry * this.moments[k]));
     this.states = [[1, 0, 0, 0, ...IDENTITY.flat(), 0, 0, 0]];
     this.references = [[...omega, 1, 0, 0, 0]];
@@ -154,7 +154,7 @@ function rank(moments, k) {
   return `${smaller ? 'largest' : 'smallest'} moment`;
 }
 
-const listed = (moments) => `${moments.map((one) => plain(one)).join(', ')} g\u202fm²`;
+const listed = (moments) => `${moments.map((moment) => plain(moment)).join(', ')} g\u202fm²`;
 
 // Why no body has these moments of inertia, or ''.
 function impossible(moments) {

@@ -76,9 +76,9 @@ export function render({ model, el }) {
     entries.forEach((row, i) => row.forEach((entry, j) => write(entry, near.dcm ? fixed(near.dcm[i][j], 4) : '\u2013')));
     take.disabled = !near.dcm || near.distance < SMALL;
     write(apart, near.dcm ? `Distance ${near.distance.toFixed(4)}` : 'Several are equally near.');
-    const found = conditions(matrix).map(({ value, wanted, fault: excess }) => [value, wanted, Math.abs(excess) <= SMALL]);
-    found.splice(3, 0, [turned, turned > 0 ? 1 : '+1', Math.abs(turned - 1) <= 2 * SMALL]);
-    found.forEach(([value, wanted, holds], k) => {
+    const results = conditions(matrix).map(({ value, wanted, fault: excess }) => [value, wanted, Math.abs(excess) <= SMALL]);
+    results.splice(3, 0, [turned, turned > 0 ? 1 : '+1', Math.abs(turned - 1) <= 2 * SMALL]);
+    results.forEach(([value, wanted, holds], k) => {
       write(checks[k].value, fixed(value, 4));
       write(checks[k].verdict, holds ? '\u2713 holds' : `\u2717 not ${wanted}`);
       put(checks[k].line, 'class', holds ? '' : 'fails');

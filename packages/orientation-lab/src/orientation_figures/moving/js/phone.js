@@ -118,7 +118,7 @@ export function render({ model, el }) {
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls' }, group('Sensors', 'row-of-controls', use, record, copy),
-      ...sliders.map((one) => one.element), film.element),
+      ...sliders.map((slider) => slider.element), film.element),
     element('div', { class: 'readouts' },
       readout(['Direction cosine matrix ${}^B\\mathbf{C}^N$'], matrix.element),
       readout(['Quaternion'], quaternion.element), readout(['Specific force (m/s²)'], felt.element),
@@ -161,7 +161,7 @@ export function render({ model, el }) {
       alive = true;
       film.pause();
       record.disabled = false;
-      for (const one of sliders) one.element.querySelectorAll('input').forEach((input) => { input.disabled = true; });
+      for (const slider of sliders) slider.element.querySelectorAll('input').forEach((input) => { input.disabled = true; });
       say();
     }
     show(sensors.angles);

@@ -100,7 +100,7 @@ function doubleView(model) {
     if (length(subtract(unit(typed), axis)) > 1e-9) typed = [...axis];
     fields.forEach((field, k) => field.show(typed[k]));
     angle.show(theta);
-    quaternions.show([q, scale(-1, q)].slice(0, more ? 2 : 1).map((one) => one.map((entry) => fixed(entry))));
+    quaternions.show([q, scale(-1, q)].slice(0, more ? 2 : 1).map((quaternion) => quaternion.map((entry) => fixed(entry))));
     matrix.show(dcm.map((row) => row.map((entry) => fixed(entry))));
     sheet.draw(() => {
       double(sheet, axis, theta, dcm, more);

@@ -376,7 +376,7 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
       pointerenter: (event) => { if (event.pointerType === 'mouse') light(i, j); },
       pointerleave: (event) => { if (event.pointerType === 'mouse') relight(); },
       focus() {
-        cells.flat().forEach((other) => { other.tabIndex = other === cell ? 0 : -1; });
+        cells.flat().forEach((another) => { another.tabIndex = another === cell ? 0 : -1; });
         light(i, j);
       },
       blur: () => light(),
@@ -513,7 +513,7 @@ function alike(value, known) {
   if (typeof known === 'number') return Number.isFinite(value) && Math.abs(value) < 1e6;
   if (Array.isArray(known)) {
     const numbers = typeof known[0] === 'number';
-    return Array.isArray(value) && value.length <= 64 && (!numbers || value.length === known.length) && value.every((one) => alike(one, known[0]));
+    return Array.isArray(value) && value.length <= 64 && (!numbers || value.length === known.length) && value.every((entry) => alike(entry, known[0]));
   }
   if (known === null || value === null || typeof value !== typeof known) return false;
   if (typeof known === 'object') return Object.keys(value).every((key) => key in known && alike(value[key], known[key]));

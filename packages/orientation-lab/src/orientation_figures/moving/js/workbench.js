@@ -34,7 +34,7 @@ export function takenUp(content, programs = []) {
 const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, order: UNKNOWN, way: UNKNOWN };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
   && (name !== 'sequence' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
-const several = (count, one) => `${count} ${one}${count === 1 ? '' : 's'}`;
+const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
   const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);

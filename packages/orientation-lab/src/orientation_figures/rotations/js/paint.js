@@ -44,7 +44,7 @@ const GLOSS = { graphite: 0.7, metal: 1, glass: 1.4, D: 0.55, B: 0.55, C: 0.55, 
 
 const parsed = (text) => {
   const [, digits] = /^#([0-9a-f]{3,6})$/i.exec(text.trim()) ?? [, '888888'];
-  const six = digits.length === 3 ? [...digits].map((one) => one + one).join('') : digits;
+  const six = digits.length === 3 ? [...digits].map((digit) => digit + digit).join('') : digits;
   return [0, 2, 4].map((k) => parseInt(six.slice(k, k + 2), 16) / 255);
 };
 
@@ -69,7 +69,7 @@ export class Painter {
     const make = (more) => new Program(gl, { vertex: VERTEX, fragment: FRAGMENT, uniforms: uniforms(), cullFace: false, ...more });
     this.programs = { solid: make({}), ghost: make({ transparent: true }), pane: make({ transparent: true, depthWrite: false }),
       shadow: new Program(gl, { vertex: SHADOW, fragment: SHADE, uniforms: uniforms(), cullFace: false }) };
-    for (const one of [this.programs.ghost, this.programs.pane]) one.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    for (const program of [this.programs.ghost, this.programs.pane]) program.setBlendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     this.surfaces = new Map();   // one for each shape that keeps its form
     this.meshes = new Map();
   }

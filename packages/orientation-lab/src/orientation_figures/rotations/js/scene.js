@@ -222,7 +222,7 @@ class Scene {
 // ---- the stops: what each shows besides the machine --------------------------------------------------------
 
 const ZERO = [0, 0, 0];
-const poses = (...list) => list.map((one) => one.map(deg));
+const poses = (...list) => list.map((pose) => pose.map(deg));
 
 // Through a list of poses, one after the other, as t goes from 0 to 1.
 function through(list, t, marks = list.map((_, k) => k / (list.length - 1))) {
@@ -558,7 +558,7 @@ export const REST = { stop: 'which-way', t: 0, angles: AT_READER, eye: [52, 17],
 
 // All that is seen in a state: { items, labels, view, frames }.
 export function sceneOf(state) {
-  const s = { ...REST, ...state }, stop = STOPS.find((one) => one.id === s.stop), scene = new Scene();
+  const s = { ...REST, ...state }, stop = STOPS.find((candidate) => candidate.id === s.stop), scene = new Scene();
   const D = dcmOf(s), angles = stop.by === 'camera' && (s.carry || !s.free) ? anglesNear(D, s.angles) : s.angles;
   const all = { ...frames(angles), D };
   s.view = viewOf(s);

@@ -24,7 +24,7 @@ const DIALS = {
 const SCALARS = ['ride', 'away', 'part', 'whole', 'turn', 'passed', 'together', 'apart', 'time'];
 const FADES = ['machine', 'camera', 'A', 'D', 'ground'];
 const SWING = [0.5, 0.4, 1.1];   // along A, radians a second
-const stopOf = (id) => STOPS.find((one) => one.id === id);
+const stopOf = (id) => STOPS.find((candidate) => candidate.id === id);
 const fadesOf = (stop) => ({ ground: 1, ...stop });
 
 class World {
@@ -343,7 +343,7 @@ class World {
 
   cable() {
     const { turn, passed } = this.state, turns = turn / (2 * PI);
-    const whole = [0, 1, 2].find((one) => Math.abs(turns - one) < 0.01);
+    const whole = [0, 1, 2].find((count) => Math.abs(turns - count) < 0.01);
     if (whole === undefined) return `The camera has turned ${say(turn)}, and the cable has followed.`;
     if (whole === 0) return 'The camera is as it was, and the cable is flat.';
     if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it holds ${whole === 1 ? 'one turn' : 'two turns'}.`;
@@ -625,8 +625,8 @@ class World {
     if (carried?.place !== PLACE) return;
     const { stop, t, eye, angles, rate, ...rest } = carried.content, known = stopOf(stop);
     if (!known) return;
-    const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((one) => Number.isFinite(one) && Math.abs(one) <= most);
-    const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((one) => one.id === stop);
+    const numbers = (list, count, most) => Array.isArray(list) && list.length === count && list.every((number) => Number.isFinite(number) && Math.abs(number) <= most);
+    const share = t >= 0 && t <= 1 ? t : 0, section = this.sections.find((candidate) => candidate.id === stop);
     if (section) {
       const { top, begins, lasts } = this.course(section);
       scrollTo({ top: scrollY + top - begins + share * lasts, behavior: 'instant' });
