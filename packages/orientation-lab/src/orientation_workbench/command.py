@@ -8,6 +8,7 @@ import math
 import re
 import signal
 import sys
+from importlib import import_module
 from pathlib import Path
 
 from .mismatch import mend
@@ -139,14 +140,10 @@ def _add_recording(commands):
     parser.add_argument(
         "--quick", action="store_true", help="skip the filter, which takes the longest"
     )
-    parser.set_defaults(run=_recording)
-
-
-def _recording(chosen):
-    # Explaining needs no NumPy, so only this command loads it.
-    from .recording.command import run
-
-    return run(chosen)
+    # Explaining needs no bench, so only this command loads it.
+    parser.set_defaults(
+        run=lambda chosen: import_module(".recording.command", __package__).run(chosen)
+    )
 
 
 def _given(argument):

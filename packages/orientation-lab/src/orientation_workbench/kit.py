@@ -98,7 +98,9 @@ def convention_of(
     for angles in _TURNS:
         # The same three numbers as angles, or the orientation that they make as something else.
         arguments = (
-            (np.array(angles),) if takes == "Euler angles" else TAKES[takes](_dcm_of(angles))
+            (np.array(angles),)
+            if takes == "Euler angles"
+            else TAKES[takes](dcm_from_body_fixed(angles, "zxy"))
         )
         asked.append(np.concatenate([np.ravel(argument) for argument in arguments]))
         answered.append(np.asarray(function(*arguments), float))
@@ -123,10 +125,6 @@ def convention_of(
         best.first["choices"], best.second["choices"], relation["inverse"], relation["body"],
         relation["world"], found.faults,
     )  # fmt: skip
-
-
-def _dcm_of(angles):
-    return dcm_from_body_fixed(angles, "zxy")
 
 
 #: Words of an expectation, and the group of a reading that each is of.

@@ -11,8 +11,9 @@ import pytest
 from formats import DEG, FORMS, GRAVITY, core_motion, recording
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
-from simulated_recordings import NAMES, as_text, simulate
+from simulated_recordings import NAMES, as_text, simulate, unit
 
+from orientation import dcms_after_turns
 from orientation_workbench.command import main
 from orientation_workbench.recording import RecordingError, examine
 from orientation_workbench.recording.allan import allan_deviation, noise_of
@@ -59,6 +60,24 @@ def test_an_honest_recording_has_no_red_light_and_its_numbers_are_right():
         np.arccos(np.clip(np.einsum("ni,ni->n", true[:, :, 2], judgement.dcms[:, :, 2]), -1, 1))
     )
     assert np.sqrt((tilt**2).mean()) < 3 * max(judgement.claimed, judgement.found) < 1
+
+
+def test_on_a_foot_pushes_neither_accuse_a_unit_nor_exclude_the_true_axes():
+    """A stride a second: rotations and pushes of five harmonics, which never come to rest."""
+    strides = 2 * np.pi * np.outer(np.arange(0, 20, 0.01), range(1, 6))
+    for seed in (0, 1, 2, 4):
+        weights = np.random.default_rng(seed).normal(size=(10, 6))
+        waves = np.concatenate([np.sin(strides), np.cos(strides)], axis=1) @ weights
+        dcms = dcms_after_turns(np.eye(3), np.radians(waves[1:, :3]))
+        given = {
+            "time": np.arange(0, 20, 0.01),
+            "gyroscope": 100 * waves[:, :3],
+            "accelerometer": np.einsum("nij,nj->ni", dcms, [0, 0, GRAVITY] + 5 * waves[:, 3:]),
+            "magnetometer": 0 * dcms[:, 0],
+        }
+        names = [name + " [deg/s]" * name.startswith("gyr") for name in NAMES]
+        report = str(examine(as_text(given, names), judged=False))
+        assert "RED " not in report and "nothing determines them" in report, (seed, report)
 
 
 def test_a_hand_is_told_from_a_table():
@@ -352,8 +371,7 @@ def spoilt_by_iron(seed, poses, random):
     recording = simulate(seed, poses=poses)
     turn = Rotation.random(random_state=seed).as_matrix()
     soft = turn @ np.diag(random.uniform([0.75, 0.9, 1.1], [0.9, 1.1, 1.35])) @ turn.T
-    hard = random.normal(size=3)
-    hard = hard / np.linalg.norm(hard) * random.uniform(10, 60)
+    hard = unit(random.normal(size=3)) * random.uniform(10, 60)
     return recording | {"magnetometer": recording["magnetometer"] @ soft.T + hard}
 
 
@@ -415,15 +433,13 @@ def test_an_ellipsoid_is_found_up_to_a_turn_or_refused(count=20):
     for seed in range(count):
         turn = Rotation.random(random_state=seed).as_matrix()
         soft = turn @ np.diag(random.uniform(0.7, 1.4, 3)) @ turn.T
-        ways = random.normal(size=(60, 3))
-        ways = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+        ways = unit(random.normal(size=(60, 3)))
         values = 45 * ways @ soft.T + random.uniform(-60, 60, 3) + 0.2 * random.normal(size=(60, 3))
         fit = fit_ellipsoid(values)
         found = (values - fit.offset) @ fit.shape.T / fit.strength
         off = np.linalg.norm(np.cross(found, ways), axis=1) / np.linalg.norm(found, axis=1)
         assert np.degrees(np.arcsin(off)).max() < 2 and fit.uncertainty < 0.03
-        level = ways * [1, 1, 0.01]  # all the poses lie nearly in a plane
-        level = 45 * level / np.linalg.norm(level, axis=1, keepdims=True)
+        level = 45 * unit(ways * [1, 1, 0.01])  # all the poses lie nearly in a plane
         assert fit_ellipsoid(level @ soft.T + 20 + 0.2 * random.normal(size=(60, 3))) is None
 
 

@@ -1,5 +1,7 @@
 """A constant turn before or after (a mounting, a hand and an eye): what only several poses tell."""
 
+import itertools
+
 import numpy as np
 
 from orientation import dcm_from_two_directions, nearest_dcm, rotation_vector_from_dcm
@@ -21,35 +23,30 @@ def mountings(first, second, noise):
     if first.dcms.shape[1] < ON_ONE_SIDE:
         return []
     found = []
-    for i, reading in enumerate(first.readings):
-        for j, other in enumerate(second.readings):
-            in_both, rarity, _ = of_both(reading, other)
-            for inverse in (False, True):
-                faults = in_both + inverse
-                if faults >= MOST_FAULTS:
-                    continue
-                start = np.swapaxes(first.dcms[i], -1, -2) if inverse else first.dcms[i]
-                tolerance = 3 * (max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise)
-                for body, world in _constant_turns(start, second.dcms[j]):
-                    both = faults + (body is not None) + (world is not None)
-                    gap = np.abs(
-                        (np.eye(3) if body is None else body)
-                        @ start
-                        # fmt: skip
-                        @ (np.eye(3) if world is None else world)
-                        - second.dcms[j]
-                    ).max()
-                    if gap <= tolerance and both <= MOST_FAULTS:
-                        relation = {
-                            "inverse": inverse,
-                            "hand": False,
-                            "body": SAME_AXES,
-                            "world": SAME_AXES,
-                            "body turn": body,
-                            "world turn": world,
-                        }
-                        found.append(Chain(reading, other, relation, both, rarity, float(gap)))
-                        break
+    for (i, reading), (j, other), inverse in itertools.product(
+        enumerate(first.readings), enumerate(second.readings), (False, True)
+    ):
+        in_both, rarity, _ = of_both(reading, other)
+        faults = in_both + inverse
+        if faults >= MOST_FAULTS:
+            continue
+        start = np.swapaxes(first.dcms[i], -1, -2) if inverse else first.dcms[i]
+        tolerance = 3 * (max(first.doubts[i] + second.doubts[j], SINGLE_PRECISION) + noise)
+        for body, world in _constant_turns(start, second.dcms[j]):
+            both = faults + (body is not None) + (world is not None)
+            left, right = (np.eye(3) if turn is None else turn for turn in (body, world))
+            gap = np.abs(left @ start @ right - second.dcms[j]).max()
+            if gap <= tolerance and both <= MOST_FAULTS:
+                relation = {
+                    "inverse": inverse,
+                    "hand": False,
+                    "body": SAME_AXES,
+                    "world": SAME_AXES,
+                    "body turn": body,
+                    "world turn": world,
+                }
+                found.append(Chain(reading, other, relation, both, rarity, float(gap)))
+                break
     return sorted(found, key=lambda chain: chain.cost)
 
 

@@ -298,11 +298,6 @@ def _distinct():
     ]) & (np.abs(made - dcm.reshape(9)).max(axis=1) > 1e-6)  # fmt: skip
 
 
-@functools.cache
-def _of_quaternions():
-    return np.array([one["inside"][0] == "quaternion" for one in _inner_relations()])
-
-
 def after_inside(inside, dcms):
     """The orientations that come of reading and putting together by what ``inside`` names."""
     what, read, built, places = inside
@@ -357,7 +352,9 @@ def _inside(first, second, noise):
             gaps = np.abs(made - second.dcms[j]).max(axis=(1, 2, 3))
             # A quaternion that stands on one side is read otherwise there, and not on the way.
             matrices = reading["kind"] == second.readings[j]["kind"] == "matrix"
-            tried_here = _distinct() if matrices else _distinct() & ~_of_quaternions()
+            tried_here = _distinct() & [
+                matrices or relation["inside"][0] != "quaternion" for relation in relations
+            ]
             tried[both + 1 : both + 3] += len(relations) / 2
             # What changes nothing explains nothing.
             fits += [

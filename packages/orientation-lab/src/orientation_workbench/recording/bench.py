@@ -47,6 +47,10 @@ if TYPE_CHECKING:
 
 #: Above this margin the best of 48 assignments is believed.
 BELIEVED = 1.3
+#: Degrees per second, faster than which nothing rotates for a twentieth of the time.
+FASTEST = 10_000
+#: More assignments than these are not listed.
+FEW = 8
 
 
 def examine(
@@ -214,23 +218,32 @@ class _Bench:
         said = unit_of_rates(self.content.groups["gyroscope"].names)
         whole = bool((raw == raw.round()).all())  # as a chip has them
         grid = [unit * np.geomspace(0.45, 2.3, 8) for unit in DEGREES.values() if said or not whole]
-        grid += [np.radians(np.geomspace(0.002, 0.2, 24))] * whole
-        usual, fits = self._quiet_mean(raw), {}
+        grid = np.concatenate(grid + [np.radians(np.geomspace(0.002, 0.2, 24))] * whole)
+        # Nothing that is held or flown rotates faster.
+        fast = np.percentile(np.linalg.norm(raw, axis=1), 95) * grid > np.radians(FASTEST)
+        turning, fits = raw - self._quiet_mean(raw), {}
         for kind in [kind for kind in self.raw if kind != "gyroscope"]:
             # A constant part of a field belongs to the instrument, not to the Earth.
             vector = self.raw[kind] - (_centre(self.raw[kind]) if kind == "magnetometer" else 0)
-            rough = fit_axes(self.time, raw - usual, vector, np.concatenate(grid), longest=12.0)
+            # What hardly turns excludes no axes.
+            ways = vector / np.linalg.norm(vector, axis=1, keepdims=True)
+            if np.ptp(np.percentile(ways, (5, 95), axis=0), axis=0).max() < 0.15:
+                continue
+            scales = grid if fast.all() else grid[~fast]
+            rough = fit_axes(self.time, turning, vector, scales, longest=12.0)
             finer = rough.scale * np.geomspace(0.8, 1.25, 9)
             choices = [
-                fit_axes(self.time, raw - usual, vector, finer, seconds)
-                for seconds in (0.3, 0.6, 1.2)
+                fit_axes(self.time, turning, vector, finer, seconds) for seconds in (0.3, 0.6, 1.2)
             ]
-            fits[kind] = max(choices, key=lambda fit: fit.margin)
+            fit = max(choices, key=lambda fit: fit.margin)
+            # What pushes, as on a foot, or iron leave unexplained must not decide by a little.
+            if fit.margin > 2 or fit.shares.min() < 0.35:
+                fits[kind] = fit
         fit = fits.get("accelerometer")
         if fit is None or fit.margin <= 1.2:
             fit = max(fits.values(), key=lambda fit: fit.margin, default=None)
         names = {scale: unit for unit, scale in DEGREES.items()}
-        if fit is not None and fit.margin > 1.12 and fit.shares.min() < 0.9:
+        if fit is not None and fit.margin > 1.12:
             unit = min(DEGREES.values(), key=lambda scale: abs(np.log(fit.scale / scale)))
             ratio = fit.scale / unit
             counts = whole and (not said or DEGREES[said] != unit or abs(ratio - 1) > 0.2)
@@ -268,7 +281,7 @@ class _Bench:
             )
         self.facts["unit of the gyroscope"] = unit
         most = float(np.degrees(np.percentile(np.linalg.norm(raw, axis=1), 95) * unit))
-        if most > 10_000:
+        if most > FASTEST:
             self.say(
                 "size of the gyroscope",
                 RED,
@@ -278,6 +291,11 @@ class _Bench:
                 "Is it another column, or another unit?",
             )
         self._axes(fits, raw * unit)
+
+    def _pushed(self) -> bool:
+        """Whether pushes are nearly as large as gravity, as those on a foot that walks."""
+        lengths = np.linalg.norm(self.raw["accelerometer"], axis=1)
+        return bool(lengths.std() > 0.6 * np.median(lengths))
 
     def _saturation(self, kind: str) -> None:
         """Whether a sensor stays at its largest value, as when driven past its range."""
@@ -319,10 +337,12 @@ class _Bench:
         """
         fit, field, plain = fits.get("accelerometer"), fits.get("magnetometer"), np.eye(3)
         best, whose, words = None, "accelerometer", "those of the accelerometer"
-        # On a foot pushes drown gravity, which then excludes nothing.
-        if fit is not None and field is not None and fit.shares.min() > 0.8:
-            fit, whose = field, "magnetometer"
-            words = "those of the magnetometer; pushes hide gravity from the accelerometer"
+        if fit is None and field is not None:
+            fit, whose, words = (
+                field,
+                "magnetometer",
+                ("those of the magnetometer; gravity does not determine them"),
+            )
         near = np.flatnonzero(fit.shares <= BELIEVED * fit.shares.min()) if fit is not None else []
         if fit is not None and fit.margin > BELIEVED:
             best = fit.best
@@ -344,28 +364,27 @@ class _Bench:
             best = field.best
             words += f"; gravity alone leaves {len(near)} assignments, and the field decides"
         if best is not None:
-            same = np.allclose(best, plain)
-            mirrored = "; one of the two is left-handed" if np.linalg.det(best) < 0 else ""
+            if not np.allclose(best, plain):
+                mirrored = "; one of the two is left-handed" * bool(np.linalg.det(best) < 0)
+                words = f"along the {whose}'s axes it measures {written(best)}{mirrored}"
             self.say(
                 "axes of the gyroscope",
-                GREEN if same else RED,
-                words
-                if same
-                else f"along the {whose}'s axes it measures {written(best)}{mirrored}",
+                GREEN if np.allclose(best, plain) else RED,
+                words,
                 {},
                 f"Use ({written(best)}) of the gyroscope as its x, y, z.",
             )
             self.facts["axes of the gyroscope"] = best
             rates = rates @ best.T
-        elif fit is not None:
-            ways = [written(ASSIGNMENTS[k]) for k in near[np.argsort(fit.shares[near])]]
+        elif len(self.raw) > 1:
+            ways = [written(ASSIGNMENTS[k]) for k in sorted(near, key=lambda k: fit.shares[k])]
             self.say(
                 "axes of the gyroscope",
                 UNKNOWN,
-                "pushes hide gravity, and nothing else determines them"
-                if fit.shares.min() > 0.8
+                "nothing determines them: it rotates too little, or pushes hide gravity"
+                if fit is None or len(ways) > FEW
                 else f"{len(ways)} assignments fit nearly as well: {'; '.join(ways)}",
-                {"margin": round(fit.margin, 2)},
+                {} if fit is None else {"margin": round(fit.margin, 2)},
                 "Rotate the instrument slowly about all three axes.",
             )
         self.rates, self.still = rates, stretches(self.time, rates)
@@ -474,7 +493,7 @@ class _Bench:
         off = np.abs(fitted.scales / np.median(fitted.scales) - 1)
         odd = np.flatnonzero(off > np.maximum(0.04, 5 * fitted.spreads))
         cut_off = self._cut_off("gyroscope")
-        if len(odd) == 1 and not cut_off and left < 0.7 * fitted.left_alike:
+        if len(odd) == 1 and not cut_off and left < min(np.radians(3), 0.37 * fitted.left_alike):
             axis, factor = "xyz"[odd[0]], float(fitted.scales[odd[0]])
             self.say(
                 "scale of the gyroscope",
@@ -488,7 +507,7 @@ class _Bench:
             return np.where(np.arange(3) == odd[0], factor, 1.0)
         off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else _light(off, 0, 0.05)
-        if cut_off or uncertain > 0.03 or left > np.radians(3 if off < 0.05 else 6):
+        if cut_off or uncertain > 0.03 or left > np.radians(3):
             light = UNKNOWN
         self.say(
             "scale of the gyroscope",
@@ -591,15 +610,22 @@ class _Bench:
         self._saturation("accelerometer")
         quiet = [raw[pose.first : pose.last] for pose in self.still] or [raw]
         unit, gravity, off = unit_of_gravity(np.concatenate(quiet))
-        self.facts["gravity"], self.forces = gravity, raw / gravity
         said = unit_in_brackets(self.content.groups["accelerometer"].names[0])
         wrong = bool(said) and abs(np.log(GRAVITY[said] / gravity)) > 0.2
+        light, why = YELLOW if unit.startswith("counts") else GREEN, "by gravity's length"
+        if wrong and not self.still and self._pushed():
+            unit, gravity, light = said, GRAVITY[said], UNKNOWN
+            why = "by its heading; it is never still, and pushes hide gravity's length"
+        elif wrong:
+            light, why = RED, f"by gravity's length; its heading says {said}"
+        self.facts["gravity"], self.forces = gravity, raw / gravity
+        advice = {RED: f"Read it as {unit}.", UNKNOWN: "Lay it down for some seconds."}
         self.say(
             "unit of the accelerometer",
-            RED if wrong else YELLOW if unit.startswith("counts") else GREEN,
-            f"{unit}, by gravity's length" + (f"; its heading says {said}" if wrong else ""),
+            light,
+            f"{unit}, {why}",
             {"off": round(off, 4)},
-            f"Read it as {unit}." if wrong else "",
+            advice.get(light, ""),
         )
         # A hand that holds it pushes it as well.
         for poses in ([pose for pose in self.still if pose.still], self.still):
@@ -787,11 +813,12 @@ class _Bench:
         step = float(np.median(steps))
         if self.rates is None or self.content.counted or len(self.time) * step < 3:
             return
-        seen = [self.raw[kind] for kind in self.raw if kind != "gyroscope"]
-        leaps = np.all([_leaps(self.rates, values, step) for values in seen], axis=0)
+        seen = [kind for kind in self.raw if kind != "gyroscope"]
+        leaps = np.all([_leaps(self.rates, self.raw[kind], step) for kind in seen], axis=0)
         # A few leaps are gaps; many are another fault, in the unit or the axes.
         # A clock whose steps are not all alike measures time, and does not count it on.
-        if len(seen) > 1 and 0 < leaps.mean() < 0.02 and np.ptp(steps) < 0.02 * step:
+        counted_on = np.ptp(steps) < 0.02 * step and len(seen) > 1 and not self._pushed()
+        if counted_on and 0 < leaps.mean() < 0.02:
             return self.say(
                 "missing samples",
                 RED,
@@ -815,11 +842,11 @@ class _Bench:
             middle = len(by_lag) // 2
             if by_lag[middle + lag] < (1.03 if lag < 0 else 0.97) * by_lag[middle]:
                 kind, lag = "gyroscope", -lag
-        others = "others" if len(seen) > 1 else "gyroscope"
         self.say(
             f"delay of the {kind}",
             RED,
-            f"its values fit the rotations of the {others} best {1000 * abs(lag) * step:.0f} ms "
+            f"its values fit the rotations of the {'others' if len(seen) > 1 else 'gyroscope'} "
+            f"best {1000 * abs(lag) * step:.0f} ms "
             f"{'earlier' if lag > 0 else 'later'}: it comes {'late' if lag > 0 else 'early'}",
             {"seconds": round(lag * step, 3)},
             f"First of all, shift its times {'back' if lag > 0 else 'forward'} by that much.",

@@ -147,21 +147,18 @@ def read_content(
         if warm and warmth is None and np.isfinite(table.values[:, warm[0]]).all():
             warmth = time, table.values[:, warm[0]]
     chosen = _roles(groups)
-    for group in groups:
-        if (
-            group.called in ("gyroscope", "accelerometer", "magnetometer")
-            and not np.ptp(group.values, axis=0).any()
-        ):
-            remarks.append(f"{', '.join(group.names)} never change in {len(group.values)} rows")
+    remarks += [
+        f"{', '.join(group.names)} never change in {len(group.values)} rows"
+        for group in groups
+        if group.called in SENSORS and not np.ptp(group.values, axis=0).any()
+    ]
     remarks += _with_gravity(chosen, groups)
-    if not {"gyroscope", "accelerometer", "magnetometer"} & set(chosen):
+    if not set(SENSORS) & set(chosen):
         raise RecordingError(_question(tables, chosen))
     used = {tuple(group.names) for group in chosen.values()}
     unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
-    first = next(
-        kinds[kind] for kind in ("gyroscope", "accelerometer", "magnetometer") if kind in kinds
-    )
+    first = next(kinds[kind] for kind in SENSORS if kind in kinds)
     clock, counted, said = next(
         (*clock, re.search(RATE, table.head, re.IGNORECASE))
         for table, clock in zip(tables, clocks, strict=True)
@@ -271,11 +268,12 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             counts = bool(re.search(COUNTS, column.lower()))
             candidates.append((float(precise + 0.5 * even - counts - 0.01 * k), k))
     if not candidates:
-        words = "there is no column of time"
-        for k, column in enumerate(table.columns):
-            steps = np.diff(table.values[:, k])
-            if re.search(TIME, column.lower()) and (steps < 0).any():
-                words += f": {column} goes back {int((steps < 0).sum())} times"
+        back = (np.diff(table.values, axis=0) < 0).sum(axis=0)
+        words = "there is no column of time" + "".join(
+            f": {column} goes back {times} times"
+            for column, times in zip(table.columns, back, strict=True)
+            if re.search(TIME, column.lower()) and times
+        )
         return None, np.arange(len(table.values), dtype=float), words, True
     k = max(candidates)[1]
     column, values = table.columns[k], table.values[:, k]

@@ -101,18 +101,20 @@ class Examined(NamedTuple):
 
 def as_text(examined: Examined) -> str:
     """The report as plain text: a sentence for each verdict, and what to do."""
-    lines = [f"{examined.name}"]
-
-    def add(words: str, first: str, rest: str) -> None:
-        lines.extend(
-            wrap(words, WIDTH, initial_indent=first, subsequent_indent=rest, break_long_words=False)
+    rows = [
+        row
+        for verdict in examined.verdicts
+        for row in (
+            f"{LIGHTS[verdict.light]} {verdict.about}: {verdict.words}",
+            f"  -> {verdict.advice}" if verdict.advice else "",
         )
-
-    for verdict in examined.verdicts:
-        add(f"{verdict.about}: {verdict.words}", f"{LIGHTS[verdict.light]} ", "     ")
-        if verdict.advice:
-            add(verdict.advice, "  -> ", "     ")
-    return "\n".join(lines)
+    ]
+    lines = [
+        line
+        for row in rows
+        for line in wrap(row, WIDTH, subsequent_indent=" " * 5, break_long_words=False)
+    ]
+    return "\n".join([examined.name, *lines])
 
 
 def as_data(examined: Examined) -> dict[str, object]:

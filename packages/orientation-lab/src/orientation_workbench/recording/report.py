@@ -126,13 +126,17 @@ def as_fragment(examined: Examined) -> str:
 
 def _in_short(examined: Examined) -> str:
     """Which lights are not green, the worst first."""
-    lines = []
-    for light in ("wrong", "look", "cannot tell"):
-        about = list(
-            dict.fromkeys(verdict.about for verdict in examined.verdicts if verdict.light == light)
+    lit = {
+        light: dict.fromkeys(
+            verdict.about for verdict in examined.verdicts if verdict.light == light
         )
-        if about:
-            lines.append(f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}.")
+        for light in ("wrong", "look", "cannot tell")
+    }
+    lines = (
+        f"<b>{light.capitalize()}</b>: {escape(', '.join(about))}."
+        for light, about in lit.items()
+        if about
+    )
     return " ".join(lines) or "All is as it should be."
 
 
