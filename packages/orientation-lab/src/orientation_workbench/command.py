@@ -59,7 +59,7 @@ def _add_explain(commands):
         help="name the mix-up between two programs that disagree",
         description="Name the mix-up between two programs from their numbers for the same poses.",
         epilog="Exit codes: 0 if both agree, 1 if a mix-up is named, 2 if no mix-up fits or the "
-        "numbers cannot decide, 3 if the input cannot be read.",
+        "numbers do not determine the cause, 3 if the input cannot be read.",
     )
     parser.add_argument("first", help="a file, or the numbers themselves, one pose per line")
     parser.add_argument("second", help="the same poses, from the other program")

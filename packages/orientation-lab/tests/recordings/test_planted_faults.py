@@ -23,7 +23,7 @@ NAMED = {
     "gyroscope drifts": ("drift of the bias", "about {axis}"),
     "gyroscope drifts with temperature": ("drift of the bias", "about {axis} .*temperature"),
     "gyroscope scale of an axis": ("scale of the gyroscope", "Multiply {axis} by"),
-    "gyroscope scale": ("scale of the gyroscope", "Multiply what it says by"),
+    "gyroscope scale": ("scale of the gyroscope", "Multiply its values by"),
     "gyroscope axis reversed": ("axes of the gyroscope", "-{axis}"),
     "gyroscope axes exchanged": ("axes of the gyroscope", "Use"),
     "gyroscope unit": ("unit of the gyroscope", "Read it as rad/s"),

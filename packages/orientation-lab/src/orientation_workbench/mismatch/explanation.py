@@ -489,7 +489,7 @@ def sentences(explanation):
         yield "The two sides differ by " + _count(explanation.faults) + ":"
     else:
         yield (
-            f"The numbers cannot decide. The simplest reading of {several} is "
+            f"These numbers do not determine the cause. The simplest explanation of {several} is "
             + _count(explanation.faults)
             + ":"
         )

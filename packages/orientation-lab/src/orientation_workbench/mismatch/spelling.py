@@ -59,8 +59,8 @@ SPELLING = {
     "cut out": (
         (
             r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
-            "a whole file of BVH: cut the three angles of one joint out of the lines below MOTION, "
-            "and say their sequence, which is that of the joint's CHANNELS",
+            "a whole BVH file. From a line below MOTION, paste only the three angles of one joint, "
+            "and give their sequence, which is that of the joint's CHANNELS",
         ),
     ),
     # In this order: pattern and what takes its place; the first four before tables too.

@@ -65,7 +65,7 @@ def _sequences():
     return [
         choice(
             sequence,
-            f"the turns are about {'-'.join(sequence)}",
+            f"the sequence of rotations is {'-'.join(sequence)}",
             common.get(sequence, 0.6 if sequence in PROPER_EULER else 0.4),
         )
         for sequence in SEQUENCES

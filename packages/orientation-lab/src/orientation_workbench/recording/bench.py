@@ -156,7 +156,8 @@ class _Bench:
                 self.say(
                     "headings",
                     RED,
-                    f"{', '.join(group.names)} is called {group.called} and behaves like {kind}",
+                    f"{', '.join(group.names)}: the headings say {group.called}, but the values "
+                    f"behave like those of the {kind}",
                 )
         if self.content.counted:
             words = f"{self.content.clock}: the rate is not known"
@@ -210,7 +211,7 @@ class _Bench:
 
     def gyroscope(self) -> None:
         if "gyroscope" not in self.raw:
-            return self.say("gyroscope", UNKNOWN, "there is none in the file")
+            return self.say("gyroscope", UNKNOWN, "the file has none")
         raw = self.raw["gyroscope"]
         self._saturation("gyroscope")
         if self.content.counted:  # of which the clock has asked already
@@ -476,7 +477,7 @@ class _Bench:
     def _scale(self, fitted: ScaleFit, poses: Sequence[Stretch]) -> float | Array:
         """What the gyroscope is to be multiplied by, if that is known."""
         (common, uncertain), left = fitted.common, fitted.left
-        carries = f"its turns carry gravity through {len(poses)} poses"
+        carries = f"its rotations carry gravity through {len(poses)} poses"
         self.facts["scale of the gyroscope"] = common
         if self.counts:
             self.facts["unit of the gyroscope"] *= common
@@ -485,7 +486,7 @@ class _Bench:
                 "unit of the gyroscope",
                 RED if unit_of_rates(self.content.groups["gyroscope"].names) else YELLOW,
                 f"counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
-                f"± {np.degrees(uncertain * unit):.1g} °/s, since then {carries}",
+                f"± {np.degrees(uncertain * unit):.1g} °/s, for then {carries}",
                 {"rad/s": unit},
                 f"Multiply by {np.degrees(unit):.4g} to have °/s.",
             )
@@ -498,8 +499,8 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 RED,
-                f"what it says of {axis} needs another scale than the rest: with {factor:.3f} "
-                f"{carries} to {np.degrees(left):.1f}°, and with one scale for all axes to "
+                f"the {axis} axis needs a scale of its own: with {factor:.3f} {carries} with an "
+                f"error of {np.degrees(left):.1f}°, and with one scale for all axes "
                 f"{np.degrees(fitted.left_alike):.1f}°",
                 {"axis": axis, "scale": round(factor, 4)},
                 f"Multiply {axis} by {factor:.3f}.",
@@ -512,9 +513,9 @@ class _Bench:
         self.say(
             "scale of the gyroscope",
             light,
-            f"{common:.3f} ± {uncertain:.3f}: {carries} to {np.degrees(left):.1f}°",
+            f"{common:.3f} ± {uncertain:.3f}: {carries} with an error of {np.degrees(left):.1f}°",
             {"scale": round(common, 4), "±": round(uncertain, 4), "poses": len(poses)},
-            f"Multiply what it says by {common:.3f}." if light in (RED, YELLOW) else "",
+            f"Multiply its values by {common:.3f}." if light in (RED, YELLOW) else "",
         )
         return common if light in (RED, YELLOW) else 1.0
 
@@ -605,7 +606,7 @@ class _Bench:
 
     def accelerometer(self) -> None:
         if "accelerometer" not in self.raw:
-            return self.say("accelerometer", UNKNOWN, "there is none in the file")
+            return self.say("accelerometer", UNKNOWN, "the file has none")
         raw = self.raw["accelerometer"]
         self._saturation("accelerometer")
         quiet = [raw[pose.first : pose.last] for pose in self.still] or [raw]

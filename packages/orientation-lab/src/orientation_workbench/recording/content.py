@@ -196,7 +196,7 @@ def _told(table: Table, columns: str) -> Table:
         first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
         if not told or not 1 <= first <= last <= len(names):
             raise RecordingError(
-                f"{entry!r} says nothing of the {len(names)} columns: an entry is like "
+                f"{entry!r} names none of the {len(names)} columns: write an entry such as "
                 "gyroscope=2-4 or gyroscope=2-4:rad/s"
             )
         axes = {
@@ -218,15 +218,15 @@ def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
     rows = [" ".join(f"{value:.6g}" for value in row[:16]) for row in table.values[:3]]
     shown = "\n".join(f"    {row}" for row in [" ".join(table.columns[:16]), *rows])
     trajectory = (
-        "It holds orientations, as a trajectory does: that is the result of instruments, and none "
-        "of them is here. "
+        "It holds orientations, as a trajectory does. They are computed from a sensor's values, "
+        "and the file has none of those. "
         if "quaternion" in chosen
         else ""
     )
     return (
-        f"nothing in this file says which columns are an instrument's. {trajectory}Its headings "
-        f"and first rows are\n{shown}\nSay it, columns counted from 1: --columns 'time=1 "
-        "gyroscope=2-4:rad/s accelerometer=5-7'"
+        f"this file does not say which columns come from which sensor. {trajectory}Its headings "
+        f"and first rows are\n{shown}\nName the columns, counted from 1, for example: --columns "
+        "'time=1 gyroscope=2-4:rad/s accelerometer=5-7'"
     )
 
 

@@ -116,8 +116,7 @@ function namedColumns(names, spelling) {
 }
 
 function rowsOfLines(text, spelling) {
-  return text.split(/[\n;]/).flatMap((line) => line.split(/\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/))
-    .map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
+  return text.split(/[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/).map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
 }
 
 // Points where there are decimal commas: one in each of three numbers or more, and no point.
@@ -170,11 +169,8 @@ function labelled(text, spelling) {
 
 function halfUnit(found) {
   const sizes = found.map((number) => Math.abs(Number(number))), largest = Math.max(...sizes);
-  let decimals = 0;
-  found.forEach((number, k) => {
-    const [mantissa, power] = number.toLowerCase().split('e');
-    if (sizes[k] >= 0.1 * largest) decimals = Math.max(decimals, (mantissa.split('.')[1] ?? '').length - Number(power ?? 0));
-  });
+  const large = found.filter((_, k) => sizes[k] >= 0.1 * largest).map((number) => number.toLowerCase().split('e'));
+  const decimals = Math.max(...large.map(([mantissa, power]) => (mantissa.split('.')[1] ?? '').length - Number(power ?? 0)));
   return decimals > 0 ? 0.5 * 10 ** -decimals : 0;
 }
 
@@ -235,12 +231,8 @@ const isUnit = (vectors, doubt) => vectors.every((vector) => Math.abs(length(vec
 function kindsOf(numbers, kind, doubt, name) {
   const count = numbers[0].length;
   if (kind !== null && COUNT[kind] !== count) throw new Error(`the ${name} side holds ${count} numbers a pose; a ${kind} takes ${COUNT[kind]}`);
-  let kinds = kind === null ? null : [kind];
-  if (!kinds) {
-    if (count === 9) kinds = ['matrix'];
-    else if (count === 3) kinds = ['Euler angles', 'rotation vector'];
-    else kinds = isUnit(numbers, doubt + NORMALISED / 2) ? ['quaternion'] : ['axis and angle'];
-  }
+  const four = count === 4 && isUnit(numbers, doubt + NORMALISED / 2) ? ['quaternion'] : ['axis and angle'];
+  const kinds = kind !== null ? [kind] : { 9: ['matrix'], 3: ['Euler angles', 'rotation vector'] }[count] ?? four;
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
   if (kinds[0] === 'quaternion' && !isUnit(numbers, Math.max(doubt, 0.01))) {
     const worst = numbers.map(length).reduce((worst, size) => (Math.abs(size - 1) > Math.abs(worst - 1) ? size : worst));
@@ -307,10 +299,8 @@ function numbersFromDcm({ kind, choices }, dcm) {
 }
 
 function doubtOf({ kind, choices }, half) {
-  if (kind === 'matrix') return half;
-  if (kind === 'quaternion') return 4 * half;
-  if (kind === 'axis and angle') return (4 + radiansOf(choices)) * half;
-  return 3 * half * radiansOf(choices);
+  const size = radiansOf(choices);
+  return half * ({ matrix: 1, quaternion: 4, 'axis and angle': 4 + size }[kind] ?? 3 * size);
 }
 
 // ---- the table -----------------------------------------------------------------------------------------
@@ -878,8 +868,6 @@ const turnInPython = (dcm) => `np.array(${rowsInPython(dcm.map((row) => row.map(
   const rounded = Number(entry.toFixed(6)) + 0;
   return Number.isInteger(rounded) ? `${rounded}.0` : String(rounded);
 })))})`;
-const ascending = (places) => places.every((place, k) => place === k);
-const subscript = (places) => (ascending(places) ? '' : `[[${places.join(', ')}]]`);
 const sorted = (places) => places.every((place, k) => k === 0 || places[k - 1] <= place);
 const pick = (name, places) => (sorted(places) ? name : `${name}[[${places.join(', ')}]]`);
 const signed = (choices, name) => (choices.signs === '+++' ? name : `(${name} * np.array([${[...choices.signs].map((sign) => `${sign}1`.replace('+', '')).join(', ')}]))`);
@@ -901,11 +889,8 @@ function readInPython({ kind, choices }, name) {
 function writeInPython({ kind, choices }, matrix) {
   if (kind === 'matrix') return matrix;
   const there = matrix.endsWith('.T') && !matrix.includes('@') ? matrix.slice(0, -2) : matrix.includes('@') ? `(${matrix}).T` : `${matrix}.T`;
-  if (kind === 'quaternion') return `Rotation.from_matrix(${there}).as_quat()${subscript(indices('xyzw', choices.order))}`;
-  if (kind === 'Euler angles') {
-    return signed(choices, `Rotation.from_matrix(${there}).as_euler('${letters(choices)}'${inDegrees(choices)})`)
-      + subscript([...choices.places].map((which) => Number(which) - 1));
-  }
+  if (kind === 'quaternion') return pick(`Rotation.from_matrix(${there}).as_quat()`, indices('xyzw', choices.order));
+  if (kind === 'Euler angles') return pick(signed(choices, `Rotation.from_matrix(${there}).as_euler('${letters(choices)}'${inDegrees(choices)})`), [...choices.places].map((which) => which - 1));
   const whole = `Rotation.from_matrix(${there}).as_rotvec(${inDegrees(choices).slice(2)})`;
   if (kind === 'rotation vector') return whole;
   return choices['place of the angle'] === 'first' ? `np.concatenate([[np.linalg.norm((v := ${whole}))], v / np.linalg.norm(v)])`

@@ -8,7 +8,7 @@ import { button, calm, change, choice, element, follow, glide, group, liveText, 
 const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
 // Of one engine and its prose: what the answer is called.
-const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers cannot decide.',
+const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers do not determine the cause.',
   unrelated: 'Nothing that was tried explains these numbers.' };
 
 const ONE_QUESTION = 'One question decides.';
@@ -208,7 +208,7 @@ function answer(found, table, declare) {
     return [element('p', { class: 'heading' }, ONE_QUESTION), element('p', {}, found.question), element('ul', {}, ...found.names.map((name) => element('li', {}, ...told(name))),
       element('li', {}, table.none))];
   }
-  if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest reading is:'));
+  if (found.verdict === 'undecided') parts.push(element('p', {}, 'The simplest explanation is:'));
   if (found.faults.length) {
     const links = taughtBy(best, table, found.ways);
     parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${capital(fault)}. `,
