@@ -249,7 +249,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     for content, words in ((b"ULog\1", "ulog2csv"), (b"\xd0\xcf\x11\xe0\0\0", "save it as CSV")):
         with pytest.raises(RecordingError, match=words):
             read_tables(content, "file")
-    with pytest.raises(RecordingError, match="which columns are an instrument"):
+    with pytest.raises(RecordingError, match="which columns come from which sensor"):
         read_content(
             "\n".join(
                 ["time,price,count,age", *(f"{k},{k * 3 % 7},{k % 5},{k % 3}" for k in range(50))]

@@ -227,7 +227,7 @@ class _Bench:
             # A constant part of a field belongs to the instrument, not to the Earth.
             vector = self.raw[kind] - (_centre(self.raw[kind]) if kind == "magnetometer" else 0)
             # What hardly turns excludes no axes.
-            ways = vector / np.linalg.norm(vector, axis=1, keepdims=True)
+            ways = vector / np.maximum(np.linalg.norm(vector, axis=1, keepdims=True), 1e-12)
             if np.ptp(np.percentile(ways, (5, 95), axis=0), axis=0).max() < 0.15:
                 continue
             scales = grid if fast.all() else grid[~fast]
@@ -537,7 +537,8 @@ class _Bench:
                 np.radians(0.5),
             )
             fits = [fit_scales(self.time, self.rates * scale, self.forces, run) for run in runs]
-            if not all(fit and fit.left < 0.15 for fit in fits):
+            # Five poses hardly say more than the scales and biases that are found from them.
+            if min(map(len, runs)) < 6 or not all(fit and fit.left < 0.15 for fit in fits):
                 return False
             known = [(fit.bias, fit.bias_spreads) for fit in fits]
             if lying:
@@ -650,7 +651,11 @@ class _Bench:
         if light == YELLOW and self._cut_off("accelerometer"):
             words += ", as where it is cut off"
         elif light == YELLOW and left >= 0.5 * spread:
-            words += ", and no offset or scale halves their deviation"
+            light, advice, words = (
+                UNKNOWN,
+                "Lay it down in nine poses, each leaning another way.",
+                f"{words}. No offset or scale explains that, but the hand that holds it may",
+            )
         elif light == YELLOW:
             words += (
                 f". {name} would take their deviation from {spread:.3f} to {left:.3f}, checked on "
