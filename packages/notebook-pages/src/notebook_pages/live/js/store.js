@@ -36,10 +36,10 @@ export function fingerprint(text) {
   return (4294967296 * (2097151 & b) + (a >>> 0)).toString(36);
 }
 
-// What the browser had no room for, by its key: it lasts as long as the page, for all scripts of which this is a part.
+// Values for which the browser had no room, by key: they last as long as the page, for all scripts that include this.
 const unkept = (globalThis.unkept ??= new Map());
 
-// What the browser has under a key of any kind; null also where it forbids to ask.
+// The browser's value of a key of any kind; null also if access is forbidden.
 function found(key) {
   try {
     return localStorage.getItem(key);
@@ -65,12 +65,12 @@ export class Store {
     this.database = `JupyterLite Storage - ${site}lite/`;
   }
 
-  // Whether a newer version has kept things.
+  // Whether a newer version has stored data.
   get isNewer() {
     return parsed(found(`${this.prefix}version`)) > VERSION;
   }
 
-  // What the browser has, without what found no room.
+  // The browser's entries, without those that found no room.
   kept(key) {
     return this.isNewer ? null : parsed(found(this.prefix + key));
   }
@@ -79,7 +79,7 @@ export class Store {
     return unkept.get(this.prefix + key) ?? this.kept(key);
   }
 
-  // Returns whether the browser has kept it.
+  // Returns whether the browser has stored it.
   put(key, value) {
     try {
       if (this.isNewer) throw new Error(NEWER);
@@ -93,7 +93,7 @@ export class Store {
     }
   }
 
-  // Keep something as long as the page lasts.
+  // Keep a value as long as the page lasts.
   hold(key, value) {
     unkept.set(this.prefix + key, value);
   }
@@ -114,18 +114,19 @@ export class Store {
     return [...new Set(own)].map((key) => key.slice(this.prefix.length));
   }
 
-  // The entries whose keys begin with ``start``: what follows it, and the value.
+  // The entries whose keys begin with ``start``: the rest of the key, and the value.
   entries(start = "") {
     return this.keys().filter((key) => key.startsWith(start)).map((key) => [key.slice(start.length), this.read(key)])
       .filter(([, value]) => value !== null);
   }
 
-  // Whether what the reader has written would be lost with the page.
+  // Whether the reader's text would be lost with the page.
   holdsTexts() {
     return [...unkept.keys()].some((key) => key.startsWith(`${this.prefix}answer `) || key.startsWith(`${this.prefix}earlier `));
   }
 
-  // Calls ``use`` with each key that another tab writes, and the text; with null for a key where it took away all.
+  // Call ``use`` with each key that another tab writes, and its text; with null as the key if the tab cleared
+  // everything.
   listen(use) {
     addEventListener("storage", ({ key, newValue }) => {
       if (key === null || key.startsWith(this.prefix)) use(key && key.slice(this.prefix.length), newValue);
@@ -146,7 +147,7 @@ export class Store {
     return pages;
   }
 
-  // Make one page's record what ``wanted`` says.
+  // Make one page's record equal to ``wanted``.
   keepRecord(page, wanted) {
     const before = this.record()[page] ?? blank(), start = `record ${encodeURI(page)}`;
     let kept = true;
@@ -161,8 +162,8 @@ export class Store {
     return kept;
   }
 
-  // Add what a record says that somebody else wrote, as far as it is one. Of an answer that is here, too, the first try
-  // stays, and what was right.
+  // Add the entries of a foreign record, as far as it is valid. Of an answer that exists here, too, the first try and
+  // the right answers stay.
   takeRecord(pages) {
     let kept = true;
     for (const [page, found] of Object.entries(isObject(pages) ? pages : {})) {
@@ -181,9 +182,9 @@ export class Store {
     return kept;
   }
 
-  // --- what coursework knows of each question ------------------------------------------------------
+  // --- coursework's record of each question --------------------------------------------------------
 
-  // Its file, and when it was last changed; null where nothing is known.
+  // The text of its file, and when it was last changed; null if there is none.
   tries() {
     const all = this.entries("question ").sort(([one], [other]) => (one < other ? -1 : 1));
     if (!all.length) return null;
@@ -191,14 +192,14 @@ export class Store {
     return { text, at: Math.max(...all.map(([, { at }]) => at)) };
   }
 
-  // Who has said to work here, as names are compared; "" for nobody.
+  // The student ID that was given here, in the form in which IDs are compared; "" if there is none.
   get student() {
     return plainName(this.read("coursework me.txt")?.text ?? "");
   }
 
-  // How a question stands: its outcome with the reader's own numbers; or, where nothing is known with these, what is known
-  // with others, and whose those were, "" for everybody's. An entry without a name is of a question that had one set of
-  // numbers: it counts for every reader until the question ``varies``.
+  // The state of a question: its outcome with the reader's own numbers or, if there is none, the record with other
+  // numbers and whose they were ("" for the default ones). An entry without a name belongs to a question with a single
+  // set of numbers, and counts for every reader until the question ``varies``.
   standing(name, varies) {
     const tried = this.read(`question ${name}`)?.tried;
     if (!isObject(tried)) return null;
@@ -211,8 +212,8 @@ export class Store {
     return other ? { outcome: other.outcome, whose: whose(other) } : null;
   }
 
-  // Keep what a file says of the questions that it changes; ``base`` is the file that it was made from. What another
-  // tab has written meanwhile is joined with it.
+  // Store the entries of a file for the questions that it changes; ``base`` is the file that it was made from. Changes
+  // by other tabs in the meantime are joined with it.
   keepTries(text, at = Date.now(), base = "") {
     const was = sound(base);
     let kept = true;
@@ -228,20 +229,20 @@ export class Store {
 }
 
 const HELP = ["mistake", "hint", "solution"]; // from little to much, as in coursework.checking.reply
-// In the entry of a question: what is known of its other variants, by number (see coursework.checking.progress).
+// The field of a question's entry for its other variants, by number (see coursework.checking.progress).
 const OTHERS = "other variants";
 
-// A damaged record is none, as for coursework.
+// A damaged record counts as none, as for coursework.
 function sound(text) {
   const found = parsed(text);
   return isObject(found) ? found : {};
 }
 
-// Names as coursework compares them: however their letters are stored, without invisible characters and spaces around
-// them, and whatever their capitals.
+// Names in the form in which coursework compares them: Unicode forms, invisible characters, surrounding spaces and
+// capitals make no difference.
 export const plainName = (name) => name.normalize("NFKC").replace(/\p{Cf}/gu, "").trim().split(/\s+/).join(" ").toUpperCase();
 
-// Whether two entries are of the same numbers; one of a question without variants knows its place among them alone.
+// Whether two entries have the same numbers; one of a question without variants knows only its place among them.
 const ofSameNumbers = (first, second) =>
   first.numbers && second.numbers ? first.numbers === second.numbers : (first.variant ?? 0) === (second.variant ?? 0);
 
@@ -263,7 +264,7 @@ function joinTries(older, newer) {
   return rest.length ? { ...own, [OTHERS]: others } : own;
 }
 
-// Of two entries with the same numbers: what was right stays right, and no answer, hint or help is forgotten.
+// Join two entries with the same numbers: a right answer stays right, and no answer, hint or help is lost.
 function joinEntries(older, newer) {
   const joined = { ...older, ...newer };
   const right = [older, newer].find(({ outcome }) => outcome === "correct");
@@ -279,7 +280,7 @@ function joinEntries(older, newer) {
   return joined;
 }
 
-// Two files of what coursework knows, made one.
+// Join two files of coursework's record.
 export function joinProgress(older, newer) {
   const [a, b] = [sound(older), sound(newer)];
   const both = { ...a, ...b };

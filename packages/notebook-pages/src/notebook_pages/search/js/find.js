@@ -1,13 +1,13 @@
-// Finds places of the book by what a reader types: words, with slips and synonyms, or signs of a formula.
+// Find places of the book by what a reader types: words, with typing errors and synonyms, or symbols of a formula.
 //
-// A place answers to its title and to the phrases that readers use for it. Each word of a question counts by how rare
-// it is, and most if it is one of the subject's; a phrase is as good as the share of the question that it answers, and
-// of itself that was asked for. Several good phrases of a place speak for it more than one. The shares below were fitted
-// to titles of forums (``questions.txt``).
+// A place is found by its title and by the phrases that readers use for it. Each word of a question counts by how rare
+// it is, and most if it is a term of the subject. A phrase counts by the share of the question that it covers, and by
+// the share of itself that the question covers. Several good phrases of a place count more than one. The shares below
+// were fitted to titles of forums (``questions.txt``).
 import SearchableMap from "minisearch/SearchableMap";
 import { isLeftOut, isWeak, plain, read, stem, words } from "./words.js";
 
-// The signs of a formula, as TeX has them or as they are typed: what only shapes them is left out.
+// The symbols of a formula, as in TeX or as they are typed, without those that only set its form.
 export function signs(text) {
   return plain(text.replace(/\{\}\^\{?[A-Z]\}?(\\left\(|\()?(\\mathbf\{C\}|C)\^\{?[A-Z]\}?/g, "$1 C ")
     .replace(/\\(?:math\w+|text\w*|boldsymbol|hat|bar|left|right)(?![a-z])/gi, " ")
@@ -26,7 +26,7 @@ function overlap(one, other) {
   return common;
 }
 
-// What a reader looks for is rather one than another of these, where both answer as well.
+// If both answer equally well, readers rather look for one of these kinds than for another.
 const KINDS = {
   page: 1.1, section: 1.05, term: 1.06, function: 0.92, exercise: 0.88, example: 0.85, equation: 0.6, figure: 0.8,
 };
@@ -40,14 +40,14 @@ const POWER = 1.5, OWN = 0.5; // how the share that is answered counts, and that
 const TOGETHER = 4; // the power in which what the phrases of a place are worth is added: the best counts most
 const ENDS = 6, ENDED = 0.7; // with how many ends a last word is tried; what that counts where it is a word as it stands
 const OTHER_WAY = 0.6, NO_WAY = 0.7; // where a conversion is asked for: the one back, or none
-// Added to a page whose title begins with the question, and twice for a chapter: no other place is worth so much. A word
+// Added to a page whose title begins with the question, and twice for a chapter: no other place gets as much. A word
 // within the title counts half.
 const BEGUN = 2;
 const headed = (text) => plain(text).replace(/^(?:the|an?) +(?=.)/, "").replace(/-/g, " ");
 const isName = (query) => /^\w*[a-z]_[a-z]\w*$|^[a-z]{2,}(?:[A-Z][a-z]+)+$/.test(query);
 const named = (query) => plain(query.replace(/([a-z])([A-Z])/g, "$1_$2"));
 
-// A word of a name of several words: "rotate vectors" is no rotation vector, but "rotation vectors" are.
+// Words of names of several words: "rotate vectors" is no rotation vector, but "rotation vectors" are.
 const single = (word) => (word.length < 4 || word.endsWith("ss") ? word
   : word.replace(/(?<=[sxz]|ch|sh)es$|s$/, "").replace(/([iy])z(?=e|ed|ing|ation)/, "$1s"));
 const BETWEEN = new Set(["and", "the"]);
@@ -55,8 +55,8 @@ const AMID = new Set(["a", "an", "the", "given", "my", "and", "angle", "angles",
   "rotations", "orientation"]);
 const isWay = (sign) => sign.term.includes(">");
 
-// ``more`` holds the words of each entry's text, further phrases and first sentences, the TeX of the equations, these and
-// the figures, once they are there.
+// ``more`` contains the words of each entry's text, further phrases and first sentences, the TeX of the equations, the
+// equations and the figures, once they are loaded.
 export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, more = {}) {
   const entries = [...rows, ...more.entries ?? []].map((row) => (
     Object.fromEntries(fields.map((field, k) => [field, row[k] || undefined]))));
@@ -64,7 +64,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   for (const [id, asked] of more.asked ?? []) entries[id].asked = [...entries[id].asked ?? [], ...asked];
   for (const entry of entries) entry.kind = kinds[entry.kind ?? 0], entry.page ??= 0;
 
-  // Concepts have several names, of one word or more; so have the things that can be converted into one another.
+  // Concepts have several names, of one word or more, and so have things that can be converted into one another.
   const heads = new Map(); // the names that begin with a word
   for (const [of, groups] of Object.entries(synonyms)) for (const [number, group] of groups.entries()) {
     for (const name of group) {
@@ -77,7 +77,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     }
   }
 
-  // A text as words, and the concepts and conversions that stand in it, each with the words that it covers.
+  // Split a text into words, and find its concepts and conversions, each with the words that it covers.
   function understood(text) {
     const { all, list, at } = read(text);
     const kept = all.flatMap((word, k) => (BETWEEN.has(word) ? [] : [k]));
@@ -93,7 +93,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
         else spans.push({ number, start, end, first, last });
       }
     }
-    // Which name of several words each word belongs to: the longest.
+    // The longest name of several words to which each word belongs.
     const names = list.map((_, k) => signs.filter(({ start, end }) => end - start > 1 && start <= k && k < end)
       .reduce((best, sign) => (best && best.end - best.start >= sign.end - sign.start ? best : sign), null)?.term);
     spans.sort((left, right) => left.first - right.first || right.last - left.last);
@@ -110,7 +110,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     return { all, list, signs, names };
   }
 
-  // Each title and each phrase is a document, and so is each text.
+  // Each title, each phrase and each text is a document.
   const documents = [], having = new SearchableMap(), spread = new Map(), forms = new SearchableMap();
   const add = (entry, text, { within, ...more }) => {
     const read = within === "text" ? { list: words(text), signs: [] } : understood(text);
@@ -145,7 +145,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
   for (const document of documents) if (!document.within) document.worths = worths(document), document.worth = sum(document.worths);
   const formulas = (more.tex ?? []).map(([id, tex]) => ({ id, signs: pairs(signs(tex)) }));
 
-  // A question in the words of the book: written together or apart as there, and without slips.
+  // Rewrite a question in the words of the book: joined or split as there, and without typing errors.
   const isKnown = (word) => forms.has(word) || size(stem(word)) > 2;
   const widest = (list) => list.reduce((best, word) => (size(stem(word)) > size(stem(best)) ? word : best));
   function mended(text) {
@@ -171,11 +171,12 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     return found.join(" ");
   }
 
-  // The terms of the book that a word of a question stands for, and how like it they are: itself, or what begins with it.
+  // The terms of the book that a word of a question matches, with their similarity: itself, or words that begin with
+  // it.
   const meant = (word) => (having.has(word) ? [[word, 1]] : word.length < 3 ? []
     : [...having.atPrefix(word).keys()].map((term) => [term, 0.92 - 0.02 * (term.length - word.length)]));
 
-  // What a question may become whose last word is not finished: with the most frequent words that begin so.
+  // The completions of a question whose last word is unfinished: with the most frequent words that begin so.
   function finished(text) {
     const begun = /[a-z]+$/i.exec(text)?.[0].toLowerCase();
     return (begun ? [...forms.atPrefix(begun)] : []).filter(([form]) => form !== begun)
@@ -237,7 +238,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
       its.used = Math.max(its.used, used * sum(both.map((like, k) => weights[k] * like)) / whole);
       its.way = Math.max(its.way, way);
     }
-    // What no one phrase of a place answers, all of them may; and its text, where none does.
+    // If no single phrase of a place answers the question, all of them together may, or else its text.
     for (const [id, { likes, used, way }] of all) take(id, answered(likes) * (1 - OWN + OWN * used) * way);
     for (const [id, likes] of beside) take(id, answered(likes) * (1 - OWN));
     return [...best].map(([id, powers]) => {
@@ -247,7 +248,7 @@ export function finder({ pages, fields, kinds, entries: rows, synonyms = {} }, m
     });
   }
 
-  // The entries that answer, the best first.
+  // The entries that answer the question, the best first.
   let before = new Map(); // what the letter typed last made of it: the next one asks for much of that again
   return (query, most = 12) => {
     const scores = new Map(), take = (found, share = 1) => {

@@ -1,5 +1,5 @@
-// What the moving figures share: a sheet to draw on, in the look of orientation_figures.drawing, and controls that
-// work by pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
+// Shared parts of the moving figures: a sheet to draw on, in the style of orientation_figures.drawing, and
+// controls for pointer, touch and keyboard. Each figure is a module with render({ model, el }), anywidget's
 // contract; on a page of the book without a kernel, `start` gives it a model of its own.
 import { add, degrees, dot, length, multiply, radians, scale, simpleDcm, subtract, times, transpose, unit } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
@@ -13,10 +13,11 @@ const DRAWN = new Set(['svg', 'g', 'path', 'circle']);
 const WITH_KEYS = new Set(['button', 'input', 'select', 'textarea']);
 // On an element that has the focus, this keeps JupyterLab from taking the keys as its own shortcuts.
 const OWN_KEYS = 'data-lm-suppress-shortcuts';
-// Around what takes text JupyterLab cancels Enter all the same: there the keys stop where they were typed.
+// In text fields JupyterLab cancels Enter nevertheless, so there the events of keys must not propagate.
 const TAKES_TEXT = 'textarea, input:is([type=text], [type=number])';
 
-// An element with attributes (functions are event listeners) and children; $...$ in a text is mathematics.
+// Create an element with attributes (functions are event listeners) and children; $...$ in a text is
+// mathematics.
 export function element(tag, attributes = {}, ...children) {
   const made = DRAWN.has(tag) ? document.createElementNS('http://www.w3.org/2000/svg', tag) : document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -29,12 +30,13 @@ export function element(tag, attributes = {}, ...children) {
   return made;
 }
 
-// Sets an attribute or a text only where it changed: writing costs more than comparing.
+// Set an attribute or a text only if it changed: writing costs more than comparing.
 export function put(target, name, value) {
   if (target.getAttribute(name) !== value) target.setAttribute(name, value);
 }
 
-// The same for the text of an element. Its one text node stays: a new one would be laid out from nothing.
+// The same for the text of an element. It keeps its only text node, because a new one would be laid out
+// again.
 export function write(target, text) {
   if (!target.firstChild) target.append(text);
   else if (target.firstChild.data !== text) target.firstChild.data = text;
@@ -51,7 +53,7 @@ function glyphs(tex) {
     d: OUTLINES[outline], transform: `translate(${x} ${y})${size === 1 ? '' : ` scale(${size})`}` }));
 }
 
-// One formula, set in a line of text.
+// A formula, typeset in a line of text.
 function formula(tex) {
   const parts = glyphs(tex), [left, top, right, bottom] = LABELS[tex].ink;
   return element('svg', { class: 'formula', viewBox: `${left} ${top} ${right - left} ${bottom - top}`, role: 'img',
@@ -63,8 +65,8 @@ function formula(tex) {
 
 export const words = (text) => text.split('$').map((part, k) => (k % 2 ? formula(part) : part)).filter((part) => part !== '');
 
-// The text of an element, with $...$ in it. While only numbers change the formulas stay: setting them anew would be
-// most of the work of a drag.
+// The text of an element, with $...$ in it. While only numbers change the formulas stay, because typesetting
+// them again would be most of the work of a drag.
 const written = new WeakMap();
 export function writeWords(target, text) {
   const before = written.get(target) ?? [], parts = text.split('$');
@@ -76,13 +78,13 @@ export function writeWords(target, text) {
   }
 }
 
-// Numbers with a real minus and as much room for the sign of a positive one.
+// Format numbers with a typographic minus and a space of equal width for positive ones.
 export function fixed(value, digits = 3) {
   const text = Math.abs(value).toFixed(digits);
   return (value < 0 && Number(text) !== 0 ? '\u2212' : '\u2007') + text;
 }
 
-// '35', '-12.5': degrees for a field, without the noise of the conversion.
+// '35', '-12.5': degrees for a field, without the rounding error of the conversion.
 export const plain = (value, digits = 2) => String(Number(value.toFixed(digits)) + 0);
 
 // ---- cameras -------------------------------------------------------------------------------------------
@@ -111,9 +113,9 @@ function pathData(commands, points) {
 
 const polygon = (count) => `M${'L'.repeat(count - 1)}Z`;
 
-// A sheet is drawn anew for every picture, by `draw(sheet => ...)`, in the words of orientation_figures.words;
-// it keeps its elements and changes only what differs. Marks are sorted by their depth, the component of
-// their middle along v_z, within the `layer` they are drawn in.
+// A sheet is drawn again for every picture, by `draw(sheet => ...)`, with the methods of
+// orientation_figures.words. It keeps its elements and changes only the differences. Marks are sorted by
+// their depth, the component of their middle along v_z, within the `layer` in which they are drawn.
 export class Sheet extends Words {
   // bounds: left, top, right, bottom in pixels from the origin; camera: azimuth and elevation in degrees;
   // changed: called when the reader turns the view; grab(part, at): what to do when the reader takes hold of
@@ -129,7 +131,7 @@ export class Sheet extends Words {
       style: `max-width:${right - left}px`, tabindex: '0', [OWN_KEYS]: 'true',
       role: 'application', 'aria-roledescription': 'drawing',
       'aria-label': `${name} The arrow keys turn the view, Home turns it back.`,
-      // A finger on a grip must not scroll the page; inside an SVG drawing, touch-action is not heard.
+      // A finger on a grip must not scroll the page; inside an SVG drawing, touch-action has no effect.
       touchstart: (event) => { if (event.target.dataset.part) event.preventDefault(); },
       pointerdown: (event) => this.hold(event), pointermove: (event) => this.move(event),
       pointerup: (event) => this.release(event), pointercancel: (event) => this.release(event),
@@ -153,7 +155,7 @@ export class Sheet extends Words {
     event.preventDefault();
   }
 
-  // Where the pointer is, in pixels of the sheet.
+  // The position of the pointer, in pixels of the sheet.
   pointer(event) {
     const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(this.toSheet);
     return [place.x, place.y];
@@ -188,8 +190,8 @@ export class Sheet extends Words {
     this.finish();
   }
 
-  // Every mark keeps its element from one picture to the next, because it is drawn in the same turn; where
-  // the depths have changed places, so do the elements.
+  // Every mark keeps its element from one picture to the next, because marks are drawn in the same order; if
+  // their depths are reordered, so are the elements.
   finish() {
     const [pool, labels, grips] = this.pools, [layer] = this.layers;
     this.marks.forEach((mark, k) => {
@@ -213,7 +215,7 @@ export class Sheet extends Words {
     return [this.size * dot(this.view[0], point), -this.size * dot(this.view[1], point)];
   }
 
-  // `points` are on the sheet, `depth` along v_z. What has shrunk to a point is not seen.
+  // `points` are on the sheet, `depth` along v_z. A path that has shrunk to a point is invisible.
   path(commands, points, kind, depth = 0) {
     const [x, y] = points[0];
     if (points.some(([u, v]) => Math.abs(u - x) > 1e-6 || Math.abs(v - y) > 1e-6)) {
@@ -228,7 +230,7 @@ export class Sheet extends Words {
     return times(transpose(this.view), [right / this.size, -down / this.size, 0]);
   }
 
-  // A word that fades is there or not: seen through, it could not be read.
+  // A fading label is either visible or not: it could not be read if it were transparent.
   text(text, place, colour, size = 20, opacity = 1) {
     if (opacity <= 0.4) return this;
     const tex = text.replaceAll('$', ''), [, labels] = this.pools;
@@ -242,7 +244,7 @@ export class Sheet extends Words {
     return this;
   }
 
-  // A place where the reader can take hold; `part` comes back in grab(part, at).
+  // A grip for the reader; `part` is passed to grab(part, at).
   grip(point, part, radius = 18) {
     const [x, y] = this.onSheet(point), made = this.gripElement(part, 'circle');
     put(made, 'r', String(radius));
@@ -250,7 +252,7 @@ export class Sheet extends Words {
     put(made, 'cy', y.toFixed(1));
   }
 
-  // The same along a closed line.
+  // A grip along a closed line.
   gripLine(points, part) {
     put(this.gripElement(part, 'path'), 'd', pathData(polygon(points.length), points.map((p) => this.onSheet(p))));
   }
@@ -263,21 +265,21 @@ export class Sheet extends Words {
   }
 }
 
-// Follows the pointer with a point that can only move on a circle: returns a function from the place of
-// the pointer to the angle, in whole degrees, that brings the turned `arm` nearest to it.
+// Follow the pointer with a point that can only move on a circle: returns a function from the position of the
+// pointer to the angle, in whole degrees, that brings the rotated `arm` nearest to it.
 export function followTurn(sheet, { axis, arm, angle, at, origin = [0, 0, 0] }) {
   const shift = subtract(sheet.onSheet(add(origin, turned(axis, angle, arm))), at);
   const places = Array.from({ length: 360 }, (_, k) => sheet.onSheet(add(origin, turned(axis, radians(k), arm))));
   const spread = Math.max(...places.map((place) => length(subtract(place, places[0]))));
   const begin = Math.round(degrees(angle));
-  // A circle too small to follow is turned like a knob.
+  // A circle too small to follow is rotated like a knob.
   if (spread < 40) return (to) => radians(begin + Math.round(0.7 * (to[0] - at[0])));
   let now = begin;
   return (to) => {
     const wanted = add(to, shift);
     let best = Infinity, found = now;
     for (let step = -60; step <= 60; step += 1) {
-      // Where the circle is seen edge-on two angles are equally near; the closer one wins.
+      // Where the circle is seen edge-on, two angles are equally near; choose the one closer to the last.
       const far = length(subtract(places[(((now + step) % 360) + 360) % 360], wanted)) + 0.02 * Math.abs(step);
       if (far < best) [best, found] = [far, now + step];
     }
@@ -286,9 +288,9 @@ export function followTurn(sheet, { axis, arm, angle, at, origin = [0, 0, 0] }) 
   };
 }
 
-// Follows the pointer with the tip of a vector that keeps its length: returns a function from the place of
-// the pointer to its direction. Beyond the edge of the sphere the tip goes round to the other side. Close to
-// a unit vector of N it becomes that.
+// Follow the pointer with the tip of a vector of constant length: returns a function from the position of the
+// pointer to its direction. Beyond the edge of the sphere the tip goes round to the other side. Close to a
+// unit vector of N it snaps to it.
 export function followSphere(sheet, { vector, at }) {
   const radius = length(vector) * sheet.size, shift = subtract(sheet.onSheet(vector), at);
   const side = dot(sheet.view[2], vector) < 0 ? -1 : 1, back = transpose(sheet.view);
@@ -301,17 +303,17 @@ export function followSphere(sheet, { vector, at }) {
   };
 }
 
-// Brings an angle into the range from -pi to pi.
+// Bring an angle into the range from -pi to pi.
 export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 
 // ---- controls ------------------------------------------------------------------------------------------
 
 export const button = (text, click, attributes = {}) => element('button', { type: 'button', click, ...attributes }, text);
 
-// A group of controls with a name for those who do not see how they stand together.
+// A group of controls with a name for readers who cannot see that they belong together.
 export const group = (name, kind, ...children) => element('div', { role: 'group', 'aria-label': name, class: kind }, ...children);
 
-// A number that can be typed. `show` leaves alone what the reader is typing.
+// A number field. `show` does not change what the reader is typing.
 export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity, change, digits = 3 }) {
   const field = element('input', { type: 'number', 'aria-label': name, step, inputmode: 'decimal',
     input() {
@@ -329,8 +331,8 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
   } };
 }
 
-// A slider with its symbol, a field for the same number, and what else the number is. `factor` is what one
-// shown unit is in the units of the model.
+// A slider with its symbol, a field for the same number, and further forms of it. `factor` is one displayed
+// unit in the units of the model.
 export function slider({ symbol, name, unit: unitName = 'degrees', sign = '°', factor = Math.PI / 180, min = -180, max = 180,
   step = 1, digits = 2, change, more = (value) => `${fixed(value)} rad` }) {
   const range = element('input', { type: 'range', min, max, step, 'aria-label': name, input: () => change(factor * range.value) });
@@ -358,7 +360,7 @@ export function choice({ name, options, change, hidden = false }) {
     show: (value) => { list.value = value; } };
 }
 
-// Rows of cells with what stands before and above them; `kind` 'bracket' sets them as a matrix.
+// Rows of cells with their row and column headings; `kind` 'bracket' sets them as a matrix.
 export function grid({ name, rows, columns, cells, kind = '' }) {
   const head = (text, side) => element('span', { class: `head-of-${side}`, 'aria-hidden': 'true' }, text);
   return group(name, `numbers ${kind}`,
@@ -367,9 +369,9 @@ export function grid({ name, rows, columns, cells, kind = '' }) {
     ...cells.map((row, i) => element('div', { class: 'row' }, ...(rows ? [head(rows[i], 'row')] : []), ...row)));
 }
 
-// Numbers that say what they mean: one stop of the Tab key, arrow keys inside. `names` are the spoken names,
-// row by row; `rows` and `columns` what stands before and above them; `light(row, column)` is called when a
-// number is touched or focused, and `light()` afterwards.
+// Numbers that explain themselves: a single stop of the Tab key, arrow keys inside. `names` are the spoken
+// names, row by row; `rows` and `columns` are the headings; `light(row, column)` is called when a number is
+// touched or focused, and `light()` afterwards.
 export function numberTable({ name, names, rows, columns, light, kind = '' }) {
   const at = (i, j) => {
     const cell = element('button', { type: 'button', class: 'number', tabindex: i + j ? -1 : 0, 'data-at': `${i},${j}`,
@@ -404,7 +406,8 @@ export function numberTable({ name, names, rows, columns, light, kind = '' }) {
   })) };
 }
 
-// Text under the figure. It changes at once for the eye, and is read aloud when it has rested.
+// Text under the figure. It changes at once on the screen, and is read aloud when it has not changed for a
+// while.
 export function liveText() {
   const seen = element('p', { class: 'words', 'aria-hidden': 'true' }), heard = element('p', { class: 'unseen', role: 'status' });
   let now = null, wait = 0;
@@ -419,20 +422,20 @@ export function liveText() {
 
 export const calm = () => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-// Calls `draw` once before the next picture, however often it is asked.
+// Call `draw` once before the next picture, however often it is requested.
 export function onceAFrame(draw) {
   let asked = 0;
   return () => { asked ||= requestAnimationFrame(() => { asked = 0; draw(); }); };
 }
 
-// A button and a slider for something that runs from 0 to `seconds`. It starts only when asked; where the
-// reader wants less motion it goes on in steps of half a second.
+// A button and a slider for an animation from 0 to `seconds`. It starts only on request; for readers who
+// prefer less motion it proceeds in steps of half a second.
 export function player({ name, seconds, step = 0.05, show }) {
   let now = 0, before = null, frame = 0;
   const time = slider({ symbol: '$t$', name, unit: 'seconds', sign: 's', factor: 1, min: 0, max: seconds, step, more: () => '',
     change: (value) => { pause(); set(value); } });
   const press = button('Play', () => (frame ? pause() : play()));
-  // Where the state says that it stands.
+  // The position in the state.
   function at(value) {
     now = value;
     time.show(value);
@@ -447,7 +450,7 @@ export function player({ name, seconds, step = 0.05, show }) {
     write(press, 'Play');
   }
   function tick(moment) {
-    // The time of a picture may lie before the click that asked for it: only pictures are compared.
+    // The time of a picture may be before the click that requested it, so compare only pictures.
     before ??= moment;
     const passed = Math.min((moment - before) / 1000, 1);
     if (!press.isConnected) { pause(); return; }
@@ -466,7 +469,7 @@ export function player({ name, seconds, step = 0.05, show }) {
   return { element: group(name, 'player', press, time.element), at, set, pause };
 }
 
-// Moves through a number from 0 to 1 in `seconds`, or jumps to the end for readers who want less motion.
+// Move a number from 0 to 1 in `seconds`, or jump to the end for readers who prefer less motion.
 export function glide(show, seconds = 0.7) {
   let frame = 0, begin;
   const tick = (moment) => {
@@ -483,7 +486,7 @@ export function glide(show, seconds = 0.7) {
 export const readout = (title, ...parts) => element('div', { class: 'readout' }, element('div', { class: 'title' },
   ...title.map((part) => (typeof part === 'string' ? element('span', {}, part) : part))), ...parts);
 
-// The drawing with the words under it; on a narrow screen it stays in view while the controls scroll.
+// The drawing with the text under it; on a narrow screen it stays in view while the controls scroll.
 export const stage = (sheet, text) => element('div', { class: 'stage' }, sheet.svg, text.element);
 
 // ---- beginning and end ---------------------------------------------------------------------------------
@@ -496,7 +499,7 @@ export function open(el, ...children) {
   return live;
 }
 
-// Reads the state when it changes, whoever changed it; returns what anywidget calls when a figure closes.
+// Read the state whenever it changes; returns the function that anywidget calls when a figure closes.
 export function follow(model, names, changed) {
   const events = names.map((name) => `change:${name}`);
   events.forEach((event) => model.on(event, changed));
@@ -508,7 +511,7 @@ export function change(model, values) {
   model.save_changes();
 }
 
-// Whether plain data from anywhere has the form of what is known: numbers for numbers, as many as there were.
+// Whether foreign data have the form of the known data: numbers for numbers, and equally many.
 function alike(value, known) {
   if (typeof known === 'number') return Number.isFinite(value) && Math.abs(value) < 1e6;
   if (Array.isArray(known)) {
@@ -520,7 +523,7 @@ function alike(value, known) {
   return typeof known === 'boolean' || value.length <= 200;
 }
 
-// How a figure stands by the address of its page, which names it by its label or its kind; where it is alone, any name will do.
+// The state of a figure in the address of its page, by its label or kind; if it is alone, by any name.
 function carriedTo(figure, name, state) {
   try {
     const carried = carriedBy(location.hash), label = figure.parentElement?.closest('figure[id], div[id]')?.id;
@@ -531,8 +534,8 @@ function carriedTo(figure, name, state) {
   }
 }
 
-// Once a figure has been moved, the link at the end of its caption shows, leads to the figure as it stands, and copies
-// that address.
+// Once a figure has been moved, the link at the end of its caption appears, leads to the figure in its
+// present state, and copies that address.
 function offerAddress(figure, first) {
   const whole = figure.parentElement?.closest('figure[id]'), link = whole?.querySelector('figcaption a.headerlink');
   if (!link) return;
@@ -568,7 +571,7 @@ export function start(name, render) {
     try {
       begin({ ...state, ...carried });
     } catch (error) {
-      // What no reader could have set is not shown.
+      // A state that no reader could have set is not shown.
       if (!Object.keys(carried).length) throw error;
       figure.querySelector('.live')?.remove();
       begin(state);
