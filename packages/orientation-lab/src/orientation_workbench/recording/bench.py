@@ -534,7 +534,7 @@ class _Bench:
             runs, sure, least = (
                 [poses[: len(poses) // 2 + 1], poses[len(poses) // 2 :]],
                 5,
-                np.radians(0.5),
+                np.radians(1),
             )
             fits = [fit_scales(self.time, self.rates * scale, self.forces, run) for run in runs]
             # Five poses hardly say more than the scales and biases that are found from them.
