@@ -9,6 +9,7 @@ from contextlib import contextmanager, suppress
 import nbformat
 import pytest
 from places import HTML, REPOSITORY
+from playwright.sync_api import TimeoutError
 from test_live import ELSEWHERE, solution
 
 from coursework.__main__ import main as coursework
@@ -19,7 +20,8 @@ from notebook_pages.take_away import notebook_address
 
 EXERCISE, CHAPTER = "exercises/simple-orientations", "chapters/successive-orientations"
 BLANK = "A_C_N = ...  # your answer"
-ANSWER, OTHER = 3, 5  # cells of the exercise, from 1
+# Cells of the exercise, from 1. Each answer follows the cell that shows its question.
+ANSWER, OTHER = 3, 6
 CODES = """() => [...document.querySelectorAll('div.cell')].map((cell) =>
   cell.querySelector('.cm-content')?.innerText ?? cell.querySelector('.cell_input pre').textContent)"""
 KEPT = (
@@ -48,19 +50,23 @@ class Tab:
         self.page.wait_for_selector("button.run-cell", state="attached")
 
     def edit(self):
-        """Open the editors, as the first Run or a stored answer does, but without Python."""
-        if not self.page.locator(".cm-content").count():
+        """Open the editors and the bar, as the first Run or a stored answer does, without Python."""
+        # Answers have their editors at once, but the bar appears only when it has something to say.
+        if self.page.locator(".live-bar").is_hidden():
             self.page.route("**/pyodide*", lambda route: route.abort())
             self.page.evaluate("document.querySelector('button.run-cell').click()")
+            self.page.locator(".live-bar").wait_for()
         self.page.wait_for_selector(".cm-content", state="attached")
         self.page.wait_for_function("!document.querySelector('html.live-busy')")
         return self
 
     def write(self, number, code):
         cell = self.page.locator("div.cell").nth(number - 1)
-        # Only the cells of answers have an editor from the beginning.
-        if not cell.locator(".cm-content").count():
-            cell.locator(".cell_input pre").click()
+        # Only the cells of answers have an editor from the beginning, and it may arrive just before
+        # the click.
+        while not cell.locator(".cm-content").count():
+            with suppress(TimeoutError):
+                cell.locator(".cell_input pre").click(timeout=2000)
         cell.locator(".cm-content").focus()
         self.page.keyboard.press("Control+a")
         self.page.keyboard.insert_text(code)
@@ -241,7 +247,8 @@ def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
     assert 'student("Ada O\'Hara")' in codes[0] and LEFT_OPEN in before
     assert codes[ANSWER - 1] == "mine = 1" and "1 cell of this page" in tab.words()
     tab.bring(tmp_path / "mine.ipynb")
-    assert "Nothing is different" in tab.words() and tab.text(1) == before and tab.errors == []
+    tab.wait(1, before)  # its ID is in the notebook alone
+    assert "Nothing is different" in tab.words() and tab.errors == []
 
 
 def test_notebook_is_loaded_back(context, site, tmp_path):
