@@ -100,7 +100,7 @@ def test_an_answer_is_checked_where_it_is_written(course, browser):
 def test_what_cannot_be_published_is_said(course, tmp_path, monkeypatch):
     course_found = find_course(course)
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(AuthorError, match="no site"):
+    with pytest.raises(AuthorError, match="is not a site"):
         publish.publish(course_found, tmp_path)
     assert (tmp_path / "mine.txt").read_text() == "mine"
     with pytest.raises(AuthorError, match="coursework release"):
