@@ -71,7 +71,6 @@ class Page {
       field.blur();
       button.blur();
       this.tellWhose();
-      this.askWho();
       this.bar.say(field.value.trim() ? "From the next run on, you get your own numbers." : "From the next run on, you get the default numbers.");
     });
     if (this.who) this.who.replaceWith(form);
@@ -95,6 +94,7 @@ class Page {
     }
     this.bar.tellWhatIsKnown();
     this.showGiven();
+    this.askWho();
   }
 
   showGiven() {
@@ -153,11 +153,14 @@ class Page {
     addEventListener("pageshow", ({ persisted }) => persisted && wake());
   }
 
-  // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers.
+  // The page's notebook in JupyterLite, if this browser keeps one, may hold newer answers, and another ID.
   async lookAtNotebook() {
     if (!store.read(this.answers.agreed)) return;
     try {
+      const { student } = store, known = store.tries()?.text;
       await agreeOnRecords(this.answers.page);
+      if (store.student !== student) this.tellWhose();
+      else if (store.tries()?.text !== known) this.bar.tellWhatIsKnown();
       const copy = await readCopy(`${this.answers.page}.ipynb`);
       if (copy) bringTogether(this.answers.page, copy);
     } catch (error) {
@@ -347,7 +350,6 @@ class Page {
     const before = store.student;
     coursework.write(name, text, Date.now(), base);
     if (store.student !== before) this.tellWhose();
-    if (name === "me.txt") this.askWho();
   }
 
   async next(cell) {
