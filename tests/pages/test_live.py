@@ -1226,10 +1226,12 @@ def test_edits_survive_a_reload_and_can_be_undone(browser, site):
 def test_edit_of_code_that_has_changed_is_offered(browser, site):
     context = browser.new_context()
     page = Page(context, site, QUIET)
-    edits = [{"number": 3, "original": "of another edition", "code": "print('old edit')"}]
-    key = f"code of {QUIET.removesuffix('.html')}"
     page.page.evaluate(
-        "([key, edits]) => localStorage.setItem(key, JSON.stringify(edits))", [key, edits]
+        "([page, entry]) => bookStore.put(`answer ${page} other-0`, entry)",
+        [
+            QUIET.removesuffix(".html"),
+            {"number": 3, "original": "other", "code": "print('old edit')", "at": 1},
+        ],
     )
     page.page.reload()
     choice = page.page.locator(".live-choice")
