@@ -349,7 +349,8 @@ def test_download_is_small_enough():
     files += [HTML / runtime.FOLDER / lock["packages"][name]["file_name"] for name in first]
     assert lock["bytes"] == sum(path.stat().st_size for path in files)
     files += (HTML / scripts.folder_name()).iterdir()
-    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_300_000
+    # The questions, with their figures, come along: every question of the exercises has variants.
+    assert sum(len(gzip.compress(path.read_bytes(), 6)) for path in files) <= 18_320_000
 
 
 def test_lock_names_what_is_there():
