@@ -24,9 +24,8 @@ from .paths import LICENCES_SAID, NODE_MODULES, WEBSITE, edition, moment_of_sour
 from .spoken import spoken
 
 FACES = (
-    # Fixed weights of the site's variable fonts, which a PDF would store as drawings; and a
-    # typeface for code, which on a screen is the reader's own, with the Greek letters in the output
-    # of code.
+    # Use fixed weights of the site's variable fonts, which a PDF would store as drawings. Also
+    # set a code font with Greek letters; on screen the reader's own font is used.
     ("Source Sans", "source-sans-3", "latin", 400),
     ("Source Sans", "source-sans-3", "latin", 600),
     ("Source Code Pro", "source-code-pro", "latin", 400),

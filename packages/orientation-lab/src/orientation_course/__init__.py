@@ -8,7 +8,7 @@ from .mistakes import DEEDS
 #: What the notebooks import.
 PACKAGES = ("orientation", "orientation_figures", "orientation_recordings")
 
-#: How many answers a question of a kind allows, where they are few.
+#: Number of possible answers for each kind of question that has only a few.
 CLOSED = {"sequence": 12}
 
 __all__ = ["CLOSED", "DEEDS", "KINDS", "PACKAGES"]

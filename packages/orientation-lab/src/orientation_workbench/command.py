@@ -83,7 +83,7 @@ def _add_explain(commands):
             f"a kind ({', '.join(COUNTS)}) or a convention such as 'zyx', 'space fixed', "
             "'degrees', 'xyzw'; may be repeated",
         ),
-        ("second", "as with --first", "as with --first-is"),
+        ("second", "see --first", "see --first-is"),
     ):
         parser.add_argument(
             f"--{side}", dest=f"{side}_program", metavar="PROGRAM",
@@ -103,8 +103,8 @@ def _add_recording(commands):
         description="Identify the columns of a recording, their units, axes, signs and errors and "
         "the convention of any orientation in it. Then run a filter, and test whether its "
         "errors are as small as it claims.",
-        epilog="Exit codes: 0 if the file could be judged, even with faults in it, 3 if it cannot "
-        "be read.",
+        epilog="Exit codes: 0 if the file was examined, even if faults were found; 3 if it "
+        "cannot be read.",
     )
     parser.add_argument(
         "files",
@@ -170,7 +170,7 @@ def _declared(words):
     for word in words:
         if word not in groups:
             raise ValueError(
-                f"{word!r} is not a kind of numbers ({', '.join(COUNTS)}), a convention of one, or "
+                f"{word!r} is not a kind of description ({', '.join(COUNTS)}), a convention or "
                 f"a direction ({', '.join(WAYS)})"
             )
     return {groups[word]: word for word in words}

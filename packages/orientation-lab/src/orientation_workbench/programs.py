@@ -462,8 +462,9 @@ def program_named(words):
     if len(found) != 1:
         which = ", ".join(found or PROGRAMS)
         raise ValueError(
-            f"{words!r} names {'several programs' if found else 'no program that is known here'}: "
-            f"{which}"
+            f"{words!r} fits several programs: {which}"
+            if found
+            else f"unknown program {words!r}: {which}"
         )
     return found[0]
 

@@ -575,8 +575,8 @@ def test_the_command(tmp_path, capsys):
         (["runs/2026-11/first.csv", "1 0 0 0"], "no such file: runs"),
         (["1 0 0 0"], "required: second"),
         (["1 0 0 0", "1 0 0 0", "--noise", "much"], "--noise"),
-        (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "no program that is known"),
-        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "not a kind of numbers"),
+        (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "unknown program"),
+        (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "not a kind of description"),
     ],
 )
 def test_a_command_that_is_misspelt_is_bad_input(arguments, said, capsys):

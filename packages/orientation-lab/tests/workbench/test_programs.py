@@ -171,7 +171,7 @@ def test_a_program_is_called_by_a_part_of_its_name():
     )
     with pytest.raises(ValueError, match="several programs"):
         program_named("matlab")
-    with pytest.raises(ValueError, match="no program"):
+    with pytest.raises(ValueError, match="unknown program"):
         program_named("Maya 2027")
 
 

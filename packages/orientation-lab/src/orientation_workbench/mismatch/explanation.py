@@ -118,8 +118,7 @@ def explain(
         if manual and "kind" not in declared and len(poses.kinds) == 2:
             poses = poses._replace(kinds=(manual["three numbers"],))
         programs.append(manual)
-        # What stands in the text goes before what the manual says, and
-        # what the reader says before both.
+        # The text overrides the manual, and the reader overrides both.
         sides.append((poses, (manual["declared"] if manual else {}) | poses.declared | declared))
     counts = [len(poses.numbers) for poses, _ in sides]
     # Three rows that are no matrix were taken for three triples of angles.
@@ -329,7 +328,7 @@ def _question(names, best):
     return " ".join(question for question, still_open in asked.items() if still_open)
 
 
-# --- which chains say the same --------------------------------------------------------------------
+# --- equivalent chains ----------------------------------------------------------------------------
 
 
 def _classes(chains, sides):

@@ -29,7 +29,7 @@ BLOCK = 200
 BY_CHANCE = 1e-3
 #: Of more chains than these nothing more is learned.
 MANY = 500
-#: Of a quaternion, what both sides may do alike: the bit of scalar last.
+#: The bit for scalar-last order, which both sides of a quaternion may share.
 QUATERNION_SHARED = 1 << table.SHARED.index(("order", "xyzw"))
 #: A reading counts only if the thing moves by so many times what the numbers leave open.
 MOTION = 3

@@ -84,7 +84,9 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
         With what was read, and what is missing.
     """
     if kind is not None and kind not in COUNTS:
-        raise ValueError(f"{kind!r} is no kind of numbers: it is one of {', '.join(COUNTS)}")
+        raise ValueError(
+            f"{kind!r} is not a kind of description: choose one of {', '.join(COUNTS)}"
+        )
     declared = {}
     if isinstance(given, str):
         rows, half, declared = _rows_of_text(given, name)

@@ -349,7 +349,7 @@ class _Bench:
             best = fit.best
             agree = field is not None and field.margin > BELIEVED and fit is not field
             if agree and np.allclose(field.best, plain) and not np.allclose(best, plain):
-                # The two others agree: the accelerometer has other axes, or all the opposite ones.
+                # The other two agree, so the accelerometer's axes differ or are all reversed.
                 back = min(best.T, -best.T, key=lambda axes: (axes < 0).sum())
                 self.say(
                     "axes of the accelerometer",

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from .motion import Reading, Stretch
     from .table import Array
 
-#: What a light says.
+#: Meaning of each status light.
 GREEN, YELLOW, RED, UNKNOWN = "as it should be", "look", "wrong", "cannot tell"
 WIDTH = 76  # of a line of the text
 LIGHTS = {"as it should be": "ok  ", "look": "LOOK", "wrong": "RED ", "cannot tell": "?   "}

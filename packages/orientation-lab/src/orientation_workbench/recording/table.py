@@ -157,7 +157,7 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
         text = content.decode("utf-16")
     elif b"\0" in content[:4096]:
         raise RecordingError(
-            f"{name} is no text: byte {content.index(0) + 1} is zero. "
+            f"{name} is not a text file: byte {content.index(0) + 1} is zero. "
             "Many loggers write a format of their own; export it as CSV with the maker's program "
             "first."
         )
