@@ -56,12 +56,12 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"answer": changed("BEGIN SOLUTION", "BEGIN SOLUTIONS", ANSWER)},
-            "`### BEGIN SOLUTIONS` is no mark; there",
+            "`### BEGIN SOLUTIONS` is not a mark; the",
         ),
-        ({"answer": changed("### BEGIN", "# BEGIN", ANSWER)}, "`# BEGIN SOLUTION` is no mark"),
+        ({"answer": changed("### BEGIN", "# BEGIN", ANSWER)}, "`# BEGIN SOLUTION` is not a mark"),
         (
             {"answer": changed("BEGIN SOLUTION", "begin solution", ANSWER)},
-            "`### begin solution` is no mark",
+            "`### begin solution` is not a mark",
         ),
         (
             {"question": QUESTION.removesuffix("### END HIDDEN TESTS")},

@@ -21,7 +21,7 @@ def test_what_agrees_to_three_digits_is_told_so_and_nothing_else(count):
 
     assert {reply(share) for share in (1e-3, -1e-3, 5e-4, -3e-4)} == {"rounded too far"}
     assert "rounded too far" not in {reply(share) for share in (0.1 * count, -0.1 * count)}
-    # With cells as narrow as what it may be off by, there would be hundreds.
+    # If the cells were as narrow as the tolerance, there would be hundreds.
     assert len(logarithms.near) <= 4
 
 

@@ -70,9 +70,9 @@ NEARLY = (
     "answer."
 )
 BLANK = "Put your answer in place of the `...` and run the cells again."
-STRAY = "The answer holds `y`; this question has the symbols `x`."
+STRAY = "The answer contains `y`; this question has the symbols `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
-NUMBERS_ONLY = "The question is asked with `x`, and your answer holds numbers only."
+NUMBERS_ONLY = "The question is asked with `x`, but your answer contains only numbers."
 FORM = "Otherwise: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
 
 
@@ -104,7 +104,9 @@ def test_an_exact_answer(answer, expected):
     reply = reply_to(EXACT, LOCKERS, answer)
     assert reply[: len(expected)] == expected
     if expected[0] == "undecided":
-        assert reply[2].endswith("here. Try another form, or ask your instructor to look at it.")
+        assert reply[2].endswith(
+            "evaluate. Try another form, or ask your instructor to look at it."
+        )
 
 
 def test_a_symbol_that_is_missing_is_named():
@@ -113,10 +115,10 @@ def test_a_symbol_that_is_missing_is_named():
     wrong = questions.kind_of_values(question).wrong
     assert questions.what_can_be_said(question, plain) == wrong
     asked = Question("expression", symbols=question.symbols, every_symbol=True)
-    assert questions.what_can_be_said(asked, plain) == f"{wrong} It holds no `z`."
+    assert questions.what_can_be_said(asked, plain) == f"{wrong} It does not contain `z`."
     holds = questions.what_can_be_said(asked, to_plain(sm.Symbol("z")))
-    assert holds == f"{wrong} It holds no `x` and no `phi`."
-    only = "The question is asked with `x`, `phi`, `z`, and your answer holds numbers only."
+    assert holds == f"{wrong} It does not contain `x` and no `phi`."
+    only = "The question is asked with `x`, `phi`, `z`, but your answer contains only numbers."
     assert questions.what_can_be_said(asked, to_plain(3)) == only
 
 
@@ -514,7 +516,7 @@ def test_questions_are_found_in_the_variant_of_a_student(folder):
     (folder / "variants" / "levers-1.json").unlink()
     questions.notebook_questions.cache_clear()
     assert questions.own_numbers("levers/arm", student) == (1, "")
-    with pytest.raises(NoSuchQuestion, match=r"^Your numbers .* `variants/levers-1\.json` in the "):
+    with pytest.raises(NoSuchQuestion, match=r"^Your numbers .* `sealed/variants/levers-1\.json`"):
         find_question("levers/arm", student)
 
 
@@ -555,10 +557,10 @@ LONG = "levers/" + "a" * 90
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        (7, "is a text and comes first: .* This is of type `int`"),
+        (7, "is a string and comes first: .* This is of type `int`"),
         (type("T" * 50, (), {})(), f"of type `{'T' * 40}`"),
-        ("levers/arm/sibling-3", "-3': of 'levers/arm', its siblings are levers/arm/sibling and "),
-        ("levers/plain/sibling", "of 'levers/plain', it has no other numbers"),
+        ("levers/arm/sibling-3", "-3' .* the siblings of 'levers/arm' are levers/arm/sibling and "),
+        ("levers/plain/sibling", "does not exist: 'levers/plain' has no other numbers"),
         ("levers", "^'levers' is a notebook. Its questions are 'levers/arm', 'levers/plain'"),
         ("levers/plan", r"^There is no question 'levers/plan'\. Did you mean 'levers/plain'\?$"),
         ("Levers/Arm", r"Did you mean 'levers/arm'\?"),

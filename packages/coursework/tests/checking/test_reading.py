@@ -165,7 +165,7 @@ ROWS = "a list of rows, one of which has"
         (TRUTHS, [True, False, ...], "a list that is still blank in part"),
         (ORDER, "abc", "a string"),
         (ORDER, ["a", "b"], "a list with 2 entries"),
-        (ORDER, ["b", "a", "b"], "one in which `b` stands 2 times"),
+        (ORDER, ["b", "a", "b"], "one in which `b` appears 2 times"),
         (TEXT, 3, "a single expression"),
         (TEXT, ["a", 3], "a list with 2 entries"),
         (CHOICE, 2 * x, "a single expression"),
@@ -202,17 +202,17 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
         (CHOICE, 50 * "k", "shape", f"The answer is one of {OPTIONS}; this is `{40 * 'k'}`."),
         (IN_A, [1, 2], "shape", "Give a list of 3 components; this is a list with 2"),
         (IN_A, B.x, "frame", "This vector is not connected with the frame `A` that the question"),
-        (EXPRESSION, x, "stray symbol", "The answer holds `x`; this question has no symbols."),
+        (EXPRESSION, x, "stray symbol", "The answer contains `x`; this question has no symbols."),
         (
             Question("expression", symbols={"a": (1, 2), "b": (1, 2)}),
             sm.Symbol("x" * 50),
             "stray symbol",
-            f"The answer holds `{'x' * 40}`; this question has the symbols `a`, `b`.",
+            f"The answer contains `{'x' * 40}`; this question has the symbols `a`, `b`.",
         ),
         (EXPRESSION, sm.zoo, "undefined", "The answer has no finite value: division by zero."),
         (EXPRESSION, sm.Integer(10) ** 61 * sm.E, "too large", "the value is beyond 10^60."),
         (EXPRESSION, sm.I, "not real", "The answer has an imaginary part; the question asks for"),
-        (MEASUREMENT, (7, "furlong"), "unknown unit", "`furlong` is no unit that is known here."),
+        (MEASUREMENT, (7, "furlong"), "unknown unit", "`furlong` is not a unit that we know."),
         (FUNCTION, 7, "shape", "The question asks for a function: give its name, without calling"),
         (FUNCTION, returned(["blank"], ["blank"]), "returned nothing", "and returns nothing. End"),
         (
@@ -237,7 +237,7 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
             Question("function", result="expression", calls=([1], [2]), symbols={"w": (1, 2)}),
             returned(FIRST, STRAY),
             "stray symbol",
-            "asks for. The answer holds `w`; this question has no symbols.",
+            "asks for. The answer contains `w`; this question has no symbols.",
         ),
     ],
 )
@@ -268,7 +268,7 @@ def test_what_a_function_returns_is_read_call_by_call():
 
 
 def test_what_has_no_value_here_is_left_to_a_person():
-    with pytest.raises(Undecidable, match="^The answer holds gamma, whose value is not worked out"):
+    with pytest.raises(Undecidable, match="^The answer contains gamma, which we cannot evaluate"):
         read(EXPRESSION, plain(SECOND, ONE, ["gamma", 0]))
 
 

@@ -138,10 +138,16 @@ def test_an_archive_without_a_folder_and_the_folder_where_one_is(work, tmp_path,
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda path: None, "new.zip is not there, seen from .*as you have downloaded it"),
+        (
+            lambda path: None,
+            "new.zip does not exist .the current folder is .*as you have downloaded it",
+        ),
         (lambda path: path.mkdir(), "new.zip is a folder.*as you have downloaded it"),
-        (lambda path: path.write_text("<html>"), "new.zip is no whole zip archive.*once more"),
-        (lambda path: zipped(path, {"a.txt": b""}), "holds no notebook.*once more"),
+        (
+            lambda path: path.write_text("<html>"),
+            "new.zip is not a complete zip archive.*once more",
+        ),
+        (lambda path: zipped(path, {"a.txt": b""}), "contains no notebook.*once more"),
         (
             lambda path: zipped(path, {"a.ipynb": b"", "levers-1.8-py3-none-any.whl": b""}),
             "older than this folder: it has version 1.8 of the package, and here is 1.10.",
@@ -196,7 +202,7 @@ def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(wo
         (work / "manifest.json").write_text(text)
         assert update(archive, work) == ["kept yours  a.ipynb; the new one is a-new-1.ipynb"]
     (work / "manifest.json").write_text('{"format": 2, "files": {}}')
-    with pytest.raises(ArchiveRefused, match="^manifest.json .* of format 2, .* reads 1:"):
+    with pytest.raises(ArchiveRefused, match="^manifest.json .* has format 2, .* reads 1[.]"):
         update(archive, work)
 
 

@@ -82,7 +82,7 @@ def test_what_is_wrong_is_said_with_its_key_and_its_value(reader, content, chang
     "change, share, message",
     [
         ({"worth": "two"}, 1, "levers/one: 'worth' should be a number.*Unpack the exercises"),
-        ({}, 0.5, "of levers are no whole file. Unpack the exercises"),
+        ({}, 0.5, "for levers is incomplete. Unpack the exercises"),
         ({"kind": "lever"}, 1, "'levers/one' is of a kind .*, 'lever': install the package that"),
         ({"kind": "function", "result": "lever"}, 1, "is of a kind .*, 'lever': install"),
     ],

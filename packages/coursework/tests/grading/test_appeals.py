@@ -115,7 +115,7 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
         journal.appeal(record, SUM, "Again.", who="Ann")
     first = state()
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
-    with pytest.raises(Collision, match="went on with the appeal"):  # upon what was seen before
+    with pytest.raises(Collision, match="has changed this appeal"):  # upon what was seen before
         journal.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
     with pytest.raises(ValueError, match="why it is rejected"):
         journal.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
@@ -124,7 +124,7 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     )
     assert state().state == "rejected" and not state().is_open
     late = journal.decision(record, SUM, 1, who="Ben", appeal=first.id)
-    with pytest.raises(Collision, match="settled the appeal"):
+    with pytest.raises(Collision, match="has settled this appeal"):
         journal.append([late], collisions=True)
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=state().last, who="Ben")
     journal.append([late], collisions=True)
@@ -245,7 +245,7 @@ def test_a_table_of_appeals_is_taken_in_once(begun, out, capsys):
     for entered in (1, 0):
         main(["merge", str(out.folder), str(path)])
         said = capsys.readouterr()
-        assert f"taken in: {entered}." in said.out and "line 3: there is no answer of" in said.out
+        assert f"imported: {entered}." in said.out and "line 3: there is no answer of" in said.out
     assert "1 appeal is open (ben)" in said.err
     (appeals,) = Journal(out.folder).standing().appeals.values()
     assert [(len(one.steps), one.steps[0].words) for one in appeals] == [(1, f"=1+1 {SCRIPT}")]
@@ -437,6 +437,6 @@ def test_a_dry_run_writes_nothing(begun, out, capsys, tmp_path):
     main(["regrade", str(out.folder), *solutions, "--dry-run"])
     main(["grade", str(tmp_path / "in"), "--out", str(out.folder), *solutions, "--dry-run"])
     said = capsys.readouterr()
-    assert "would be taken in: 1 decision." in said.out
+    assert "(dry run: not imported): 1 decision." in said.out
     assert "'cem', essays: 0 -> 1" in said.out and "1 to grade, 0 of them graded before" in said.err
     assert contents() == before and (out.folder / regrade_page).exists()

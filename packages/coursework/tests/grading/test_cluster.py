@@ -263,7 +263,7 @@ def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, m
     from coursework.grading.execution import cluster
 
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
-    with pytest.raises(ValueError, match="no Dask scheduler to be reached at tcp://127.0.0.1:1"):
+    with pytest.raises(ValueError, match="cannot reach a Dask scheduler at tcp://127.0.0.1:1"):
         graded(submissions, solutions, tmp_path / "out", "tcp://127.0.0.1:1")
 
 

@@ -178,7 +178,7 @@ def test_what_cannot_be_graded_is_told_to_the_student(machine):
     )
     results = graded(machine, "{")
     assert results["score"] == 0 and "not well-formed JSON" in results["output"]
-    assert "answers.pdf: This is no notebook" in graded(machine, "x", name="answers.pdf")["output"]
+    assert "answers.pdf: Not a notebook" in graded(machine, "x", name="answers.pdf")["output"]
 
 
 def test_the_packages_are_named_in_the_versions_that_are_here():

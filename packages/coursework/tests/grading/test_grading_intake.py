@@ -512,7 +512,7 @@ def test_rosters_of_many_systems_are_read(box, tmp_path, text, name, student):
 
 def test_a_roster_that_cannot_be_used_is_said(tmp_path):
     for text, why in (
-        ("student\na\na\n", "line 3: 'a' is there a second time"),
+        ("student\na\na\n", "line 3: 'a' is listed twice"),
         ("x,y\n1,2\n", "names no student"),
     ):
         (tmp_path / "roster.csv").write_text(text)
@@ -572,15 +572,15 @@ CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execu
         (b"PK\x03\x04 another format", "not well-formed JSON"),
         (b"[]", "no cells"),
         (b'{"nbformat": 4}', "no cells"),
-        (b'{"cells": {}, "nbformat": 4}', "no list"),
-        (with_cells([1]), "one of its cells is none"),
-        (with_cells([CODE | {"source": 3}]), "text of one of its cells"),
-        (with_cells([CODE | {"source": [["a"]]}]), "text of one of its cells"),
-        (with_cells([CODE | {"source": "\ud800"}]), "half of a character"),
+        (b'{"cells": {}, "nbformat": 4}', "not a list"),
+        (with_cells([1]), "one of its cells is malformed"),
+        (with_cells([CODE | {"source": 3}]), "source of one of its cells"),
+        (with_cells([CODE | {"source": [["a"]]}]), "source of one of its cells"),
+        (with_cells([CODE | {"source": "\ud800"}]), "an incomplete character"),
         (with_cells([], nbformat=2), "version 2"),
         (with_cells([], nbformat=5), "version 5"),
         (with_cells([], nbformat=[4]), "version"),
-        (GOOD.replace(b"{", b'{"cells": [], ', 1), "same name twice"),
+        (GOOD.replace(b"{", b'{"cells": [], ', 1), "key appears twice"),
         (GOOD.decode().encode("utf-16"), "UTF-16"),
         (with_cells([CODE | {"source": "é"}]).replace(rb"\u00e9", "é".encode("latin-1")), "UTF-8"),
         (b'{"cells": ' + b"[" * 100_000 + b"]" * 100_000 + b"}", "nested too deeply"),
@@ -590,7 +590,7 @@ CODE = {"cell_type": "code", "source": "", "metadata": {}, "outputs": [], "execu
         (b" " * (intake.MOST_BYTES + 1), "larger than 20 MB"),
         (
             with_cells([]).replace(b"[]", b"[" + b"0," * intake.MOST_VALUES + b"0]"),
-            "made of more than",
+            "has more than",
         ),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
@@ -633,7 +633,7 @@ def test_links_and_channels_are_refused_and_not_followed(folder, tmp_path):
     (folder / "student").symlink_to(elsewhere)
     os.mkfifo(mine / "channel.ipynb")
     assert {name: why.split(".")[0] for name, why in the_refused(folder).items()} == {
-        "stranger/channel.ipynb": "This is no file but a device or a channel",
+        "stranger/channel.ipynb": "This is a device or a pipe, not a file",
         **dict.fromkeys(
             ("stranger/file.ipynb", "stranger/folder", "student"), "This is a link to another place"
         ),
@@ -708,7 +708,7 @@ def test_a_link_in_an_archive_is_refused(tmp_path):
 def test_a_name_that_is_there_twice_is_refused(tmp_path):
     twice = ("stranger/turns.ipynb", GOOD)
     refused = the_refused(archive(tmp_path / "class.zip", twice, twice))
-    assert set(refused.values()) == {"The archive holds this name more than once."}
+    assert set(refused.values()) == {"The archive contains this name more than once."}
 
 
 def test_an_archive_that_unpacks_to_far_more_is_refused(tmp_path):
@@ -748,7 +748,7 @@ def test_all_of_an_archive_together_is_bounded(tmp_path, monkeypatch):
 
 def test_what_is_no_archive_is_said(tmp_path):
     (tmp_path / "class.zip").write_bytes(b"no archive")
-    with pytest.raises(intake.Unfit, match="no zip archive"):
+    with pytest.raises(intake.Unfit, match="not a zip archive"):
         intake.take_in(tmp_path / "class.zip")
     with pytest.raises(intake.Unfit, match="nothing at"):
         intake.take_in(tmp_path / "class")

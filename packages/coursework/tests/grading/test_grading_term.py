@@ -246,7 +246,7 @@ def test_times_of_a_systems_table(rules, tmp_path):
         result(rules(text), record(6, identity={"name": "Bob Lee"}))[0]["turns"].handed_in is None
     )
     (tmp_path / "worksheet.csv").write_text("username,timestamp\nann,yesterday\n")
-    with pytest.raises(term.BadTerm, match="'ann': 'yesterday' is no time.* in English"):
+    with pytest.raises(term.BadTerm, match="'ann': 'yesterday' is not a time.* in English"):
         rules(text)
     (tmp_path / "worksheet.csv").write_text("username,when\nann,yesterday\n")
     with pytest.raises(term.BadTerm, match="no column says when"):
@@ -410,7 +410,7 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
     page = (out / "course" / "statistics.html").read_text()
     assert "Autumn &lt;2025&gt;" in page and page.count("33 %") == 2  # the sum, now and then
     earlier.write_text("{}")
-    with pytest.raises(term.BadTerm, match="holds no counts"):
+    with pytest.raises(term.BadTerm, match="does not contain course statistics"):
         write_course(Store(out), rules(), earlier=[earlier])
 
 

@@ -352,7 +352,7 @@ def test_the_commands(out, capsys, tmp_path, graded):
     Journal(other).add(found, "turns/sum", 0, who="Bea")
     main(["merge", str(out), str(other / "journal.jsonl")])
     assert ": 1 decision." in capsys.readouterr().out.splitlines()[0]
-    with pytest.raises(SystemExit, match="there is no .*decided nothing yet"):
+    with pytest.raises(SystemExit, match="there is no .*without decisions"):
         main(["merge", str(out), str(tmp_path / "none")])
 
 
@@ -365,7 +365,7 @@ def test_who_stops_judging_has_the_decisions_in_the_marks(out):
         Journal(out).add(Store(out).read("rounded-1", "turns"), "turns/sum", 0.5, comment="Nearly.")
         page.send_signal(signal.SIGINT)
         said = page.stdout.read()
-    assert "'rounded-1', turns: 5 -> 5.5" in said and "0 moved." in said
+    assert "'rounded-1', turns: 5 -> 5.5" in said and "Marks changed: 0." in said
     assert "Nearly." in (out / "feedback" / "rounded-1" / "turns.html").read_text()
 
 

@@ -36,7 +36,7 @@ def test_the_best_attempt_counts_and_everybody_is_told(course):
     course.hands_in(EARLY, "hw1", why=None)
     course.grade()
     assert course.points() == {"ada": 8}
-    # A worse one, and one that is late and right, which comes to 8 of 10.
+    # First a worse attempt, then a late but correct one, worth 8 of 10.
     course.hands_in(LATER, "hw1", arm=3, why=None)
     said = course.grade()
     assert "DOES NOT COUNT: unless it is the best of 2 attempts" in said
@@ -64,7 +64,7 @@ def test_another_attempt_may_be_the_best_once_a_question_was_mended(course):
     course.regrade("--yes")
     assert course.points() == {"ada": 4}
     assert f"  counts: {LATER}/hw1.ipynb" in course.run("why", "ada", "hw1")
-    assert "0 moved." in course.regrade()
+    assert "Marks changed: 0." in course.regrade()
     assert "2 of them graded before" in course.grade()
 
 
@@ -94,9 +94,9 @@ def test_the_page_of_moves_is_there_when_it_is_named(course):
     course.grade()
     course.change("hw1", sum=(6, 4))
     (line,) = [
-        line for line in course.grade(fails=True).splitlines() if line.startswith("Each of them: ")
+        line for line in course.grade(fails=True).splitlines() if line.startswith("Details: ")
     ]
-    page = (course.place / line.removeprefix("Each of them: ")).read_text()
+    page = (course.place / line.removeprefix("Details: ")).read_text()
     assert "Who would lose" in page and "ada" in page
 
 
@@ -167,4 +167,4 @@ def test_a_variant_is_taken_out_before_a_late_notebook_comes(tmp_path):
     assert "of 4, as the source stood before): correct" in said
     assert "of 3): correct" in course.run("why", new, "hw1")
     for _ in range(2):
-        assert "0 moved." in course.regrade()
+        assert "Marks changed: 0." in course.regrade()

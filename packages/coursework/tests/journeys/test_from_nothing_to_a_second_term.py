@@ -83,7 +83,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
     hand_in(folder, "handed-in/ada/first-steps.ipynb")
     hand_in(folder, "handed-in/ben/first-steps.ipynb", area="area = b*h")
     hand_in(folder, "handed-in/cem/first-steps.ipynb", area="area = ...", slope="slope = ...")
-    assert "name the folder that was handed in" in run("grade . --out marks", fails=True)
+    assert "Give the folder with the submissions" in run("grade . --out marks", fails=True)
     assert "handed in nothing: dan" in run("grade handed-in --out marks")
     assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
     said = run("why ada first", fails=True)
@@ -95,7 +95,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
         folder / "solutions" / "first-steps.ipynb", "symbols='x', worth=2", "symbols='x', worth=4"
     )
     assert "'ben', first-steps: 5 of 6 -> 7 of 8" in run("regrade marks", fails=True)
-    assert "3 moved." in run("regrade marks --yes")
+    assert "Marks changed: 3." in run("regrade marks --yes")
     term.write_text(term.read_text() + '\n[extensions.cemm]\nfirst-steps = "excused"\n')
     assert "nobody in the course is called so" in run("export marks --lms book.csv", fails=True)
     edited(term, "extensions.cemm", "extensions.cem")
@@ -106,8 +106,8 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
     assert "'ben', first-steps: 7 -> 8" in run("grade handed-in --out marks", fails=True)
     run("grade handed-in --out marks --yes")
     (folder / "appeals.csv").write_text("student,question,words\ncem,first-steps/area,Why?\n")
-    assert "taken in: 1." in run("merge marks appeals.csv --grader Ann")
-    assert "taken in: 0." in run("merge marks appeals.csv --grader Ann")
+    assert "imported: 1." in run("merge marks appeals.csv --grader Ann")
+    assert "imported: 0." in run("merge marks appeals.csv --grader Ann")
     run("term marks")
     assert '"ben","100"' in (folder / "marks" / "course" / "course.csv").read_text()
     # The next term: other people, other numbers, and the counts of the first beside them.
@@ -161,11 +161,11 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     ticked(
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )
-    assert "taken in: 60." in run(merge) and "taken in: 0." in run(merge)
+    assert "imported: 60." in run(merge) and "imported: 0." in run(merge)
     assert "quiz: 2.5 of 3 points" in run("why s-00 quiz")
     # Printed once more, the table keeps its ticks, and the answers their decisions.
     run(command)
-    assert "taken in: 0." in run(merge)
+    assert "imported: 0." in run(merge)
     (folder / "appeals.csv").write_text("student,question,words\ns-01,first-steps/area,Why?\n")
     run("merge marks appeals.csv")
     page = folder / "marks" / "feedback" / "s-01" / "quiz.html"

@@ -82,7 +82,7 @@ class Story:
         self.attempts = {}  # by worker and assignment
         self.last_asked = {}  # the question as it stood when the worker was judged last
         self.decided = {}  # by worker, assignment and question: the answer, and the credit
-        self.said = {}  # what the machine gave last, and on which answer
+        self.said = {}  # the machine's latest mark, and the answer it was for
         self.given, self.graded = {}, {}  # the marks, and the attempt that they are of
         self.policies = {"never-lower": set(), "full-credit": set(), "void": set()}
         self.which = self.dice.choice(["newest in time", "newest in time", "last", "best"])

@@ -100,7 +100,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
         ),
         ("[extensions.ada]\nhw3 = 'excused'", "line 15: what is 'hw3' in extensions.ada?"),
         ("[late-days]\nmost = 1", "line 14: what is 'late-days'?"),
-        ("[extensions.ada]\ntime = 1.5", "line 15: time = 1.5 .* hw1 has no such time"),
+        ("[extensions.ada]\ntime = 1.5", "line 15: time = 1.5 .* hw1 has no opening date"),
         ("[groups]\nteam = ['ada', 'zoe']", "groups name 'zoe', and nobody"),
     ],
 )
@@ -344,7 +344,7 @@ def test_who_has_no_mark_is_told_why(course):
     course.grade()
     said = course.run("why", "ben", "hw1")
     assert "ben, hw1: nothing that can be graded was handed in." in said
-    assert "cannot be graded: submitted/ben/hw1/hw1.ipynb, since This is no notebook" in said
+    assert "cannot be graded: submitted/ben/hw1/hw1.ipynb, since Not a notebook" in said
     assert "no mark is exported" in said
     assert "due 2025-10-05 23:59 CEST; it is exported as 0" in course.run("why", "cem", "hw1")
     assert "CEST; excused" in course.run("why", "dan", "hw1")

@@ -260,7 +260,7 @@ def reply_to(authored, answer):
         (
             simple_dcm("x", sm.Rational(1, 3)),
             "",
-            "is asked with theta, alpha, varphi, and your answer holds numbers only",
+            "is asked with theta, alpha, varphi, but your answer contains only numbers",
         ),
         (..., "", "in place of"),
         (None, "", "in place of"),

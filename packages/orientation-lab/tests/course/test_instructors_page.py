@@ -85,7 +85,7 @@ def test_the_instructors_page_shows_what_the_sample_class_gives(tmp_path):
     ]
     journal.add(record, "unit-quaternions/two-ways", 0.5, who="Ann")
     (move,) = regrade(tmp_path / "out", show=output).moves
-    assert f"\n  {move}\n1 moved.\n" in manual
+    assert f"\n  {move}\nMarks changed: 1.\n" in manual
     (printed,) = re.findall(
         r"^\$ coursework export graded --lms class/gradebook.csv.*?\n(.*?)```", manual, re.M | re.S
     )

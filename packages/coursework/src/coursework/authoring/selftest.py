@@ -43,7 +43,7 @@ from .source import (
     read_source,
 )
 
-#: Forms that a right answer is tried in, where algebra gives that many.
+#: Maximum number of equivalent forms in which to test a right answer.
 FORMS = 6
 COLUMNS = (
     "Question",
@@ -75,7 +75,7 @@ td details{display:inline-block;max-width:100%;vertical-align:top}
 }
 """
 NO_LEAK = (
-    "<p>None: no line of a solution, hint, hidden test or answer stands in anything that is "
+    "<p>None: no line of a solution, hint, hidden test or answer is in anything that is "
     "released.</p>"
 )
 
@@ -304,7 +304,7 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
     faults: list[str] = []
     for step in question.ladder:
         faults += [
-            f"{openly} holds {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)
+            f"{openly} contains {what}: {step}" for what, _ in found_in({"": _dense(step)}, secrets)
         ]
         for code in re.findall(r"`([^`]+)`", step):
             if _judge_code(question, code) == "correct":
@@ -315,7 +315,7 @@ def told_openly(question: AuthoredQuestion, secrets: Secrets) -> list[str]:
 def _judge_code(question: AuthoredQuestion, code: str) -> str:
     """The outcome of a piece of code as the answer to a question; empty where it gives none."""
     symbols = {name.rstrip("'"): sympy.Symbol(name.rstrip("'")) for name in question.public.symbols}
-    with contextlib.suppress(Exception):  # whatever is wrong with it, it is no answer then
+    with contextlib.suppress(Exception):  # if it fails in any way, it is not an answer
         return _judge(
             question, eval(code.partition("=")[2] or code, {**vars(sympy), "sm": sympy, **symbols})
         ).outcome
@@ -441,7 +441,7 @@ def selftest(
         Path(page).parent.mkdir(parents=True, exist_ok=True)
         Path(page).write_text(write_page(findings, leaked), "utf8")
     return [f"{finding.name}: {fault}" for finding in findings for fault in finding.faults] + [
-        f"{what} stands in {place}" for what, place in leaked
+        f"{what} is in {place}" for what, place in leaked
     ]
 
 
@@ -487,8 +487,7 @@ def write_page(
             + "</tr>"
         )
     listed = "".join(
-        f"<li>{html.escape(what)} stands in {html.escape(place)}</li>"
-        for what, place in leaked or []
+        f"<li>{html.escape(what)} is in {html.escape(place)}</li>" for what, place in leaked or []
     )
     # A test of a few questions does not look for leaks.
     leaks_found = f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 #: The source whose questions stand inside the chapters: only its sealed file is made.
 CHAPTERS = "chapters"
-#: Where the code is that the seals of a question follow from.
+#: Location of the code that determines a question's seals.
 ROOMS = ("authoring", "checking")
 #: Digits after the point of which a number that students see has no more:
 #: others are the rounding of a machine.
@@ -318,7 +318,9 @@ def _demand_marks(text: str, where: str) -> None:
         what, marked = found[1], found[2].rstrip()
         if line.strip() != f"### {what} {marked}" or what != what.upper() or marked not in MARKED:
             known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
-            raise author.AuthorError(f"{where}: `{line.strip()}` is no mark; there are {known}.")
+            raise author.AuthorError(
+                f"{where}: `{line.strip()}` is not a mark; the marks are {known}."
+            )
         if what == "BEGIN" and open_one:
             raise author.AuthorError(
                 f"{where}: `### BEGIN {open_one}` has no `### END {open_one}`."
@@ -612,8 +614,7 @@ def checked_in(codes: Iterable[str]) -> dict[str, str]:
             name, answer = node.args
             if not isinstance(name, ast.Constant) or not isinstance(answer, ast.Name):
                 raise author.AuthorError(
-                    f"{ast.unparse(node)}: write check with a string and the plain name of an "
-                    "answer."
+                    f"{ast.unparse(node)}: call check with a string and a plain variable name."
                 )
             found[str(name.value)] = answer.id
     return found

@@ -297,7 +297,7 @@ def _order(question: Question, plain: Plain) -> str:
     parts = _choices(question, plain)
     twice = next((part for part in parts if parts.count(part) > 1), None)
     if twice is not None:
-        raise shape_fault(expected, f"one in which `{twice}` stands {parts.count(twice)} times")
+        raise shape_fault(expected, f"one in which `{twice}` appears {parts.count(twice)} times")
     return PARTS["order"].join(parts)
 
 

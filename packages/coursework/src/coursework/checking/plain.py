@@ -217,7 +217,7 @@ def to_plain(
         raise NotPlain(
             f"An answer of type `{type(answer).__name__[:40]}` could not be read "
             f"({type(error).__name__}). "
-            "Give a SymPy expression, a matrix, a list of numbers or a text."
+            "Give a SymPy expression, a matrix, a list of numbers or a string."
         ) from None
 
 
@@ -342,7 +342,7 @@ class _Writer:
     def of_sympy(self, answer: object, depth: int) -> Value:
         if _module(type(answer)).startswith("scipy.spatial"):
             raise NotPlain(
-                "This is a SciPy Rotation, which holds no matrix of two named frames. "
+                "This is a SciPy Rotation, which contains no matrix of two named frames. "
                 "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
             )
         # Mechanics is slow to import; if the answer has a frame or a vector, it has been imported.
@@ -405,7 +405,7 @@ class _Writer:
             return ["expression", self.expression(answer)]
         raise NotPlain(
             f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
-            "Give a SymPy expression, a matrix, a list of numbers or a text."
+            "Give a SymPy expression, a matrix, a list of numbers or a string."
         )
 
     def result(
@@ -585,7 +585,7 @@ class _Writer:
             # Compare powers of two: writing a huge integer out can itself take minutes.
             if part.bit_length() > LONGEST_INTEGER * 3:
                 raise NotPlain(
-                    f"The answer holds an integer of about {int(part.bit_length() * 0.30103)} "
+                    f"The answer contains an integer of about {int(part.bit_length() * 0.30103)} "
                     "digits. No question needs one."
                 )
         return (
@@ -643,7 +643,7 @@ class _Writer:
         if unit == units.degree:
             return sympy.pi / 180
         raise NotPlain(
-            f"The answer holds the unit `{unit}`. "
+            f"The answer contains the unit `{unit}`. "
             "Give numbers alone, in the unit that the question names."
         )
 
@@ -782,7 +782,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
     [(rest, terms)] = terms_of.items()
     powers = rest.as_powers_dict() if rest != 1 else {}
     if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
-        raise NotPlain("The unit of this answer is no product of whole powers of base units.")
+        raise NotPlain("The unit of this answer is not a product of whole powers of base units.")
     unit = " ".join(
         f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers
     )

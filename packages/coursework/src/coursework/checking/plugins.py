@@ -15,7 +15,7 @@ in it are read, each if it is there:
     What the class did, for the instructor's report, by the note of a mistake: ``"conjugate": "gave
     the conjugate"``.
 ``CLOSED``
-    How many answers a question of a kind allows, where they are few, by the name of the kind.
+    Number of possible answers for each kind of question that has only a few, by the kind's name.
 ``PACKAGES``
     Names of the packages that the course's notebooks import, so that grading has them at hand.
 """

@@ -100,7 +100,7 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
             about = _on_the_first(questions[name], about) if variant else about
             questions_by_name[name] = Sealed.from_json(about, f"The sealed question {name}")
     except ValueError as error:
-        cut = f"The sealed questions of {notebook} are no whole file."
+        cut = f"The file of sealed questions for {notebook} is incomplete."
         raise RuntimeError(
             f"{error if isinstance(error, Misread) else cut} Unpack the exercises again; what you "
             "have written is kept."
@@ -168,7 +168,7 @@ def find_question(name: str, student: str) -> Sealed:
     """
     if not isinstance(name, str):
         raise NoSuchQuestion(
-            "The name of a question is a text and comes first: `check('notebook/question', "
+            "The name of a question is a string and comes first: `check('notebook/question', "
             "answer)`. "
             f"This is of type `{type(name).__name__[:40]}`."
         )
@@ -179,18 +179,18 @@ def find_question(name: str, student: str) -> Sealed:
         siblings = siblings_of(asked, questions[asked].question.variants)
         if order > len(siblings):
             there = (
-                f"its siblings are {' and '.join(siblings)}"
+                f"the siblings of '{asked}' are {' and '.join(siblings)}"
                 if siblings
-                else "it has no other numbers"
+                else f"'{asked}' has no other numbers"
             )
-            raise NoSuchQuestion(f"There is no '{name}': of '{asked}', {there}.")
+            raise NoSuchQuestion(f"'{name}' does not exist: {there}.")
         number = own_variant(student, asked, questions[asked].question, order)
         of_variant = notebook_questions(notebook, number)
         if asked not in of_variant:
             raise NoSuchQuestion(
-                f"Your numbers of '{asked}' are missing: they stand in `variants/{notebook}-"
-                f"{number}.json` in the folder `sealed`. Unpack the exercises again; what you have "
-                "written is kept."
+                f"Your numbers for '{asked}' are missing. They should be in `sealed/variants/"
+                f"{notebook}-{number}.json`. Unpack the exercises again; you will not lose your "
+                "work."
             )
         of_question = of_variant[asked].question
         if unknown := {of_question.kind, of_question.kind_of_values} - set(kinds()):
@@ -681,8 +681,10 @@ def what_can_be_said(question: Question, plain: Plain) -> str:
     missing = [symbol for symbol in question.symbols if not {symbol, *spellings(symbol)} & named]
     symbols = ", ".join(f"`{symbol}`" for symbol in question.symbols)
     if symbols and not named:
-        return f"The question is asked with {symbols}, and your answer holds numbers only."
+        return f"The question is asked with {symbols}, but your answer contains only numbers."
     message_text = kind_of_values(question).wrong
     if question.every_symbol and missing:
-        message_text += f" It holds no {' and no '.join(f'`{symbol}`' for symbol in missing)}."
+        message_text += (
+            f" It does not contain {' and no '.join(f'`{symbol}`' for symbol in missing)}."
+        )
     return message_text

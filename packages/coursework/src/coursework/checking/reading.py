@@ -247,16 +247,14 @@ def _number(question: Question, result: Any) -> Number:
             if known_symbols
             else "this question has no symbols"
         )
-        raise Fault("stray symbol", f"The answer holds `{name}`; {expected}.") from None
+        raise Fault("stray symbol", f"The answer contains `{name}`; {expected}.") from None
     except Undefined as error:
         somewhere = " for some values of its symbols" if question.symbols else ""
         raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
     except TooLarge as error:
-        raise Fault("too large", f"The answer is not worked out: {error}.") from None
+        raise Fault("too large", f"We cannot evaluate the answer: {error}.") from None
     except NotSupported as error:
-        raise Undecidable(
-            f"The answer holds {error}, whose value is not worked out here."
-        ) from None
+        raise Undecidable(f"The answer contains {error}, which we cannot evaluate.") from None
     except ValueError:
         raise Fault(
             "not real", "The answer has an imaginary part; the question asks for something real."
@@ -276,7 +274,7 @@ def _with_units(
     except UnknownUnit as error:
         raise Fault(
             "unknown unit",
-            f"`{error}` is no unit that is known here. Write products with a space and quotients "
+            f"`{error}` is not a unit that we know. Write products with a space and quotients "
             "with a stroke: "
             "`kN m`, `m/s^2`, `J/(kg K)`.",
         ) from None

@@ -152,8 +152,8 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
     once_more = "Nothing was changed: download it once more."
     if not (place := Path(archive_file)).is_file():
         raise ArchiveRefused(
-            f"{place} is {'a folder' if place.is_dir() else f'not there, seen from {Path.cwd()}'}. "
-            "Put the archive there as you have downloaded it, or write where it is."
+            f"{place} {'is a folder' if place.is_dir() else 'does not exist'} (the current folder "
+            f"is {Path.cwd()}). Put the archive there as you have downloaded it, or give its path."
         )
     others = [
         file
@@ -177,12 +177,12 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
             files = {_place(entry): box.read(entry) for entry in entries}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError):
         raise ArchiveRefused(
-            f"{archive_file} is no whole zip archive. Did the download break off, or was a page "
-            f"saved in its place? {once_more}"
+            f"{archive_file} is not a complete zip archive. Was the download interrupted, or did "
+            f"you save a web page instead? {once_more}"
         ) from None
     if not any(name.endswith(".ipynb") for name in files):
         raise ArchiveRefused(
-            f"{archive_file} holds no notebook. Is it the archive of the exercises? {once_more}"
+            f"{archive_file} contains no notebook. Is it the archive of the exercises? {once_more}"
         )
     return files
 
@@ -275,9 +275,7 @@ def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
         return {}, []  # files of unknown origin count as the student's
     if format != FORMAT:
         raise ArchiveRefused(
-            f"{MANIFEST} in this folder is of format {format}, and the coursework that is "
-            f"installed reads {FORMAT}: install the package that lies in this folder, and run this "
-            "again. "
-            "Nothing was changed."
+            f"{MANIFEST} in this folder has format {format}, but the installed coursework reads "
+            f"{FORMAT}. Install the package in this folder and try again. Nothing was changed."
         )
     return files, list(archives)

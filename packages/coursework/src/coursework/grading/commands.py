@@ -31,10 +31,11 @@ SOLUTIONS = _argument(
     help="folder of the notebooks with solutions (default: the one in course.toml)",
 )
 DRY_RUN = _argument(
-    "--dry-run", action="store_true", help="show what would happen, and change no mark"
+    "--dry-run", action="store_true", help="show what would happen, without changing any mark"
 )
 GRADER = _argument(
-    "--grader", help="whose decisions these are, for the journal (default: your user name)"
+    "--grader",
+    help="name to record in the journal with these decisions (default: your user name)",
 )
 YES = _argument(
     "--yes", action="store_true", help="accept every change of a mark, up or down, without asking"
@@ -44,7 +45,7 @@ WORKERS = _argument(
     type=int,
     help="number of notebooks to run at a time (default: one per processor)",
 )
-#: What each command does, and what it is told.
+#: The help and the arguments of each command.
 ARGUMENTS = {
     "grade": (
         "grade a folder or an archive of notebooks",
@@ -87,7 +88,7 @@ ARGUMENTS = {
             _argument(
                 "--as-listed",
                 action="store_true",
-                help="follow the list even if many notebooks claim to be another student's",
+                help="trust the list even if many notebooks carry another student's ID",
             ),
         ],
     ),
@@ -105,7 +106,7 @@ ARGUMENTS = {
         [
             OUT,
             GRADER,
-            _argument("--hide-names", action="store_true", help="show numbers in place of names"),
+            _argument("--hide-names", action="store_true", help="show numbers instead of names"),
             _argument(
                 "--port", type=int, default=0, help="port for the page (default: any free one)"
             ),
@@ -113,7 +114,7 @@ ARGUMENTS = {
         ],
     ),
     "sitting": (
-        "print questions to answer on paper, each student's own, and pages for markers",
+        "print a personal question paper for each student, and marking sheets",
         [
             OUT,
             _argument("name", metavar="NAME", help="the assignment's name, such as quiz-1"),
@@ -163,7 +164,9 @@ ARGUMENTS = {
             ),
             OUT,
             SOLUTIONS,
-            _argument("--roster", metavar="FILE.csv", help="with new: the students of the course"),
+            _argument(
+                "--roster", metavar="FILE.csv", help="roster of the course (only with 'new')"
+            ),
             _argument(
                 "--earlier",
                 nargs="+",
@@ -192,7 +195,7 @@ ARGUMENTS = {
                 "--as-of",
                 metavar="TIME",
                 type=_moment,
-                help="export the marks that were decided and due by then, such as "
+                help="export only marks that were decided and due by this time, such as "
                 "2026-12-01T12:00 (default: now)",
             ),
             DRY_RUN,
@@ -201,8 +204,7 @@ ARGUMENTS = {
                 action="append",
                 default=[],
                 metavar="STUDENT",
-                help="replace a mark that somebody entered by hand for this student, but "
-                "not an excuse",
+                help="override this student's manually entered mark (but not an excused one)",
             ),
             _argument(
                 "--assignment",
@@ -212,7 +214,7 @@ ARGUMENTS = {
             _argument(
                 "--feedback",
                 metavar="FILE.zip",
-                help="write the pages of feedback, under names that your system recognises",
+                help="write the feedback pages, named as your LMS expects",
             ),
             _argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table"),
         ],
@@ -250,7 +252,7 @@ ARGUMENTS = {
             ),
             _argument(
                 "--host",
-                help="start the scheduler, at this address, where the others can reach it",
+                help="start the scheduler at this address, which the workers must be able to reach",
             ),
             _argument(
                 "--port",
@@ -313,18 +315,18 @@ def grade(
     except (WeakIsolation, WorkerDied) as error:
         sys.exit(f"coursework grade: {error}")
     except KeyboardInterrupt:
-        sys.exit("\nStopped. The same command goes on from here.")
+        sys.exit("\nStopped. Run the same command again to resume.")
     if not dry_run:
         print(f"The report: {out}/report.html")
     if done["held"]:
         sys.exit(NOT_MOVED)
 
 
-NOT_MOVED = "No mark that was given before has moved. To go on, say --yes."
+NOT_MOVED = "No existing mark was changed. To continue, add --yes."
 
 
 def _agree(out: str, yes: bool) -> Agree:
-    """Say which marks would move, and ask whether they shall, unless that was said before."""
+    """Show which marks would change, and ask for consent, unless it was given with --yes."""
 
     def agree(laboratory: Laboratory) -> bool:
         from .judging.laboratory import PAGE
@@ -332,29 +334,31 @@ def _agree(out: str, yes: bool) -> Agree:
         for line in laboratory.lines():
             print(line)
         if not yes:
-            print(f"Each of them: {out}/{PAGE}")
+            print(f"Details: {out}/{PAGE}")
         return yes or (
             sys.stdin.isatty()
-            and input("Shall these marks move? yes or no: ").strip().casefold() == "yes"
+            and input("Change these marks? (yes/no): ").strip().casefold() == "yes"
         )
 
     return agree
 
 
 def _bring_in_decisions(out: str, yes: bool) -> None:
-    """Bring what was decided, and is kept already, into the marks."""
+    """Apply the decisions in the journal to the marks."""
     from .grade import bring_in_decisions
 
     try:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
     except ValueError as error:
-        sys.exit(f"They are kept, and not yet in the marks: coursework regrade {out} ({error})")
+        sys.exit(
+            f"The decisions are saved but not yet applied. Run coursework regrade {out} ({error})"
+        )
 
 
 def _say_moved(laboratory: Laboratory) -> None:
     if not laboratory.agreed:
         sys.exit(NOT_MOVED)
-    print(*laboratory.first_decided(), f"{len(laboratory.moves)} moved.", sep="\n")
+    print(*laboratory.first_decided(), f"Marks changed: {len(laboratory.moves)}.", sep="\n")
 
 
 def regrade(
@@ -369,7 +373,7 @@ def regrade(
     if dry_run:
         print(
             *[*laboratory.lines(), *laboratory.first_decided()],
-            f"{len(laboratory.moves)} would move.",
+            f"Marks that would change: {len(laboratory.moves)}.",
             sep="\n",
         )
     else:
@@ -380,12 +384,12 @@ def review(out: str, grader: str | None, hide_names: bool, port: int, yes: bool)
     from .review import review as serve
 
     def say(address: str) -> None:
-        print(f"Open this address, and tell it to nobody: {address}\nStop with Ctrl+C.", flush=True)
+        print(f"Open this address and keep it private: {address}\nStop with Ctrl+C.", flush=True)
 
     try:
         serve(out, grader or getpass.getuser(), hide_names=hide_names, port=port, say=say)
     except KeyboardInterrupt:
-        print("\nThe decisions are brought into the marks and pages.")
+        print("\nApplying the decisions to the marks and pages.")
         _bring_in_decisions(out, yes)
 
 
@@ -420,8 +424,8 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
     missing = [path for path in files if not Path(path).is_file()]
     if missing:
         sys.exit(
-            f"coursework merge: there is no {missing[0]}. Who has decided nothing yet has no "
-            "journal: leave it out."
+            f"coursework merge: there is no {missing[0]}. A grader without decisions has no "
+            "journal, so leave it out."
         )
     journal, store = Journal(Path(out), dry_run), Store(out)
     for path in files:
@@ -429,7 +433,7 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
             _merge_journal(journal, store, path, dry_run)
         else:
             entered, unused = journal.take_in_table(Path(path), store.all(), grader)
-            print(f"From {path}, {'would be ' * dry_run}taken in: {entered}.")
+            print(f"From {path}, {'would be ' * dry_run}imported: {entered}.")
             for line in unused:
                 print(f"  not used: {line}")
     if not dry_run:
@@ -448,7 +452,7 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         else ""
     )
     print(
-        f"New from {path}{', would be taken in' * dry_run}: {len(decisions)} "
+        f"New in {path}{' (dry run: not imported)' * dry_run}: {len(decisions)} "
         f"{'decision' if len(decisions) == 1 else 'decisions'}{others}."
     )
     foreign = [
@@ -461,8 +465,8 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         students = dict.fromkeys(decision.student for decision in foreign)
         whose = ", ".join(in_a_line(name, 60) for name in students)
         print(
-            f"  {len(foreign)} of them are on answers that are not here: {whose}. They change no "
-            "mark."
+            f"  {len(foreign)} of them are about answers missing from this folder: {whose}. They "
+            "change no mark."
         )
     for first, second in differing:
         print(
@@ -488,7 +492,9 @@ def term(
         print(new_term(out, Path(solutions or find_course().sources), roster))
         return
     if roster:
-        sys.exit("coursework term: --roster is for term new; it stands in term.toml then.")
+        sys.exit(
+            "coursework term: --roster works only with 'term new'; after that it is in term.toml."
+        )
     print(
         *write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier),
         f"The course: {out}/{FOLDER}/course.csv, and statistics.html beside it",
@@ -511,13 +517,13 @@ def export(
     from .store import Store
 
     if not (lms or feedback or nbgrader):
-        sys.exit("coursework export: name what to write: --lms, --feedback or --nbgrader.")
+        sys.exit("coursework export: choose --lms, --feedback or --nbgrader.")
     store, book = Store(out), lms or ""
     target = str(gradebooks.place_of_filled(lms, filled)) if lms else ""
     for one, column in gradebooks.columns(lms, store, assignment) if lms else ():
         marks = gradebooks.Marks(store, one, as_of=as_of)
         print(*gradebooks.fill(book, marks, column, target, overwrite, dry_run), sep="\n")
-        # The next column is filled where this one was.
+        # Fill the next column in the file that has this one.
         book = book if dry_run else target
     if dry_run:
         return
@@ -541,8 +547,8 @@ def gradescope(marks: str, out: str, solutions: str | None, assignment: str) -> 
 
     stems = write_autograder(out, marks, assignment, solutions=solutions)
     print(
-        f"{out} grades {', '.join(stems)}. It holds the solutions and your secret: upload it, and "
-        "show it to nobody."
+        f"{out} grades {', '.join(stems)}. It contains the solutions and your secret. Upload it, "
+        "but share it with nobody."
     )
 
 
@@ -563,16 +569,16 @@ def cluster(
     else:
         if not host:
             sys.exit(
-                "coursework cluster: say at which address of this machine the others reach it: "
-                "--host 192.0.2.7."
+                "coursework cluster: give the address at which workers can reach this machine, "
+                "such as --host 192.0.2.7."
             )
         made = cluster_keys.make_keys(folder)
         command = cluster_keys.scheduler(folder, host, port)
         address = f"tls://{host}:{port}"
         print(
-            f"{'New keys are' if made else 'The keys are'} in {folder}: whoever has them runs "
-            "code on this cluster.\n"
-            f"On each machine that is to work, with a copy of that folder:\n"
+            f"{'New keys are' if made else 'The keys are'} in {folder}: anyone who has them "
+            "can run code on this cluster.\n"
+            f"On each worker machine, with a copy of that folder:\n"
             f"  coursework cluster --keys {folder.name} --worker {address}\n"
             f"Then, where the notebooks are:\n"
             f"  coursework grade ... --scheduler {address} --keys {folder.name}\n"

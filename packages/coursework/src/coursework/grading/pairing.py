@@ -100,11 +100,12 @@ def read(
     """
     if course.folder.resolve().is_relative_to(submissions.resolve()):
         raise NothingToGrade(
-            f"{submissions} holds the notebooks with solutions: name the folder that was handed in."
+            f"{submissions} contains the notebooks with solutions. Give the folder with the "
+            "submissions."
         )
     if (submissions / "records").is_dir() and (submissions / JOURNAL).is_file():
         raise NothingToGrade(
-            f"{submissions} holds results of grading: name the folder that was handed in."
+            f"{submissions} contains results of grading. Give the folder with the submissions."
         )
     try:
         notebooks, refused = intake.take_in(
@@ -289,7 +290,7 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
 # --- what is refused before anything is run -------------------------------------------------------
 
 
-#: Of the notebooks that say whose they are, so many may be wrong before it is the roster that is.
+#: Above both limits of mismatched notebooks, suspect the roster, not the notebooks.
 FEW_FOREIGN, SHARE_FOREIGN = 2, 0.2
 
 
@@ -299,8 +300,9 @@ def demand_own_numbers(
     foreign: Sequence[Foreign],
     roster: Roster | None,
 ) -> None:
-    """Numbers follow from who one is: where many say to be somebody else, all
-    would be judged by wrong numbers.
+    """Refuse to grade if many notebooks carry another student's ID.
+
+    Numbers are derived from the ID, so all would be judged by wrong numbers.
     """
     varied = {
         name
@@ -318,18 +320,18 @@ def demand_own_numbers(
         return
     (one, notebook), *_ = wrong
     why = (
-        "The roster knows them by another word than they wrote: of `student`, `email` and `name` "
-        "the first column that it has is the one that their numbers follow from."
+        "The roster has other IDs for them: their numbers are derived from the first of its "
+        "columns `student`, `email` and `name`."
         if roster
-        else "Name a roster in term.toml in which they are called as they wrote, or name their "
-        "folders so."
+        else "Set a roster in term.toml that has the IDs they wrote, or give their folders these "
+        "names."
     )
     raise NothingToGrade(
-        f"Of {saying} notebooks that say whose they are, {len(wrong)} say to be of somebody else "
-        f"than they are graded as: {notebook.says!r} as {one.student!r}, say. "
-        "Each student's numbers follow from that word, so their answers would be judged by other "
-        "numbers than they were given. "
-        f"{why} If all of it is right as it is listed: --as-listed."
+        f"Of {saying} notebooks with an ID, {len(wrong)} carry another student's: for example, "
+        f"{notebook.says!r} would be graded as {one.student!r}. "
+        "Each student's numbers are derived from the ID, so we would judge their answers by "
+        "numbers that they were not given. "
+        f"{why} If the list is right nevertheless, add --as-listed."
     )
 
 
@@ -359,9 +361,9 @@ def say_other_numbers(
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
-                "other numbers than those of the student whose they are, and earn nothing. "
-                "Are the students called here as they have written into their notebooks? "
-                "If not, grade again with the right roster in term.toml: nothing is lost.",
+                "numbers other than the student's own, and earn nothing. "
+                "Are the students' IDs here those that they wrote into their notebooks? "
+                "If not, grade again with the right roster in term.toml. Nothing is lost.",
                 file=show,
             )
 
@@ -382,8 +384,8 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
         raise NothingToGrade(
             f"The notebooks would all be of one student, {only!r}, and all but the newest would "
             "not count. "
-            f"If that is so, say --student {only!r}; if not, name the folder in which each student "
-            "has one of their own, or name a roster in term.toml."
+            f"If that is so, add --student {only!r}; if not, give the folder in which each student "
+            "has one of their own, or set a roster in term.toml."
         )
 
 

@@ -25,7 +25,7 @@ from .submissions import intake
 from .versions import software
 from .workers import processors, side_by_side
 
-# What runs code takes a while to be loaded, and where nothing is graded it is not needed.
+# Import the execution modules lazily: they load slowly, and only grading needs them.
 if TYPE_CHECKING:
     from .execution.sandbox import Job, Limits
 
@@ -77,8 +77,7 @@ class Running:
             )
         if self.scheduler and importlib.util.find_spec("distributed") is None:
             raise ValueError(
-                "To give notebooks to a cluster, install what speaks to it: python -m pip install "
-                "distributed"
+                "To use a cluster, first install Dask: python -m pip install distributed"
             )
         if self.scheduler:
             demand_keys(self.scheduler, Path(self.keys) if self.keys else None)

@@ -106,7 +106,7 @@ def sitting(
             path = desk.store.folder / FILE
             with path.open("a", encoding="utf8") as file:
                 file.write(f"\n[assignments.{json.dumps(name)}]\nquestions = {list(questions)}\n")
-            desk.tell(f"{path} has the sitting now: say there what it counts.")
+            desk.tell(f"The sitting is now in {path}: set there how much it counts.")
         settled = (desk.marked(_on_paper(desk, person, name, people)) for person in people.people)
         desk.settle(settled, "printed again")
         desk.report(course)
@@ -120,7 +120,7 @@ def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
     if not path.exists():
         raise BadTerm(f"there is no {path}: `coursework term new` writes it.")
     if about and (not about.questions or questions not in ((), about.questions)):
-        asks = f"asks {', '.join(about.questions)}" if about.questions else "is no sitting"
+        asks = f"asks {', '.join(about.questions)}" if about.questions else "is not a sitting"
         raise BadTerm(f"{name} {asks} in {path}: change it there, or use another name.")
     if about is None:
         desk.term = replace(
@@ -131,7 +131,7 @@ def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
             },
         )
         if not questions:
-            raise BadTerm(f"{name} is not in {path} yet: name its questions with --questions.")
+            raise BadTerm(f"{name} is not in {path} yet: give its questions with --questions.")
     return about is None
 
 

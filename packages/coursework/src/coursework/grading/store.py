@@ -166,7 +166,7 @@ class Store:
 
     def all(self) -> Iterator[Record]:
         """All records, by student and assignment, one at a time."""
-        # Names of folders alone, and not all paths: a class may have a hundred thousand.
+        # Keep only folder names, not whole paths, because a class may have a hundred thousand.
         for folder in sorted(os.listdir(self.records) if self.records.is_dir() else ()):
             for path in sorted((self.records / folder).glob("*.json"), key=lambda path: path.name):
                 record = record_in(path)
@@ -265,7 +265,7 @@ def write(
             file.flush()
             os.fsync(file.fileno())
     os.replace(half, path)
-    if lasting and hasattr(os, "O_DIRECTORY"):  # Windows opens no folder
+    if lasting and hasattr(os, "O_DIRECTORY"):  # Windows cannot open a directory
         folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
         try:
             os.fsync(folder)

@@ -32,7 +32,7 @@ def processors() -> int:
 
 
 class TaskLost(RuntimeError):
-    """Process after process ended while it was at the same task."""
+    """Several worker processes in a row died on the same task."""
 
 
 def side_by_side(
@@ -90,7 +90,8 @@ def side_by_side(
                         continue
                     if lost is None:
                         raise TaskLost(
-                            f"Process after process ended at a task: {worker.task!r:.200}"
+                            "Several worker processes in a row died on the same task: "
+                            f"{worker.task!r:.200}"
                         ) from None
                     worker, said = again, {"done": lost(worker.task)}
                 if "error" in said:

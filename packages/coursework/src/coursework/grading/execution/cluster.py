@@ -158,9 +158,7 @@ def run_on_cluster(
                 )
             )
         except OSError as error:
-            raise ValueError(
-                f"There is no Dask scheduler to be reached at {address} ({error})."
-            ) from None
+            raise ValueError(f"We cannot reach a Dask scheduler at {address} ({error}).") from None
         try:
             client.register_plugin(Sandboxes(name, vars(limits), allow_weak_isolation), name=name)
         except OSError as error:

@@ -133,11 +133,11 @@ def demand_keys(address: str, folder: Path | None) -> None:
     """
     if address.startswith("tls://"):
         if folder is None:
-            raise NoKeys("Say where the keys of this cluster are: --keys FOLDER.")
+            raise NoKeys("Give the folder of this cluster's keys: --keys FOLDER.")
         options(folder)
     elif urlsplit(address if "://" in address else f"tcp://{address}").hostname not in LOOPBACK:
         raise NoKeys(
-            f"The scheduler at {address} asks for no key: whoever can reach it runs code on all of "
-            "its machines, and could send any results. "
-            "Start one with `coursework cluster --keys FOLDER`, and name it as tls://..."
+            f"The scheduler at {address} asks for no key: anyone who can reach it can run code on "
+            "all of its machines, and could send any results. "
+            "Start one with `coursework cluster --keys FOLDER`, and give its address as tls://..."
         )

@@ -83,8 +83,9 @@ Message = TypedDict(
 
 
 class WeakIsolation(RuntimeError):
-    """This machine cannot keep student code apart well enough; says
-    what is missing and how to get it.
+    """This machine cannot isolate student code well enough.
+
+    The message lists what is missing and how to get it.
     """
 
 
@@ -224,9 +225,9 @@ class Sandbox:
         if lacking and not self.allow_weak_isolation:
             self.close()
             raise WeakIsolation(
-                "This machine does not keep student code apart well enough, so none is run:\n"
+                "This machine cannot isolate student code well enough, so we did not run any:\n"
                 + "\n".join(f"- {line}" for line in lacking)
-                + "\nTo run it all the same, on a machine that you can afford to lose, say "
+                + "\nTo run it anyway, on a machine that you can afford to lose, add "
                 "--allow-weak-isolation; every result will record it."
             )
 

@@ -148,7 +148,7 @@ class Marks:
         """
         if len(self.assignments) > 1:
             raise CannotExport(
-                f"There are marks of {', '.join(self.assignments)}: say which --assignment this is."
+                f"There are marks of {', '.join(self.assignments)}: choose one with --assignment."
             )
         return self.assignments[0]
 
@@ -394,7 +394,7 @@ def columns(
     used = [column for _, column in there]
     if len(set(used)) < len(used):
         several = ", ".join(name for name, column in there)
-        raise CannotExport(f"{several} have a column of one name: say which --assignment this is.")
+        raise CannotExport(f"{several} have a column of one name: choose one with --assignment.")
     return [*there] or [(None, None)]
 
 
@@ -418,7 +418,7 @@ HEADINGS = {
     "closed": "Not filled in, because the system allows no change",
     "excused": "Excused by the term, so not filled in",
     "replaced": "A mark by hand, written over as you said",
-    "by hand": "Not filled in, because something else stands there than was written from here",
+    "by hand": "Not filled in, because the mark there is not one that we exported",
 }
 
 
@@ -597,8 +597,8 @@ def _system(book: Gradebook) -> System:
         f"{one.name} ({', '.join(' or '.join(names) for names in one.has)})" for one in SYSTEMS
     )
     raise CannotExport(
-        f"This is no gradebook of {', '.join(needed)}, nor one of Moodle in a language that is "
-        f"known here ({', '.join(LANGUAGES)}). Write into term.toml which column is which: "
+        f"This is not a gradebook from {', '.join(needed)}, nor a Moodle one in a supported "
+        f"language ({', '.join(LANGUAGES)}). Map the columns in term.toml: "
         "[gradebook], and below it identifier = '...' and grade = '...'. "
         f"Its columns: {', '.join(book.header)[:300]}"
     )
@@ -621,8 +621,8 @@ def _column(book: Gradebook, system: System, column: str | None) -> int:
     if len(places) != 1:
         names = [book.header[place] for place in places] or book.header
         raise CannotExport(
-            "Write into term.toml which column this is, as column = '...' in the table of the "
-            f"assignment; there are {', '.join(map(repr, names))}."
+            "Name the assignment's column in term.toml, as column = '...' in its table. The "
+            f"gradebook has the columns {', '.join(map(repr, names))}."
         )
     return places[0]
 

@@ -188,9 +188,8 @@ def asked_of(
         found = by_their_names.get(place.variant) or (contracts and contracts.of(version))
         if not found:
             raise ValueError(
-                f"{name}: a variant of it was taken out, and what it was is kept nowhere: there is "
-                f"no contract {version}. "
-                "Put the variant back into the source, and judge again."
+                f"{name}: one of its variants was removed and no copy of it was kept (contract "
+                f"{version} is missing). Put the variant back into the source, and judge again."
             )
         return found
 

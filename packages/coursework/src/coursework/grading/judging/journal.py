@@ -525,8 +525,8 @@ class Journal:
         words = words.strip()
         if len(words) > LONGEST_WORDS:
             raise ValueError(
-                f"This is longer than {LONGEST_WORDS} signs, and nothing of it is cut off: say it "
-                "in fewer."
+                f"This text is longer than {LONGEST_WORDS} characters. Please shorten it; we do "
+                "not truncate it."
             )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
             raise ValueError(
@@ -633,9 +633,9 @@ class Journal:
         appeals = {one.id: one for several in standing.appeals.values() for one in several}
         for one in events:
             if isinstance(one, Decision) and one.appeal and not appeals[one.appeal].is_open:
-                raise Collision("Somebody else settled the appeal in the meantime.")
+                raise Collision("Someone else has settled this appeal in the meantime.")
             if isinstance(one, Appeal) and one.appeal and appeals[one.appeal].last != one.after:
-                raise Collision("Somebody else went on with the appeal in the meantime.")
+                raise Collision("Someone else has changed this appeal in the meantime.")
             if (
                 isinstance(one, Appeal)
                 and not one.appeal

@@ -102,7 +102,7 @@ class Judge:
                 self.end()
                 if not begun or begun in found:
                     raise RuntimeError(
-                        "The process that judges ended, and not at an answer."
+                        "The judging process ended while no answer was being judged."
                     ) from None
                 found[begun] = self._stopped(record, begun)
 

@@ -245,12 +245,12 @@ class Laboratory:
                 said.append(f"{_students(moves)} would {what}: {_about(moves)}.")
         if self.again:
             said.append(
-                f"{_students(self.again)} would wait: what is stored does not tell how to judge "
-                f"{_about(self.again)}. `coursework grade`, as you said it before, runs just these "
+                f"{_students(self.again)} would wait: the stored answers are not enough to judge "
+                f"{_about(self.again)}. The same `coursework grade` as before runs just these "
                 "again."
             )
         if self.even:
-            said.append(f"Of {len(self.even)} the share of the points would stay the same.")
+            said.append(f"{_students(self.even)} would keep the same share of the points.")
         said += [f"  {move}" for move in self.moves[:MOST_SHOWN]]
         if len(self.moves) > MOST_SHOWN:
             said.append(f"  ... and {len(self.moves) - MOST_SHOWN} more.")

@@ -58,8 +58,8 @@ def secret_beside(folder: str | Path) -> bytes:
     except (OSError, ValueError) as error:
         raise ValueError(
             f"The secret of this course cannot be kept in {path} ({error}). "
-            "It belongs beside the solutions: marks are decided at points that follow from it, "
-            "too."
+            "Keep it with the solutions, because some of the test points for marks are derived "
+            "from it."
         ) from None
 
 
@@ -167,8 +167,8 @@ def _another(values: list[Any], dice: random.Random) -> Any:
     ):
         return _another_list(values, dice)
     if all(isinstance(value, list) for value in values) and any(values):
-        # Of several lengths: as long as one of them, and each part like
-        # those of its form in all of them.
+        # The lists differ in length: take the length of one, and draw each
+        # part from the parts of the same form in all lists.
         parts = [part for value in values for part in value]
         chosen = dice.choice([value for value in values if value])
         return [

@@ -486,10 +486,10 @@ def read_term(path: str | Path) -> Term:
     if "time-zone" not in said:
         raise file.bad("", "time-zone is missing, such as time-zone = 'Europe/Amsterdam'.")
     if not term.assignments:
-        raise file.bad("assignments", "it names no assignment, such as [assignments.hw1].")
+        raise file.bad("assignments", "it has no assignment, such as [assignments.hw1].")
     if term.attempts not in (IN_TIME, BEST, LAST):
         known = f"{IN_TIME!r}, {BEST!r} or {LAST!r}"
-        raise file.bad("attempts", f"attempts are {known}, not {term.attempts!r}.")
+        raise file.bad("attempts", f"attempts must be {known}, not {term.attempts!r}.")
     _demand_order(file, term)
     _demand_one_rule(file, term)
     _demand_droppable(file, term)
@@ -529,7 +529,7 @@ def _demand_one_rule(file: _File, term: Term) -> None:
     for name, about in term.assignments.items():
         rules = [about.homework_cap, about.homework_factor]
         if rules.count(None) == 0 or rules.count(None) == 1 and not about.questions:
-            why = "is no sitting" if not about.questions else "has both: choose one"
+            why = "is not a sitting" if not about.questions else "has both: choose one"
             raise file.bad(
                 f"assignments.{name}.homework-cap",
                 f"homework-cap and homework-factor are rules of a sitting, and {name} {why}.",
@@ -546,7 +546,7 @@ def _demand_droppable(file: _File, term: Term) -> None:
         if type(rule.lowest) is not int or not 0 <= rule.lowest < len(of):
             raise file.bad(
                 "drop.lowest",
-                f"drop.lowest is a whole number below {len(of)}, and this is {rule.lowest!r}.",
+                f"drop.lowest must be a whole number below {len(of)}, not {rule.lowest!r}.",
             )
         dropped += of
     if len(set(dropped)) < len(dropped):
@@ -571,8 +571,12 @@ def _extended(file: _File, where: str, until: object, term: Term) -> dict[str, E
             if file.number(place, when) < 1 or without:
                 raise file.bad(
                     place,
-                    f"time = 1.5 is half as much again, from when an assignment opens until it "
-                    f"is due: {', '.join(without) or 'this'} has no such time.",
+                    "time = 1.5 gives half as much time again between opening and due date, "
+                    + (
+                        f"but {without[0]} has no opening date."
+                        if without
+                        else "and time must be at least 1."
+                    ),
                 )
         elif name not in term.assignments:
             raise file.unknown(where, name, ["time", *term.assignments])
@@ -633,7 +637,7 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
         when = as_time(row[column])
         if when is None:
             raise BadTerm(
-                f"{path}: {student!r}: {row[column]!r} is no time that can be read. "
+                f"{path}: {student!r}: {row[column]!r} is not a time that we can read. "
                 "Write such as 2026-10-06 20:01, or download the table with your system in "
                 "English."
             )

@@ -257,7 +257,7 @@ def _earlier(path: str | Path) -> Year:
             raise ValueError("it is of another format")
         return year
     except (OSError, ValueError) as error:
-        raise BadTerm(f"{path} holds no counts of a course ({error}).") from None
+        raise BadTerm(f"{path} does not contain course statistics ({error}).") from None
 
 
 def _share_then(year: Year, question: str, found: Question) -> str:

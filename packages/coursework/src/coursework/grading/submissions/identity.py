@@ -345,7 +345,7 @@ class Layout:
 
     def _github(self, parts: Parts) -> Claim | None:
         user = parts[0].removeprefix(self.prefix)
-        # Everybody chooses that name: it is not compared with the names that the course gave.
+        # Anyone may choose that name, so match it only with the column `github` of the roster.
         keys = (("github", user),)
         return Claim(
             _clean(user), keys, f"repository {parts[0]}", _inside(parts), reply=f"{parts[0]}/"

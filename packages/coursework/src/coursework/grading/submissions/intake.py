@@ -295,9 +295,7 @@ def take_in(
                 whose = claim.student if claim else ""
                 can = " The notebook beside it can read it." if source in have else ""
                 refused.append(
-                    Refused(
-                        name, whose, f"This is no notebook: its name does not end in .ipynb.{can}"
-                    )
+                    Refused(name, whose, f"Not a notebook: its name does not end in .ipynb.{can}")
                 )
     return notebooks, [_of_whom(one, layout, roster) for one in refused]
 
@@ -581,7 +579,7 @@ def _files(
     elif zipfile.is_zipfile(path):
         yield from _files_of_archive(path, refused, repositories)
     elif path.lower().endswith(".zip") and os.path.exists(path):
-        raise Unfit(f"{path} is no zip archive, or a damaged one.")
+        raise Unfit(f"{path} is not a zip archive, or it is damaged.")
     elif os.path.exists(path):
         folder, name = os.path.split(os.path.abspath(path))
         held = _Folder(folder)
@@ -595,10 +593,7 @@ def _files_of_folder(
 ) -> Iterator[Found]:
     results = os.stat(out) if out and os.path.isdir(out) else None
     if results and os.path.samestat(results, os.stat(root)):
-        raise Unfit(
-            f"{root} holds what was handed in, and cannot hold the results, too: name another "
-            "folder."
-        )
+        raise Unfit(f"{root} contains the submissions. Choose a different folder for the results.")
     # By handles of folders: a name that is exchanged for a link meanwhile leads nowhere.
     top = _Folder(root)
     for folder, folders, files, handle in os.fwalk(".", dir_fd=top.handle, follow_symlinks=False):
@@ -626,9 +621,7 @@ def _files_of_folder(
             elif results and os.path.samestat(results, about):
                 folders.remove(name)
             elif not stat.S_ISDIR(about.st_mode):
-                refused.append(
-                    Refused(_text(full), "", "This is no file but a device or a channel.")
-                )
+                refused.append(Refused(_text(full), "", "This is a device or a pipe, not a file."))
         folders[:] = [name for name in folders if not _is_litter(name)]
         if folders and inside.count("/") >= DEEPEST:
             refused.append(
@@ -674,7 +667,7 @@ def _read_file(name: str, folder: int) -> bytes:
         raise Unfit(f"It cannot be read: {error.strerror}.") from None
     with open(handle, "rb") as file:
         if not stat.S_ISREG(os.fstat(handle).st_mode):
-            raise Unfit("This is no file.")
+            raise Unfit("This is not a regular file.")
         return _no_more_than(file.read(MOST_BYTES + 1))
 
 
@@ -722,7 +715,7 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
     try:
         archive = zipfile.ZipFile(_OwnPlace(path))
     except (zipfile.BadZipFile, NotImplementedError, ValueError) as error:
-        raise Unfit(f"{path} is no zip archive, or a damaged one ({error}).") from None
+        raise Unfit(f"{path} is not a zip archive, or it is damaged ({error}).") from None
     entries = sorted(archive.infolist(), key=lambda entry: entry.filename, reverse=True)
     repeated = {
         one.filename for one, other in itertools.pairwise(entries) if one.filename == other.filename
@@ -742,7 +735,7 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
             continue
         why = _why_not_unpacked(entry, name)
         if name in repeated:
-            why = "The archive holds this name more than once."
+            why = "The archive contains this name more than once."
         unpacked += min(entry.file_size, MOST_BYTES)
         if not why and unpacked > MOST_UNPACKED:
             why = (
@@ -830,7 +823,7 @@ def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[t
         refused.append(Refused(name, "", f"This archive cannot be read: {str(error)[:100]}"))
         return
     if len(entries) > MOST_BESIDE or sum(entry.file_size for entry in entries) > MOST_BYTES:
-        refused.append(Refused(name, "", "This archive holds too much to be somebody's work."))
+        refused.append(Refused(name, "", "This archive contains too much to be a student's work."))
         return
     names = Counter(entry.filename for entry in entries)
     for entry in entries:
@@ -839,7 +832,7 @@ def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[t
             continue
         why = _why_not_unpacked(entry, entry.filename)
         if names[entry.filename] > 1:
-            why = "The archive holds this name more than once."
+            why = "The archive contains this name more than once."
         if why:
             refused.append(Refused(inner, "", why))
         else:
@@ -895,8 +888,8 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
     notebook = _json(data)
     if (version := notebook.get("nbformat", 4)) != 4:
         raise Unfit(
-            f"It is a notebook of version {str(version)[:20]}, and version 4 can be read: open it "
-            "in Jupyter, and save it."
+            f"This notebook has format version {str(version)[:20]}, but we can read only version "
+            "4. Open it in Jupyter and save it again."
         )
     cells = _list(notebook.get("cells"))
     if len(cells) > MOST_CELLS:
@@ -905,7 +898,7 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
     grade_ids: list[str] = []
     for cell in cells:
         if not isinstance(cell, dict):
-            raise Unfit("This is no notebook: one of its cells is none.")
+            raise Unfit("Not a valid notebook: one of its cells is malformed.")
         metadata = cell.get("metadata")
         about = metadata.get("nbgrader") if isinstance(metadata, dict) else None
         if isinstance(about, dict) and isinstance(about.get("grade_id"), str):
@@ -980,7 +973,7 @@ def outputs_in(data: bytes) -> Iterator[tuple[int, dict[str, object]]]:
 
 def _list(value: object) -> list[object]:
     if not isinstance(value, list):
-        raise Unfit("This is no notebook: its cells are no list.")
+        raise Unfit("Not a valid notebook: its cells are not a list.")
     return value
 
 
@@ -988,11 +981,11 @@ def _source(source: object) -> str:
     if isinstance(source, list) and all(isinstance(line, str) for line in source):
         source = "".join(source)
     if not isinstance(source, str):
-        raise Unfit("This is no notebook: the text of one of its cells is none.")
+        raise Unfit("Not a valid notebook: the source of one of its cells is malformed.")
     try:
         source.encode("utf8")
     except UnicodeEncodeError:
-        raise Unfit("One of its cells holds half of a character.") from None
+        raise Unfit("One of its cells contains an incomplete character.") from None
     return source
 
 
@@ -1002,10 +995,10 @@ def _json(data: bytes) -> dict[str, object]:
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         raise Unfit("It is written in UTF-16; notebooks are written in UTF-8.")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
-        # Only now: signs in texts, such as a long output, are no values.
+        # Strings are removed first, since signs in them, such as in a long output, are not values.
         without_texts = TEXT.sub(b"", data)
         if sum(map(without_texts.count, (b",", b"[", b"{"))) > MOST_VALUES:
-            raise Unfit(f"It is made of more than {MOST_VALUES} parts; no notebook is.")
+            raise Unfit(f"It has more than {MOST_VALUES} parts, too many for a notebook.")
     try:
         notebook = json.loads(data.decode("utf-8-sig"), object_pairs_hook=_no_key_twice)
     except Unfit:
@@ -1016,14 +1009,14 @@ def _json(data: bytes) -> dict[str, object]:
         raise Unfit("It is nested too deeply.") from None
     except ValueError as error:
         where = f" (line {error.lineno})" if isinstance(error, json.JSONDecodeError) else ""
-        raise Unfit(f"This is no notebook: it is not well-formed JSON{where}.") from None
+        raise Unfit(f"Not a notebook: it is not well-formed JSON{where}.") from None
     if not isinstance(notebook, dict) or not {"cells", "worksheets"} & set(notebook):
-        raise Unfit("This is no notebook: it has no cells.")
+        raise Unfit("Not a notebook: it has no cells.")
     return notebook
 
 
 def _no_key_twice(pairs: list[tuple[str, object]]) -> dict[str, object]:
     found = dict(pairs)
     if len(found) < len(pairs):
-        raise Unfit("One of its entries has the same name twice, so it can be read in two ways.")
+        raise Unfit("A key appears twice in one of its entries, so its meaning is ambiguous.")
     return found

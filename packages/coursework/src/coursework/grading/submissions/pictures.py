@@ -10,7 +10,7 @@ import zlib
 
 PNG = "image/png"
 PNG_BEGINS = b"\x89PNG\r\n\x1a\n"
-#: Pixels of a picture that is shown, at most: a small file may unpack to gigabytes in a browser.
+#: Most pixels in a picture that we show, since a small file may unpack to gigabytes in a browser.
 MOST_PIXELS = 40_000_000
 
 

@@ -128,7 +128,7 @@ class Roster:
             if person.student is None:
                 continue  # Canvas's line of possible points
             if person.student in self.people:
-                raise BadRoster(f"{path}, line {line}: {person.student!r} is there a second time.")
+                raise BadRoster(f"{path}, line {line}: {person.student!r} is listed twice.")
             self.people[person.student] = person
         if not self.people:
             raise BadRoster(
