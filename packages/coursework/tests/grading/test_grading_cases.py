@@ -294,7 +294,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     lost = sum(
         mark.note == "other numbers" for mark in marks_of(Store(tmp_path / "out"), NAME).values()
     )
-    assert lost < 3 or f"{lost} of 6 answers are right for other numbers" in said.getvalue()
+    assert lost < 3 or f"{lost} of 6 answers are right for numbers other" in said.getvalue()
     roster = tmp_path / "roster.csv"
     roster.write_text(
         "student,handed in as\n" + "".join(f"{one},folder of {one}\n" for one in STUDENTS[:6])
@@ -486,7 +486,7 @@ def test_a_picture_that_would_fill_the_memory_is_none():
 @pytest.mark.parametrize(
     "submissions, out, said",
     [
-        ("damaged.zip", "out", "no zip archive, or a damaged one"),
+        ("damaged.zip", "out", "not a zip archive, or it is damaged"),
         ("nothing", "out", "There is nothing in"),
         ("class", "a-file", "File exists"),
     ],

@@ -128,7 +128,7 @@ def test_a_column_is_filled_with_one_assignment(tmp_path):
     book = course.canvas_book("HW 1 (6)", "HW 2 (7)")
     for which in ([], ["--assignment", "hw2"]):
         said = course.export(book, *which, fails=True)
-        assert "as column = '...' in the table of the assignment; there are 'HW 1 (6)'," in said
+        assert "as column = '...' in its table. The gradebook has the columns 'HW 1 (6)'," in said
     assert course.column(book, "HW 2 (7)") == {"ada": ""}
     (course.marks / "term.toml").write_text(
         'time-zone = "UTC"\n[assignments.hw1]\n[assignments.hw2]\ncolumn = "hw 2"\n'
