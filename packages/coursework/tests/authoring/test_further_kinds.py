@@ -160,7 +160,7 @@ def test_a_number_with_its_unit_is_tried_as_others_are():
     [
         (12.5 * units.newton + units.meter, "different units"),
         (12.5 * units.bit, "`bit` is made of no units"),
-        (sm.sqrt(units.meter), "no product of whole powers"),
+        (sm.sqrt(units.meter), "not a product of whole powers"),
     ],
 )
 def test_a_unit_that_makes_no_sense_is_named(answer, says):

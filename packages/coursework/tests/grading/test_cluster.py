@@ -286,7 +286,7 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
         running = functools.partial(Running, limits=LIMITS, scheduler=address)
         other = tmp_path / "other"
         cluster_keys.make_keys(other)
-        with pytest.raises(ValueError, match="no Dask scheduler to be reached"):
+        with pytest.raises(ValueError, match="cannot reach a Dask scheduler"):
             grade(submissions, tmp_path / "none", running=running(keys=other), **options)
         grade(submissions, tmp_path / "there", running=running(keys=keys), **options)
     grade(submissions, tmp_path / "here", running=Running(limits=LIMITS), **options)

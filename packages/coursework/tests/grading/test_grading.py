@@ -1228,7 +1228,7 @@ def test_two_of_one_name_are_not_filled_in(marks, tmp_path):
 @pytest.mark.parametrize(
     "header, message",
     [
-        ("Name,Points\nA,1\n", "no gradebook of Moodle"),
+        ("Name,Points\nA,1\n", "not a gradebook from Moodle"),
         (
             "Student,ID,SIS User ID,SIS Login ID,Section,Turns (1),Axes (2)\nA,1,,,,,\n",
             "'Turns (1)', 'Axes (2)'",

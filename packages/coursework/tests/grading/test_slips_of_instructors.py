@@ -50,11 +50,11 @@ def test_results_are_nobody_s_work(course):
         "refused": 0,
         "held": 0,
     }
-    with pytest.raises(NothingToGrade, match="cannot hold the results, too"):
+    with pytest.raises(NothingToGrade, match="Choose a different folder for the results"):
         graded(course, course / "in", course / "in")
-    with pytest.raises(NothingToGrade, match="holds results of grading"):
+    with pytest.raises(NothingToGrade, match="contains results of grading"):
         graded(course, course / "in" / "marks", course / "out")
-    with pytest.raises(NothingToGrade, match="holds the notebooks with solutions"):
+    with pytest.raises(NothingToGrade, match="contains the notebooks with solutions"):
         graded(course, course / "course", course / "out")
     with pytest.raises(NothingToGrade, match="There is nothing at .*none.zip"):
         graded(course, course / "none.zip", course / "out")

@@ -245,7 +245,7 @@ def reply_to(authored, answer):
         (
             GIMBAL.subs(theta, sm.Symbol("w")),
             "stray symbol",
-            "holds w; this question has the symbols theta, alpha, varphi",
+            "contains w; this question has the symbols theta, alpha, varphi",
         ),
         (GIMBAL[:2, :], "shape", "a matrix of 2 × 3"),
         ([list(GIMBAL)], "shape", "one row with 9"),
