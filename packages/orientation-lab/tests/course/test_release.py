@@ -196,7 +196,7 @@ def test_a_planted_secret_is_found(trial, tmp_path):
                 ("code", SOLUTION),
                 ("code", f"check('trial/about-x', A_C_N * 1)\n{HIDDEN}"),
             ],
-            "plain name",
+            "plain variable name",
         ),
         (
             [
@@ -378,7 +378,7 @@ def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
     work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path)
     (work / MANIFEST).write_text('{"format": 2, "files": {}}')
     before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(ArchiveRefused, match="of format 2.*reads 1.*Nothing was changed"):
+    with pytest.raises(ArchiveRefused, match="has format 2.*reads 1.*Nothing was changed"):
         update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 

@@ -80,7 +80,7 @@ def test_a_question_with_a_fault_is_found(tmp_path):
     [
         ("It is `3 * sm.cos(x) * sm.sin(x)` all along.", "gives the right answer"),
         ("It is `answer = 1.5*sin(2*x)`.", "gives the right answer"),
-        ("Write down: answer = 3 * sm.sin(x) * sm.cos(x)", "holds a line of a solution"),
+        ("Write down: answer = 3 * sm.sin(x) * sm.cos(x)", "contains a line of a solution"),
         ("Begin with `sm.sin(x)`, and ask what is missing.", ""),
     ],
 )

@@ -240,7 +240,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
         read_tables("\n".join(bad))
     for content, words in (
         (b"", "empty"),
-        (b"\0\1\2" * 99, "no text"),
+        (b"\0\1\2" * 99, "not a text file"),
         (b"Dear all,\nI am here.\nBye\n", "no table"),
         (b"[1, 2", "line 1"),
     ):
