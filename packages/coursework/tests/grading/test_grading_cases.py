@@ -428,9 +428,8 @@ def test_a_friends_answer_under_the_names_of_siblings_earns_no_more_than_chance(
         own, _ = marking.of_student(asked, student)
         answers = dict.fromkeys([NAME, *siblings_of(NAME, 8)], friends)
         for had in ("", "solution"):
-            mark = marking.mark_with_siblings(
-                NAME, own[NAME], answers, ({NAME: Remembered(1, help=had)} if had else {})
-            )
+            remembered = {NAME: Remembered(1, help=had)} if had else {}
+            mark = marking.mark_with_siblings(NAME, own[NAME], answers, remembered)
             earned += mark.points > 0
     assert earned == 2  # of 16
 
@@ -446,10 +445,20 @@ def _png(size=(2, 2)):
     return data.getvalue()
 
 
-def test_a_picture_is_one_from_its_first_byte_to_its_last():
+def _jpeg():
+    from PIL import Image
+
+    data = io.BytesIO()
+    Image.new("RGB", (24, 16), "teal").save(data, "jpeg", progressive=True)
+    return data.getvalue()
+
+
+@pytest.mark.parametrize("kind, made", [(pictures.PNG, _png), (pictures.JPEG, _jpeg)])
+def test_a_picture_is_one_from_its_first_byte_to_its_last(kind, made):
     """What began as a picture was believed to be one."""
-    data = _png()
-    assert pictures.is_picture(data)
+    data = made()
+    assert pictures.is_picture(kind, data)
+    other = pictures.JPEG if kind == pictures.PNG else pictures.PNG
     for wrong in (
         data[:8] + b"<script>",
         data + b"PK",
@@ -459,7 +468,8 @@ def test_a_picture_is_one_from_its_first_byte_to_its_last():
         data[:3],
         b"\xff" * 50,
     ):
-        assert not pictures.is_picture(wrong)
+        assert not pictures.is_picture(kind, wrong)
+    assert not pictures.is_picture(other, data) and not pictures.is_picture("image/svg+xml", data)
 
 
 def test_a_picture_that_would_fill_the_memory_is_none():
@@ -480,7 +490,9 @@ def test_a_picture_that_would_fill_the_memory_is_none():
             + part(b"IEND", b"")
         )
 
-    assert pictures.is_picture(png(600)) and not pictures.is_picture(png(60_000))
+    assert pictures.is_picture(pictures.PNG, png(600)) and not pictures.is_picture(
+        pictures.PNG, png(60_000)
+    )
 
 
 @pytest.mark.parametrize(
@@ -586,9 +598,8 @@ def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tm
         case = case_by_rule(NAME, question, one)
         assert case.own.variant == names[order[0]] and case.rule == "by name, of 8"
         assert [place.variant for place in case.siblings.values()] == [names[k] for k in order[1:3]]
-    fewer = questions_of(write_beams(tmp_path / "solutions", WEIGHTS[1:]) / "beams.ipynb", b"any")[
-        NAME
-    ]
+    left = write_beams(tmp_path / "solutions", WEIGHTS[1:])
+    fewer = questions_of(left / "beams.ipynb", b"any")[NAME]
     gone = (set(names) - set(fewer[0].variant.names)).pop()
     for one in STUDENTS:
         before, after = case_by_rule(NAME, question, one), case_by_rule(NAME, fewer, one)
@@ -650,7 +661,8 @@ def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy
     write_term(out, assignments=of_beams, text=f"[regrading]\n{questions}")
     before = marks_of(out, NAME)
     regrade(out.folder, solutions=solutions)
-    for student, mark in marks_of(out, NAME).items():
+    after = marks_of(out, NAME)
+    for student, mark in after.items():
         expected = {
             "never lower": (before[student].points, 2),
             "full credit": (2, 2),
@@ -674,7 +686,8 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     """A mended solution is judged from what is stored; a mended call is
     run, for those who are asked it.
     """
-    options = {"running": Running(limits=LIMITS), "show": io.StringIO()}
+    said = io.StringIO()
+    options = {"running": Running(limits=LIMITS), "show": said}
     solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"))
     assert grade(begun.place / "in", out.folder, solutions=solutions, **options)["graded"] == 0
     assert {mark.points for mark in marks_of(out, NAME).values()} == {0}

@@ -298,7 +298,8 @@ class AuthoredQuestion:
             raise AuthorError(
                 f"{self.name}: an answer of the kind {self.public.kind!r} cannot have `turns`."
             )
-        if self.fingerprint_of(self.to_plain(build(self.turns))) != self.fingerprint_of(self.plain):
+        built = self.to_plain(build(self.turns))
+        if self.fingerprint_of(built) != self.fingerprint_of(self.plain):
             raise AuthorError(f"{self.name}: the product of the `turns` is not the right answer.")
 
     def _demand_notes(self) -> None:
@@ -343,7 +344,8 @@ class AuthoredQuestion:
         right = known[0]
         by_text: dict[str, list[_Known]] = {}
         for one in known:
-            reach = REACH if one is not right else 1 if (self.public.tolerance is None) else NEARLY
+            exact = self.public.tolerance is None
+            reach = REACH if one is not right else 1 if exact else NEARLY
             for text in fingerprints(
                 self.public, one.reading, reach, most=MOST_EDGES if one is right else 3
             ):
@@ -413,9 +415,8 @@ class AuthoredQuestion:
         if self.public.exam or kinds()[self.public.kind].by_a_person:
             return []
         common = replace(self.public, salt=salt_of_all(self.name))
-        texts = fingerprints(
-            common, far_from_last_bits(common, read(common, self.plain)), most=MOST_EDGES_FOR_OTHERS
-        )
+        reading = far_from_last_bits(common, read(common, self.plain))
+        texts = fingerprints(common, reading, most=MOST_EDGES_FOR_OTHERS)
         return [sealing.name_of(sealing.slow_key(common.salt, text)).hex() for text in texts]
 
     def sealed(self, code: str | None = None, first: Pages | None = None) -> Sealed:
@@ -485,11 +486,8 @@ class AuthoredQuestion:
         lockers = []
         for text, outcome, names, page in chosen:
             place = (places[page], page) if page else ()
-            lockers.append(
-                sealing.locker(
-                    sealing.slow_key(self.public.salt, text), OUTCOMES.index(outcome), names, *place
-                )
-            )
+            key = sealing.slow_key(self.public.salt, text)
+            lockers.append(sealing.locker(key, OUTCOMES.index(outcome), names, *place))
         ladder = [
             sealing.seal(step, rung_key(self.public, number))
             for number, step in enumerate(self.ladder)
@@ -577,12 +575,8 @@ class Pages:
         after those of the first variant.
         """
         before = self.first.places() if self.first else {}
-        return before | {
-            key: place
-            for place, key in enumerate(
-                sorted(self.contents), start=(len(self.first.sealed) if self.first else 0)
-            )
-        }
+        start = len(self.first.sealed) if self.first else 0
+        return before | {key: place for place, key in enumerate(sorted(self.contents), start=start)}
 
     def seal(self, code: str) -> dict[bytes, int]:
         """Seal all pages that are not sealed with the first variant; gives the place of each by its
@@ -609,10 +603,8 @@ def solution_code(notebook: Mapping[str, Any]) -> str:
     The variants of its questions have the same code.
     """
     texts = json.dumps([cell["source"] for cell in notebook["cells"]], ensure_ascii=False)
-    letters = "".join(
-        CODE_LETTERS[byte % len(CODE_LETTERS)]
-        for byte in hashlib.sha256(f"code {texts}".encode()).digest()[:12]
-    )
+    digest = hashlib.sha256(f"code {texts}".encode()).digest()
+    letters = "".join(CODE_LETTERS[byte % len(CODE_LETTERS)] for byte in digest[:12])
     return "-".join(letters[start : start + 4] for start in (0, 4, 8))
 
 

@@ -60,9 +60,8 @@ def unknowns(entries: Iterable[Answer]) -> list[sympy.Expr]:
     free: set[sympy.Expr] = set()
     for entry in map(sympy.sympify, entries):
         functions = entry.atoms(AppliedUndef)
-        free |= functions | (
-            entry.free_symbols - {argument for function in functions for argument in function.args}
-        )
+        times = {argument for function in functions for argument in function.args}
+        free |= functions | (entry.free_symbols - times)
     return sorted(free, key=str)
 
 

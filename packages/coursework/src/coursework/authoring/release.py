@@ -191,7 +191,10 @@ def _checksum(cell: NotebookNode, about: Mapping[str, Any]) -> str:
     ]
     if about["grade"]:
         parts.append(str(float(about["points"])))
-    return hashlib.md5("".join(parts).encode("utf8")).hexdigest()
+    digest = hashlib.md5()
+    for part in parts:
+        digest.update(part.encode("utf8"))
+    return digest.hexdigest()
 
 
 def run_notebook(notebook: NotebookNode, folder: str | Path) -> None:
@@ -265,9 +268,8 @@ def _release_one(path: Path, course: Course) -> Made:
         )
     (course.sealed / f"{source.name}.json").write_text(sealed_file(source), "utf8")
     if source.name != CHAPTERS:
-        nbformat.write(
-            exercise_notebook(source, course.roster), course.exercises / f"{source.name}.ipynb"
-        )
+        made = exercise_notebook(source, course.roster)
+        nbformat.write(made, course.exercises / f"{source.name}.ipynb")
     pages = {name: source.questions[name].pages for name in source.rules}
     return Made(
         source.name,

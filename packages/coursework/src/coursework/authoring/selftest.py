@@ -9,7 +9,6 @@ import base64
 import contextlib
 import html
 import io
-import itertools
 import json
 import random
 import re
@@ -138,9 +137,8 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
         if there
         else None
     )
-    if sealed and judge(question.name, sealed, question.plain).outcome != (
-        "recorded" if question.public.exam else "correct"
-    ):
+    expected = "recorded" if question.public.exam else "correct"
+    if sealed and judge(question.name, sealed, question.plain).outcome != expected:
         faults.append(
             "The right answer does not open the sealed question. Run `coursework release` again."
         )
@@ -219,11 +217,8 @@ def _try_mistakes(
             )
             continue
         known = [note for answer in entry.answers for note in answer.notes]
-        if (
-            reply.outcome != "wrong"
-            or not (mistake.note in GENERAL and known)
-            and (mistake.note, mistake.details) not in known
-        ):
+        covered = mistake.note in GENERAL and known
+        if reply.outcome != "wrong" or not covered and (mistake.note, mistake.details) not in known:
             faults.append(
                 f'The mistake "{mistake.note}" gets "{reply.outcome}", {reply.note!r}, and not its '
                 "own message."
@@ -249,13 +244,12 @@ def secrets_of(source: Source) -> Secrets:
             for region in HIDDEN.findall(cell.source):
                 texts += [("a line of a hidden test", line) for line in region.splitlines()]
     for name, question in source.questions.items():
-        texts += [
-            (f"the worked solution of {name}", line) for line in question.solution.splitlines()
-        ]
-        texts += [
-            (f"a hint of {name}", step)
-            for step in itertools.chain(*question.hints.values(), *question.after.values())
-        ]
+        for line in question.solution.splitlines():
+            texts.append((f"the worked solution of {name}", line))
+        for step in [
+            step for steps in [*question.hints.values(), *question.after.values()] for step in steps
+        ]:
+            texts.append((f"a hint of {name}", step))
         if kinds()[question.public.kind].entries:
             texts += [(f"the answer of {name}", text) for text in _writings(question.answer)]
     given = {

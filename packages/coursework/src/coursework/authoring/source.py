@@ -508,11 +508,9 @@ def _run(source: str, namespace: dict[str, Any], where: str) -> Any:
     if isinstance(last, ast.Expr):
         tree.body.pop()
     exec(compile(tree, where, "exec"), namespace)
-    return (
-        eval(compile(ast.Expression(last.value), where, "eval"), namespace)
-        if isinstance(last, ast.Expr)
-        else None
-    )
+    if isinstance(last, ast.Expr):
+        return eval(compile(ast.Expression(last.value), where, "eval"), namespace)
+    return None
 
 
 def cells_needed(

@@ -69,11 +69,8 @@ class Rule:
         who takes a variant out need not count the others.
         """
         lists = [list(pool) for pool in self.pools.values() if not callable(pool)]
-        if (
-            not self.where
-            or len(lists) < len(self.pools)
-            or not self.count <= math.prod(map(len, lists)) <= MOST_LISTED
-        ):
+        total = math.prod(map(len, lists))
+        if not self.where or len(lists) < len(self.pools) or not self.count <= total <= MOST_LISTED:
             return self
         choices = (dict(zip(self.pools, one)) for one in itertools.product(*lists))
         left = sum(bool(self.where(one)) for one in choices)
@@ -128,7 +125,9 @@ def _written(value: object) -> str:
         import sympy
 
         return str(sympy.latex(value))
-    return ", ".join(map(_written, value)) if isinstance(value, (list, tuple)) else str(value)
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(_written, value))
+    return str(value)
 
 
 def drawn_in(text: str) -> tuple[str, str] | None:

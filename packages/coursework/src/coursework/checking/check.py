@@ -168,13 +168,8 @@ def worked_solution(name: str, code: str) -> Reply:
             ["This code opens no solution. Your instructor gives the code out when it is time."],
         )
     entry = _note_help(name, student, "solution")
-    reply = Reply(
-        name,
-        "hints",
-        "",
-        ["Read it, close it, and write it out for yourself."],
-        solution_on(sealed, locker.solution),
-    )
+    said = ["Read it, close it, and write it out for yourself."]
+    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
     _offer_sibling(reply, sealed.question, entry.help)
     return reply
 
@@ -282,9 +277,8 @@ def progress() -> Reply:
 def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) -> str:
     questions: dict[str, float] = {name: 1 for name in record if name.startswith(f"{notebook}/")}
     with suppress(RuntimeError):  # of another release
-        questions = {
-            name: sealed.worth for name, sealed in notebook_questions(notebook).items()
-        } or questions
+        known = notebook_questions(notebook)
+        questions = {name: sealed.worth for name, sealed in known.items()} or questions
     points = sum(questions.values())
     earned = sum(worth for name, worth in questions.items() if name in right)
     taken_down = {
@@ -357,17 +351,11 @@ def _remember(name: str, student: str, question: Question, reply: Reply) -> Entr
         answers = entry.answers
         if reply.answer not in answers and len(answers) < MOST_ANSWERS:
             answers = *answers, reply.answer
-        page = (
-            reply.opened.place
-            if (reply.known is not None and reply.known.hints) and reply.opened
-            else None
-        )
+        has_hints = reply.known is not None and reply.known.hints
+        page = reply.opened.place if has_hints and reply.opened else None
+        mistake = reply.note or "another value"
         entry = replace(
-            entry,
-            answers=answers,
-            page=page,
-            mistake=(reply.note or "another value"),
-            mistake_at=int(time.time()),
+            entry, answers=answers, page=page, mistake=mistake, mistake_at=int(time.time())
         )
     elif reply.outcome == "correct" and entry.mistake_at < time.time() - REVIEW_AFTER * DAY:
         entry = replace(entry, mistake="")  # reviewed, and right

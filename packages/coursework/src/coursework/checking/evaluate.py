@@ -121,11 +121,9 @@ def _work(node: Node, results: Sequence[Result]) -> int:
     if operation in LEAVES:
         return 4
     complex_ones = sum(isinstance(results[child], MP.mpc) for child in children)
-    return (
-        2 + len(children) + 7 * complex_ones
-        if operation in ("Add", "Mul")
-        else 10 + len(children) + 90 * complex_ones
-    )
+    if operation in ("Add", "Mul"):
+        return 2 + len(children) + 7 * complex_ones
+    return 10 + len(children) + 90 * complex_ones
 
 
 def _value(node: Node, results: Sequence[Result], point: Mapping[str, Number]) -> Result:

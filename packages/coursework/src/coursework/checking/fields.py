@@ -137,8 +137,6 @@ def written(value: object) -> Json:
     """Return the result of a reader as JSON, with lists for tuples."""
     if isinstance(value, (tuple, list)):
         return [written(part) for part in value]
-    return (
-        {name: written(part) for name, part in value.items()}
-        if isinstance(value, dict)
-        else cast(Json, value)
-    )
+    if isinstance(value, dict):
+        return {name: written(part) for name, part in value.items()}
+    return cast(Json, value)

@@ -74,9 +74,6 @@ def plain_identity(identity: str) -> str:
     >>> plain_identity("Zoe\u0308\u200b") == plain_identity(" ZO\u00cb")
     True
     """
-    shown = "".join(
-        letter
-        for letter in unicodedata.normalize("NFKC", str(identity))
-        if unicodedata.category(letter) != "Cf"
-    )
+    letters = unicodedata.normalize("NFKC", str(identity))
+    shown = "".join(letter for letter in letters if unicodedata.category(letter) != "Cf")
     return " ".join(shown.split()).casefold()

@@ -49,11 +49,9 @@ class Undecidable(Exception):
 
 
 def is_blank(value: Value) -> bool:
-    return (
-        bool(parts_of(value)) and all(map(is_blank, parts_of(value)))
-        if value[0] == "list"
-        else value[0] == "blank"
-    )
+    if value[0] == "list":
+        return bool(parts_of(value)) and all(map(is_blank, parts_of(value)))
+    return value[0] == "blank"
 
 
 def listed(names: Iterable[str]) -> str:
@@ -360,11 +358,9 @@ def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | Non
 def transposed(question: Question, numbers: list[Number]) -> list[Number] | None:
     """Return the entries of the transpose, or ``None`` for another shape."""
     rows, columns = question.shape or (3, 3)
-    return (
-        None
-        if rows != columns
-        else [numbers[row * columns + column] for column in range(columns) for row in range(rows)]
-    )
+    if rows != columns:
+        return None
+    return [numbers[row * columns + column] for column in range(columns) for row in range(rows)]
 
 
 TRANSPOSED = {

@@ -291,11 +291,9 @@ class _Writer:
         if isinstance(answer, (Iterator, KeysView, ValuesView)):
             kind = type(answer).__name__[:40]
             raise NotPlain(f"This is of type `{kind}`: write `list(...)` around it.")
-        return (
-            self.parts(_in_order(answer), depth)
-            if isinstance(answer, (list, tuple, set, frozenset))
-            else self.of_sympy(answer, depth)
-        )
+        if isinstance(answer, (list, tuple, set, frozenset)):
+            return self.parts(_in_order(answer), depth)
+        return self.of_sympy(answer, depth)
 
     def parts(self, answer: Sequence[object], depth: int) -> Value:
         if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
@@ -315,12 +313,8 @@ class _Writer:
             raise NotPlain(
                 f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large."
             )
-        return [
-            "matrix",
-            answer.rows,
-            answer.cols,
-            [self.number(entry) for row in answer.tolist() for entry in row],
-        ]
+        entries = [self.number(entry) for row in answer.tolist() for entry in row]
+        return ["matrix", answer.rows, answer.cols, entries]
 
     def of_frames(self, answer: FrameGraph, depth: int) -> Value:
         """Return the matrix of every connected pair in the book's own graph of frames."""
@@ -415,11 +409,9 @@ class _Writer:
         try:
             with contextlib.redirect_stdout(printed):
                 returned = function(*arguments)
-            return (
-                ["printed", printed.getvalue()[:300]]
-                if _is_blank(returned) and printed.getvalue().strip()
-                else self.value(returned, 0)
-            )
+            if _is_blank(returned) and printed.getvalue().strip():
+                return ["printed", printed.getvalue()[:300]]
+            return self.value(returned, 0)
         except NotPlain:
             raise
         except (Exception, SystemExit) as error:
@@ -458,14 +450,8 @@ class _Writer:
             ]
             return functools.reduce(self._product, factors)
         if isinstance(answer, sympy.MatAdd):
-            return (
-                rows,
-                columns,
-                [
-                    self.node("Add", *entries)
-                    for entries in zip(*[self.matrix(part)[2] for part in answer.args])
-                ],
-            )
+            terms = [self.matrix(part)[2] for part in answer.args]
+            return rows, columns, [self.node("Add", *entries) for entries in zip(*terms)]
         if isinstance(answer, sympy.Transpose):
             return self._transposed(self.matrix(answer.arg))
         if isinstance(answer, sympy.matrices.expressions.matpow.MatPow) and answer.exp.is_Integer:
@@ -571,9 +557,8 @@ class _Writer:
         of_mpmath = _module(type(number)).startswith("mpmath")
         if isinstance(number, numbers.Complex) and not isinstance(number, numbers.Real):
             real, imaginary = self.number(number.real), self.number(number.imag)
-            return self.node(
-                "Add", real, self.node("Mul", self.node("constant", "ImaginaryUnit"), imaginary)
-            )
+            unit = self.node("constant", "ImaginaryUnit")
+            return self.node("Add", real, self.node("Mul", unit, imaginary))
         if of_mpmath and hasattr(number, "_mpf_"):
             return self.node("float", libmp.to_str(number._mpf_, 40))
         if isinstance(number, numbers.Rational):
@@ -588,11 +573,9 @@ class _Writer:
                     f"The answer contains an integer of about {int(part.bit_length() * 0.30103)} "
                     "digits. No question needs one."
                 )
-        return (
-            self.node("integer", str(numerator))
-            if denominator == 1
-            else self.node("rational", str(numerator), str(denominator))
-        )
+        if denominator == 1:
+            return self.node("integer", str(numerator))
+        return self.node("rational", str(numerator), str(denominator))
 
     def expression(self, root: sympy.Basic) -> int:
         """Write an expression, children first, without recursion: a chain may be very deep."""

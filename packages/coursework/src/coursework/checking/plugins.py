@@ -95,8 +95,5 @@ def folders_of(names: Iterable[str]) -> list[str]:
 
 def sealed_folders() -> list[Traversable]:
     """Return the folders of sealed questions in plug-ins."""
-    return [
-        folder
-        for folder in [resources.files(plugin) / "sealed" for plugin in plugins()]
-        if folder.is_dir()
-    ]
+    folders = [resources.files(plugin) / "sealed" for plugin in plugins()]
+    return [folder for folder in folders if folder.is_dir()]

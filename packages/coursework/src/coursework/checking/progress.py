@@ -152,13 +152,8 @@ class Entry:
             Entry(),
         )
         others = tuple(variant_entry for variant_entry in known if variant_entry is not own)
-        return replace(
-            own,
-            variant=variant,
-            numbers=numbers,
-            after=tuple(dict.fromkeys((*own.after, *self.after))),
-            others=others,
-        )
+        after = tuple(dict.fromkeys((*own.after, *self.after)))
+        return replace(own, variant=variant, numbers=numbers, after=after, others=others)
 
 
 FIELDS = {name.replace("_", " ") for name in Entry.__dataclass_fields__} - {"others", "more"} | {

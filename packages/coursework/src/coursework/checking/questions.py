@@ -146,11 +146,8 @@ def _on_the_first(first: Mapping[str, Json], own: Mapping[str, Json]) -> dict[st
         if isinstance(page_list := variant_fields.get("pages"), list)
         for page in page_list
     ]
-    return {
-        name: value
-        for name, value in {**first, **own, "pages": pages or None}.items()
-        if value is not None
-    }
+    fields = {**first, **own, "pages": pages or None}
+    return {name: value for name, value in fields.items() if value is not None}
 
 
 def places() -> list[Traversable]:
@@ -213,9 +210,8 @@ def find_question(name: str, student: str) -> Sealed:
         )
     import difflib  # needed here alone
 
-    near = difflib.get_close_matches(
-        name.lower(), [*(questions or notebook_questions(notebook.lower())), *notebooks], cutoff=0.5
-    )
+    named = questions or notebook_questions(notebook.lower())
+    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], cutoff=0.5)
     raise NoSuchQuestion(
         f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
     )
@@ -316,9 +312,8 @@ def rung_key(question: Question, number: int) -> bytes:
 
     It is no secret and only prevents accidental reading.
     """
-    return hashlib.sha256(f"step {number} for {question.kind}".encode()).digest()[
-        : sealing.PAGE_KEY
-    ]
+    seed = f"step {number} for {question.kind}"
+    return hashlib.sha256(seed.encode()).digest()[: sealing.PAGE_KEY]
 
 
 def opened(sealed: Sealed, fingerprint: str) -> Locker | None:
@@ -488,12 +483,10 @@ def _known_in(question: Question, reading: Reading, locker: Locker | None) -> Kn
 
 
 def _far(question: Question, reading: Reading, known: KnownAnswer) -> Number:
-    return (
-        MP.zero
-        if not known.numbers
-        else distance(
-            question, canonical(question, reading), [MP.mpf(number) for number in known.numbers]
-        )
+    if not known.numbers:
+        return MP.zero
+    return distance(
+        question, canonical(question, reading), [MP.mpf(number) for number in known.numbers]
     )
 
 
@@ -598,9 +591,8 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
 
 
 def _decimals(question: Question, plain: Plain, reading: Reading) -> str:
-    if not (question.tolerance is None and reading.text is None) or not any(
-        node[0] == "float" for node in plain["nodes"]
-    ):
+    exact = question.tolerance is None and reading.text is None
+    if not exact or not any(node[0] == "float" for node in plain["nodes"]):
         return ""
     exact_forms = "`sm.Rational(1, 2)` and `sm.sqrt(3)`"
     return (

@@ -250,11 +250,8 @@ def shorten(text: str, words: str) -> str:
 
 def lengthen(short: str, words: str) -> str:
     """The text of which :func:`shorten` made a short one."""
-    return (
-        zlib.decompressobj(-15, zdict=words.encode("utf8"))
-        .decompress(base64.b85decode(short))
-        .decode("utf8")
-    )
+    unpacker = zlib.decompressobj(-15, zdict=words.encode("utf8"))
+    return unpacker.decompress(base64.b85decode(short)).decode("utf8")
 
 
 def _derive(key: bytes, purpose: str) -> bytes:

@@ -57,8 +57,9 @@ def digest_of(name: str, data: bytes) -> str:
     """Return a digest of a file; of a notebook, of its cells' sources, which a run leaves."""
     if name.endswith(".ipynb"):
         try:
+            cells = json.loads(data)["cells"]
             data = json.dumps(
-                [[cell["cell_type"], "".join(cell["source"])] for cell in json.loads(data)["cells"]]
+                [[cell["cell_type"], "".join(cell["source"])] for cell in cells]
             ).encode()
         except (ValueError, KeyError, TypeError):
             pass  # it is no notebook, so use its bytes
@@ -216,7 +217,8 @@ def _order(number: str) -> tuple[list[int], bool, int]:
     True
     """
     release, in_development, moment = number.partition(".dev")
-    return [int(part) for part in re.findall(r"\d+", release)], not in_development, int(moment or 0)
+    parts = [int(part) for part in re.findall(r"\d+", release)]
+    return parts, not in_development, int(moment or 0)
 
 
 def _older(folder: Path, name: str) -> list[Path]:

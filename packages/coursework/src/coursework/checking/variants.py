@@ -59,9 +59,8 @@ def names_of_variants(variants: Iterable[Variant]) -> list[str]:
     """
     names: list[str] = []
     for variant in variants:
-        name = hashlib.sha256(
-            json.dumps({**variant.shown, **variant.given}, sort_keys=True).encode()
-        ).hexdigest()[:12]
+        content = json.dumps({**variant.shown, **variant.given}, sort_keys=True)
+        name = hashlib.sha256(content.encode()).hexdigest()[:12]
         while name in names:  # two variants with the same content
             name += "+"
         names.append(name)

@@ -130,7 +130,8 @@ class _Writer:
             return _in_brackets(text) if around > binding else text
 
         if operation == "symbol":
-            return _name(text.rstrip("'")) + "'" * (len(text) - len(text.rstrip("'")))
+            dots = len(text) - len(text.rstrip("'"))
+            return _name(text.rstrip("'")) + "'" * dots
         if operation == "constant":
             if text not in CONSTANTS:
                 raise NoMathematics
@@ -148,9 +149,8 @@ class _Writer:
             power = rf" \cdot 10^{{{int(match[2])}}}" if match[2] else ""
             return bracketed(match[1] + power, 1 if power or match[1].startswith("-") else 9)
         if operation == "Add":
-            return bracketed(
-                " + ".join(inner(child, 1) for child in children).replace("+ -", "- "), 0
-            )
+            terms = " + ".join(inner(child, 1) for child in children)
+            return bracketed(terms.replace("+ -", "- "), 0)
         if operation == "Mul":
             return self.product(children, around, depth)
         if operation == "Pow":
@@ -225,9 +225,8 @@ class _Printer:
         if kind == "function":
             return f"returned {self.parts(rest[0], self.value, '; ')}"
         if kind == "frames":
-            return self.parts(
-                sorted(rest[0]), lambda name: f"{readable(name)} {self.named(rest[0][name])}"
-            )
+            frames = sorted(rest[0])
+            return self.parts(frames, lambda name: f"{readable(name)} {self.named(rest[0][name])}")
         if kind == "frame":
             return f"frame {readable(rest[0])}: {self.named(rest[1])}"
         return f"vector: {self.named(rest[0])}" if rest else "..."
@@ -254,11 +253,8 @@ class _Printer:
             size = abs(float(digits)) if operation == "float" else None
             if size is not None and (size == 0 or 1e-300 < size < 1e300):
                 digits = f"{float(digits):.10g}"  # enough to recognise a number by
-            return (
-                f"({digits})"
-                if (around > 1 and ("/" in digits or digits.startswith("-")))
-                else digits
-            )
+            tight = around > 1 and ("/" in digits or digits.startswith("-"))
+            return f"({digits})" if tight else digits
 
         def inner(children: Sequence[int], binding: int = 0, between: str = ", ") -> str:
             return self.parts(children, lambda child: self.node(child, depth + 1, binding), between)

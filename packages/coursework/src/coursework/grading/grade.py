@@ -132,7 +132,8 @@ class Desk:
                     line: one for line, one in asked.contract.rubric.items() if one is not None
                 },
             )
-            cases[name] = replace(case, own=replace(case.own, judged=asked.contract.version))
+            judged = replace(case.own, judged=asked.contract.version)
+            cases[name] = replace(case, own=judged)
         return with_decisions(replace(record, cases=cases, marks=marks), self.standing)
 
     def candidate(self, record: Record, judged: Callable[[Record], Record]) -> Record:
@@ -146,11 +147,9 @@ class Desk:
             for one in self.store.attempts(record.student, record.assignment).values()
             if handed_in.issuperset(notebook.sha256 for notebook in one.notebooks)
         ]
-        return (
-            judged(record)
-            if self.term.attempts != BEST or len(attempts) < 2
-            else self.best([judged(one) for one in attempts])
-        )
+        if self.term.attempts != BEST or len(attempts) < 2:
+            return judged(record)
+        return self.best([judged(one) for one in attempts])
 
     def best(self, attempts: Sequence[Record]) -> Record:
         """The attempt that comes to most, or may yet, lateness included; it says why the others do
@@ -410,9 +409,8 @@ def said_of_people(store: Store, standing: Standing, contracts: Contracts) -> It
     for record in store.all():
         appeals += [record.student] * len(appeals_open(record))
         for name in record.marks:
-            if changed_since(
-                standing.decisions.get((record.student, record.assignment, name)), record, contracts
-            ):
+            decided = standing.decisions.get((record.student, record.assignment, name))
+            if changed_since(decided, record, contracts):
                 changed.append(record.student)
     for names, one, several, shown in (
         (appeals, "appeal is open", "appeals are open", "with an open appeal"),
@@ -464,11 +462,8 @@ def regrade(
             raise NothingToGrade(f"There are no records in {desk.store.folder}.")
         course = Course(solutions, desk.term, names)
         desk.ask(course, names, closing)
-        laboratory = desk.settle(
-            (desk.candidate(record, desk.marked) for record in desk.store.all()),
-            REJUDGED,
-            dry_run,
-        )
+        candidates = (desk.candidate(record, desk.marked) for record in desk.store.all())
+        laboratory = desk.settle(candidates, REJUDGED, dry_run)
         if not dry_run and laboratory.agreed:
             desk.report(course)
     return laboratory
@@ -483,8 +478,7 @@ def bring_in_decisions(
         def decided(record: Record) -> Record:
             return with_decisions(record, desk.standing)
 
-        laboratory = desk.settle(
-            (desk.candidate(record, decided) for record in desk.store.all()), DECIDED
-        )
+        candidates = (desk.candidate(record, decided) for record in desk.store.all())
+        laboratory = desk.settle(candidates, DECIDED)
         desk.report()
     return laboratory

@@ -134,15 +134,13 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            refused.append(
-                Refused(
-                    notebook.file, notebook.student, "No question of any assignment is named in it."
-                )
-            )
+            why = "No question of any assignment is named in it."
+            refused.append(Refused(notebook.file, notebook.student, why))
         elif not graded:
             left_alone[answered[0]] += 1
         for assignment in graded:
-            handed_in.setdefault((term.group_of(notebook.student), assignment), []).append(notebook)
+            group = term.group_of(notebook.student)
+            handed_in.setdefault((group, assignment), []).append(notebook)
     work = [
         attempt
         for (student, assignment), mine in sorted(handed_in.items(), key=lambda entry: entry[0])
@@ -217,9 +215,8 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         for notebook, why in zip(
             (*one.notebooks, *one.superseded), (*((unless,) * len(one.notebooks)), *one.why)
         ):
-            rows[
-                one.student, one.assignment, notebook.file, *(notebook.matched, notebook.says, why)
-            ] = None
+            known = notebook.matched, notebook.says, why
+            rows[one.student, one.assignment, notebook.file, *known] = None
     header = ("student", "assignment", "file", "known by", "says it is of", "does not count")
     write(folder / WHOSE, lines(header, rows))
     around = {
@@ -253,14 +250,12 @@ def _say_absent(
     show: TextIO,
 ) -> None:
     people = set(term.roster.people) if term.roster else set()
-    present = {
-        member
-        for name in {*graded, *(one.student for one in handed_in.work)}
-        for member in term.members(name)
-    }
+    came = {*graded, *(one.student for one in handed_in.work)}
+    present = {member for name in came for member in term.members(name)}
     damaged = {one.student for one in (*handed_in.refused, *before)} & people - present
+    missing = sorted(people - present - damaged)
     for names, what in (
-        (sorted(people - present - damaged), "handed in nothing"),
+        (missing, "handed in nothing"),
         (sorted(damaged), "handed in what cannot be graded"),
     ):
         if names:

@@ -350,9 +350,8 @@ def read_result(result: Result, file: str) -> tuple[RunNotebook, dict[str, Answe
     ------
     Misread
     """
-    return RunNotebook.from_json({**result, "file": file, "sha256": ""}, file), Fields(
-        result, file
-    ).get("answers", by_name(Answer.from_json))
+    ran = RunNotebook.from_json({**result, "file": file, "sha256": ""}, file)
+    return ran, Fields(result, file).get("answers", by_name(Answer.from_json))
 
 
 #: An answer of which the sandbox says nothing.

@@ -204,12 +204,9 @@ class Class:
                     parts.setdefault(part, self.aliases[record.student])
 
         def any_of(names: Iterable[str]) -> str:
+            longest_first = sorted(names, key=len, reverse=True)
             return (
-                "|".join(
-                    re.escape(name).replace(r"\ ", r"\s+")
-                    for name in sorted(names, key=len, reverse=True)
-                )
-                or "(?!)"
+                "|".join(re.escape(name).replace(r"\ ", r"\s+") for name in longest_first) or "(?!)"
             )
 
         self._names = re.compile(rf"(?<!\w)(?:(?i:{any_of(self._known)})|{any_of(parts)})(?!\w)")
@@ -218,9 +215,9 @@ class Class:
 
     def _shuffled(self) -> list[str]:
         """The students in an order that follows from their names, and does not tell them."""
+        students = {record.student for record in self.records}
         return sorted(
-            {record.student for record in self.records},
-            key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest(),
+            students, key=lambda student: hashlib.sha256(f"alias {student}".encode()).digest()
         )
 
     def read(self) -> None:
@@ -235,11 +232,9 @@ class Class:
             for each in cluster.members
             if (one := self.standing.decision(each, cluster.question))
         ]
-        return (
-            ("decided", sorted({one.who for one in decided}))
-            if len(decided) == len(cluster.members)
-            else (cluster.mark.judged.outcome, [])
-        )
+        if len(decided) == len(cluster.members):
+            return "decided", sorted({one.who for one in decided})
+        return cluster.mark.judged.outcome, []
 
     def decision_on(self, cluster: Cluster, record: Record) -> Decision | None:
         """What was decided last, be it on this answer or on one that was handed in before it."""
@@ -360,10 +355,8 @@ class Class:
         for digest, cells in kept:
             near: list[int] = []
             if isinstance(cell, int) and 0 <= cell < len(cells):
-                own = itertools.takewhile(
-                    lambda order: "check(" not in cells[order],
-                    range(cell - 1, max(-1, cell - MOST_ABOVE - 1), -1),
-                )
+                above = range(cell - 1, max(-1, cell - MOST_ABOVE - 1), -1)
+                own = itertools.takewhile(lambda order: "check(" not in cells[order], above)
                 near = [*sorted(own), cell]
             return cells, near, self.store.pictures(digest)
         return [], [], {}
@@ -640,12 +633,9 @@ class _Answer(_Page):
             rubric.append(new)
             if self.get_argument("new_points", "").strip():
                 now = lines[new] = self.points_said(self.get_argument("new_points"), worth)
-                made += graded.journal.worths(
-                    cluster.question,
-                    {new: (now, self.worth_in_force(cluster, new))},
-                    cluster.mark.rubric,
-                    who,
-                )
+                change = {new: (now, self.worth_in_force(cluster, new))}
+                source = cluster.mark.rubric
+                made += graded.journal.worths(cluster.question, change, source, who)
         points = [lines.get(line) for line in rubric] if said == "rubric" else None
         if points is None:
             all_points = self.points_said(said, worth, least=0)
@@ -774,11 +764,9 @@ def _as_asked(contract: Contract | None) -> str:
     """The text of a question as these students saw it, with their
     numbers; its author is trusted.
     """
-    return (
-        ""
-        if not contract
-        else to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
-    )
+    if not contract:
+        return ""
+    return to_page("\n\n".join([contract.text, text_of(contract.variant)]), pages.formula)
 
 
 def _prose(plain: Plain | None) -> str | None:

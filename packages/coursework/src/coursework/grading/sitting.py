@@ -39,8 +39,6 @@ from .submissions.roster import Roster, cells_in
 from .tables import number, table
 
 FOLDER, TICKS = "sittings", "ticks.csv"
-#: The page size of each paper, as CSS calls it.
-PAPERS = {"a4": "A4", "letter": "letter"}
 #: Browsers that print a page without opening a window.
 BROWSERS = (
     "chromium-headless-shell",
@@ -149,11 +147,10 @@ def boxes_of(contract: Contract) -> list[Box]:
     shares: dict[str, tuple[float, bool]] = {}
     for fingerprint in contract.known:
         locker = contract.locker(fingerprint)
-        for note, details in (
-            note for answer in (locker.answers if locker else ()) for note in answer.notes[:1]
-        ):
-            says = message(contract.question, note, details)
-            shares[says] = contract.credit.get(note, 0), note == "authored"
+        for answer in locker.answers if locker else ():
+            for note, details in answer.notes[:1]:
+                says = message(contract.question, note, details)
+                shares[says] = contract.credit.get(note, 0), note == "authored"
     ranked = sorted(shares, key=shares.__getitem__, reverse=True)[:MOST_BOXES]
     said = [(1, "The right answer."), *((shares[says][0], says) for says in ranked)]
     said.append((0, "Something else, or no answer."))
@@ -171,9 +168,8 @@ def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
             wide for _, wide in entries
         )
     if plain is None or not (tex := answer_as_tex(plain)):
-        text = ", ".join(
-            map(str, [part[1] for part in parts or [value] if part[0] == "text"])
-        ) or answer_as_text(plain, LONGEST)
+        texts = [str(part[1]) for part in parts or [value] if part[0] == "text"]
+        text = ", ".join(texts) or answer_as_text(plain, LONGEST)
         return Markup("<strong>{}</strong>").format(text), False
     # What a row shows: the letters of a function, one sign for another command, and no braces.
     shown = re.sub(r"\\(?:left|right|(?:begin|end)\{\w+\})|[{}^_&\s]", "", tex)
@@ -210,7 +206,7 @@ def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> li
         path = (folder / f"{template}.html").resolve()
         write(
             path,
-            page(f"{template}.html", name=name, people=people, paper=PAPERS[paper]),
+            page(f"{template}.html", name=name, people=people, paper=paper),
             private=True,
         )
         made.append(_as_pdf(path))

@@ -20,7 +20,7 @@ from .record import Record
 REFUSED = "refused.json"
 
 
-class InUse(ValueError):
+class InUse(RuntimeError):
     """Another run works on the same folder."""
 
 
@@ -94,25 +94,18 @@ class Store:
     # Where the best of several attempts counts, each is kept as it was judged.
 
     def _attempts(self, student: str, assignment: str) -> Path:
-        return (
-            self.folder
-            / "attempts"
-            / self.place(student, assignment).relative_to(self.records).with_suffix("")
-        )
+        place = self.place(student, assignment).relative_to(self.records)
+        return self.folder / "attempts" / place.with_suffix("")
 
     def keep_attempt(self, record: Record) -> None:
         """Keep an attempt as it was judged."""
-        write(
-            self._attempts(record.student, record.assignment) / f"{record.key[:20]}.json",
-            _as_json(record),
-        )
+        place = self._attempts(record.student, record.assignment)
+        write(place / f"{record.key[:20]}.json", _as_json(record))
 
     def attempts(self, student: str, assignment: str) -> dict[str, Record]:
         """The attempts that were kept, by their keys."""
-        return {
-            one.key: one
-            for one in map(record_in, sorted(self._attempts(student, assignment).glob("*.json")))
-        }
+        paths = sorted(self._attempts(student, assignment).glob("*.json"))
+        return {one.key: one for one in map(record_in, paths)}
 
     def keep_work(self, digest: str, sources: list[str]) -> None:
         """Keep the code of a notebook, for people to look at beside its answers."""
@@ -125,12 +118,8 @@ class Store:
 
     def pictures(self, digest: str) -> dict[int, tuple[str, ...]]:
         """The pictures of a notebook, by the number of the cell that drew them."""
-        return {
-            int(number): shown
-            for number, shown in (
-                self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
-            ).items()
-        }
+        kept = self.said(f"work/{digest}.pictures.json", by_name(many(text))) or {}
+        return {int(number): shown for number, shown in kept.items()}
 
     def work(self, digest: str) -> tuple[str, ...]:
         """The code cells of a notebook, or nothing if they were not kept."""

@@ -434,12 +434,11 @@ class _Notebook:
         """Whether a file is none of the notebook's own and none of Python's."""
         if not os.path.isabs(path):
             return ".." in path.split("/") and self.is_from_a_cell()
-        return (
-            not path.startswith(
-                (self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")
-            )
-            and self.is_from_a_cell()
-        )
+        if path.startswith(
+            (self.folder, "/dev/", sys.prefix, sys.base_prefix, "/usr/share/zoneinfo")
+        ):
+            return False
+        return self.is_from_a_cell()
 
     def is_from_a_cell(self, most: int = DEPTH) -> bool:
         """Whether the code of a cell asks for it itself, and no library on its behalf."""

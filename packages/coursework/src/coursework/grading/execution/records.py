@@ -124,11 +124,9 @@ class Records:
     def is_step(self, step: object) -> bool:
         if not isinstance(step, list) or len(step) != 2:
             return False
-        return (
-            is_count(step[1], 0, self.number_of_cells)
-            if step[0] == "cell"
-            else step[0] == "answer" and is_text(step[1], LONGEST_NAME)
-        )
+        if step[0] == "cell":
+            return is_count(step[1], 0, self.number_of_cells)
+        return step[0] == "answer" and is_text(step[1], LONGEST_NAME)
 
 
 def is_text(value: object, longest: int) -> bool:

@@ -712,11 +712,9 @@ class _Once:
             return self.deadlines[-1], "done"
         if self.finished:  # it only has to exit now
             return self.done_by, "done"
-        return (
-            (self.deadlines[-1], "timeout")
-            if self.deadlines and self.deadlines[-1] < self.notebook_deadline
-            else (self.notebook_deadline, "timeout")
-        )
+        if self.deadlines and self.deadlines[-1] < self.notebook_deadline:
+            return self.deadlines[-1], "timeout"
+        return self.notebook_deadline, "timeout"
 
     def note(self, record: Record) -> None:
         now = time.monotonic()

@@ -580,7 +580,8 @@ def _is_number(there: str) -> bool:
 
 def _with_damaged(store: Store, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Of those without a record: who handed in only what was refused, and who nothing."""
-    known = {_signs(one.student) for one in refused_of(store) if one.student}
+    refused = refused_of(store)
+    known = {_signs(one.student) for one in refused if one.student}
     damaged = [name for name in names if _signs(name) in known or _signs(turned(name)) in known]
     return damaged, [name for name in names if name not in damaged]
 
@@ -759,16 +760,10 @@ def write_nbgrader(path: str | Path, marks: Marks) -> None:
     for (student, assignment), result in sorted(marks.results.items()):
         given = marks.given.get((marks.term.group_of(student, assignment), assignment))
         if given or (result.state == "missing" and result.due):
-            raw, worth = (
-                (given.points - result.held_back if given else 0),
-                given.worth if given else result.worth,
-            )
-            points = (
-                raw,
-                round(raw * result.penalty, 4),
-                round(raw * (1 - result.penalty), 4),
-                worth,
-            )
+            raw = given.points - result.held_back if given else 0
+            worth = given.worth if given else result.worth
+            lost = round(raw * result.penalty, 4)
+            points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
             rows.append((assignment, "", "", student, "", "", "", *points))
     write(path, table(NBGRADER, rows), private=True)
 

@@ -215,14 +215,9 @@ def run(home: Path = HOME) -> None:
             return _say(results, str(error))
         store = Store(out)
         if store.read(student, assignment) is None:
+            refused = [f"{Path(one.file).name}: {one.why}" for one in refused_of(store)]
             return _say(
-                results,
-                "\n".join(
-                    [
-                        "There was no notebook that could be graded.",
-                        *[f"{Path(one.file).name}: {one.why}" for one in refused_of(store)],
-                    ]
-                ),
+                results, "\n".join(["There was no notebook that could be graded.", *refused])
             )
         write_gradescope(results, Marks(store), student)
 
@@ -241,7 +236,8 @@ def prepare(home: Path = HOME) -> None:
     from ..assignments import Course
 
     term = term_of(home / "source")
-    Course(home / "source" / "solutions", term).questions(term.assignments, home)
+    course = Course(home / "source" / "solutions", term)
+    course.questions(term.assignments, home)
 
 
 if __name__ == "__main__":

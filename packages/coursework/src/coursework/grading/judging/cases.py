@@ -124,13 +124,8 @@ def changed_since(decided: Decision | None, record: Record, contracts: Contracts
         return ""
     if decided.answer != digest_of_answer(record, decided.question):
         return "answer"
-    return (
-        ""
-        if judged_alike(
-            contracts.of(decided.contract), contracts.of(record.marks[decided.question].version)
-        )
-        else "question"
-    )
+    now = record.marks[decided.question].version
+    return "" if judged_alike(contracts.of(decided.contract), contracts.of(now)) else "question"
 
 
 def case_of(
@@ -170,9 +165,8 @@ def case_of(
             contracts.keep(own[place.variant])
     shown = [variant for variant, text in texts.items() if text and shows(text)]
     variant = shown[0] if len(shown) == 1 else next(iter(cases))
-    return replace(
-        cases[variant], others=tuple(case.own for other, case in cases.items() if other != variant)
-    )
+    others = tuple(case.own for other, case in cases.items() if other != variant)
+    return replace(cases[variant], others=others)
 
 
 def asked_of(

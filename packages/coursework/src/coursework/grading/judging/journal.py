@@ -538,9 +538,8 @@ class Journal:
                 if state == RAISED
                 else "Say why it is rejected."
             )
-        one = Appeal(
-            **_on(record, question) | more, state=state, words=words, appeal=(of.id if of else "")
-        )
+        first = of.id if of else ""
+        one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
         self.append([one], collisions=True)
         return one
 
@@ -898,12 +897,8 @@ def _is_cut(line: bytes) -> bool:
 
 def _line(one: Event) -> bytes:
     said = {"event": type(one).__name__.lower(), **one.as_json()}
-    return (
-        json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False).encode(
-            "utf8", "backslashreplace"
-        )
-        + b"\n"
-    )
+    line = json.dumps(said | {"sum": _sum(said)}, ensure_ascii=False)
+    return line.encode("utf8", "backslashreplace") + b"\n"
 
 
 def _sum(said: Mapping[str, Json]) -> str:

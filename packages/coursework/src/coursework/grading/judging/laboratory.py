@@ -340,11 +340,8 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
         why = "graded"
     elif sorted(before.files.values()) != sorted(files.values()):
         others = {one.sha256 for one in record.superseded if "another to" in one.why}
-        why = (
-            "another attempt is the best now"
-            if others.issuperset(before.files.values())
-            else "handed in anew"
-        )
+        is_there = others.issuperset(before.files.values())
+        why = "another attempt is the best now" if is_there else "handed in anew"
     else:
         moved = [
             record.marks[name] for name, part in marks.items() if before.marks.get(name) != part

@@ -136,10 +136,8 @@ def of_student(
             if before and contracts:
                 case = case_of(name, [variants, *before], identity, contracts, shows)
         others = [one for one in case.others if one.variant != today.own.variant]
-        own[name], cases[name] = (
-            asked_of(name, variants, replace(case, others=(*others, today.own)), contracts),
-            case,
-        )
+        by_others = replace(case, others=(*others, today.own))
+        own[name], cases[name] = asked_of(name, variants, by_others, contracts), case
     return own, cases
 
 
@@ -212,10 +210,8 @@ def load_questions(
         places[path] = Path(results) / "questions" / f"{path.stem}-{depends}.json"
 
     def work_out(path: Path) -> None:
-        as_json = {
-            name: [one.as_json() for one in those]
-            for name, those in questions_of(path, secret, edition).items()
-        }
+        questions = questions_of(path, secret, edition)
+        as_json = {name: [one.as_json() for one in those] for name, those in questions.items()}
         write(places[path], json.dumps(as_json, ensure_ascii=False), private=True)
 
     missing = [path for path, place in places.items() if not place.exists()]
@@ -252,9 +248,8 @@ def earlier_variants(
     """
     path, lists = results / VARIANTS, dict[str, tuple[tuple[Contract, ...], ...]]()
     if path.exists():
-        lists |= by_name(many(many(Contract.from_json)))(
-            json.loads(path.read_text("utf8")), str(path)
-        )
+        read_lists = by_name(many(many(Contract.from_json)))
+        lists |= read_lists(json.loads(path.read_text("utf8")), str(path))
     earlier: dict[str, list[Sequence[Contract]]] = {}
     before = dict(lists)
     for name, variants in questions.items():
@@ -282,11 +277,8 @@ def asked_of_sandbox(questions: Mapping[str, Contract]) -> dict[str, dict[str, J
     variables = [contract.variable for contract in questions.values()]
 
     def calls(contract: Contract, arguments: tuple[list[Json], ...]) -> Json:
-        return (
-            {"arguments": list(arguments), "as": contract.question.takes}
-            if (contract.question.kind == "function" and arguments)
-            else None
-        )
+        is_called = contract.question.kind == "function" and arguments
+        return {"arguments": list(arguments), "as": contract.question.takes} if is_called else None
 
     return {
         name: {
@@ -463,11 +455,8 @@ def mark_with_siblings(
     found = mark(name, question, answers.get(name, MISSING), finished, limited)
     found, had = replace(found, tries=known.tries if known else None), known.help if known else ""
     for sibling, other in question.second_chances.items():
-        if (
-            sibling in answers
-            and not (sibling in remembered and remembered[sibling].help)
-            and (had or found.outcome != "correct")
-        ):
+        helped = sibling in remembered and remembered[sibling].help
+        if sibling in answers and not helped and (had or found.outcome != "correct"):
             if judge(sibling, Asked(other), answers[sibling])[0].outcome == "correct":
                 return _by_a_sibling(question.contract, found, sibling)
     if found.outcome == "correct" and had and (question.siblings or question.second_chances):
@@ -497,12 +486,9 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
         f"`{sibling}` was solved without help, and the question itself was not answered right: a "
         "person decides."
     )
+    messages = (*found.messages, said)
     return replace(
-        found,
-        outcome="undecided",
-        note="by a sibling alone",
-        points=0,
-        messages=(*found.messages, said),
+        found, outcome="undecided", note="by a sibling alone", points=0, messages=messages
     )
 
 

@@ -180,11 +180,9 @@ def _another(values: list[Any], dice: random.Random) -> Any:
     )
     if not numbers or min(values) == max(values):
         return copy.deepcopy(dice.choice(values))
-    return (
-        dice.randint(min(values), max(values))
-        if all(isinstance(value, int) for value in values)
-        else dice.uniform(min(values), max(values))
-    )
+    if all(isinstance(value, int) for value in values):
+        return dice.randint(min(values), max(values))
+    return dice.uniform(min(values), max(values))
 
 
 def _form(value: Any) -> Any:
@@ -207,11 +205,9 @@ def _another_list(values: list[list[Any]], dice: random.Random) -> list[Any]:
         # A quaternion whose scalar is never negative may be asked for so.
         return [abs(found[0]), *found[1:]] if all(value[0] >= 0 for value in values) else found
     found = [_another([value[place] for value in values], dice) for place in range(length)]
-    return (
-        sorted(found)
-        if length > 1 and all(map(_increases, values)) and _increases(sorted(found))
-        else found
-    )
+    if length > 1 and all(map(_increases, values)) and _increases(sorted(found)):
+        return sorted(found)
+    return found
 
 
 def _moved(value: Any, dice: random.Random) -> Any:

@@ -43,21 +43,14 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         f"  does not count: {in_a_line(other.file, 120)}, since {other.why}"
         for other in (record.superseded if record else ())
     ]
-    result = of_term.result_of(
-        student, assignment, record, term, {assignment: 0}, datetime.datetime.now(datetime.UTC)
-    )
+    now = datetime.datetime.now(datetime.UTC)
+    result = of_term.result_of(student, assignment, record, term, {assignment: 0}, now)
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
-    late = (
-        f"late: {number(round(100 * result.penalty))} % are lost"
-        if result.late
-        else ("in time" if result.handed_in else "nothing says when it came")
-    )
+    in_time = "in time" if result.handed_in else "nothing says when it came"
+    late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time
     if not record:
-        late = (
-            "it is exported as 0"
-            if (result.due and result.state == "missing" and not refused)
-            else "no mark is exported"
-        )
+        missing = result.due and result.state == "missing" and not refused
+        late = "it is exported as 0" if missing else "no mark is exported"
     said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items() if record else ():
         case = cases.get(name)

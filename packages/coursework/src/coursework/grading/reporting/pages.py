@@ -126,10 +126,8 @@ def formula(source: str, longest: int = 300) -> str:
         # A student's words may have come into a message: only what
         # draws mathematics is let through.
         for element in ElementTree.fromstring(found).iter():
-            if (
-                element.tag.rpartition("}")[2] not in MATHEMATICS
-                or not set(element.attrib) <= ATTRIBUTES
-            ):
+            name = element.tag.rpartition("}")[2]
+            if name not in MATHEMATICS or not set(element.attrib) <= ATTRIBUTES:
                 raise ValueError
         return found
     except Exception:

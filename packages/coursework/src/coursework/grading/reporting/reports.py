@@ -119,14 +119,8 @@ class _Assignment:
             if mark.outcome == "undecided":
                 self.waiting += 1
                 if len(self.undecided) < MOST_UNDECIDED:
-                    self.undecided.append(
-                        (
-                            record.student,
-                            name,
-                            mark.messages,
-                            answer_as_text(record.answer(name).plain),
-                        )
-                    )
+                    answer = answer_as_text(record.answer(name).plain)
+                    self.undecided.append((record.student, name, mark.messages, answer))
         for kind in _oddities(record):
             number, names = self.odd.get(kind, (0, []))
             self.odd[kind] = (
@@ -294,15 +288,13 @@ def _shown(record: Record, name: str) -> tuple[Plain, str] | None:
     """
     plain = record.answer(name).plain
     # What a function returned is not repeated: a list of it would do for a friend's answer.
-    return (
-        None
-        if (
-            not plain
-            or record.marks[name].outcome == "not attempted"
-            or plain["value"][0] == "function"
-        )
-        else (plain, answer_as_text(plain))
-    )
+    if (
+        not plain
+        or record.marks[name].outcome == "not attempted"
+        or plain["value"][0] == "function"
+    ):
+        return None
+    return plain, answer_as_text(plain)
 
 
 def _stopped(notebook: RunNotebook) -> list[tuple[int, Cell]]:

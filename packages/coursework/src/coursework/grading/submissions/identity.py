@@ -185,11 +185,8 @@ class Layout:
 
     def _inside(self, folders: Iterable[str]) -> set[str]:
         """The names of those folders that lie where the students' own do."""
-        return {
-            parts[-1]
-            for parts in [PurePosixPath(folder).parts for folder in folders]
-            if parts and parts[:-1] == self.enclosing
-        }
+        all_parts = [PurePosixPath(folder).parts for folder in folders]
+        return {parts[-1] for parts in all_parts if parts and parts[:-1] == self.enclosing}
 
     def _is_inside(self, parts: Parts) -> bool:
         return len(parts) > len(self.enclosing) and parts[: len(self.enclosing)] == self.enclosing
@@ -520,10 +517,5 @@ def _when(text: str) -> tuple[int, ...]:
     """
     month, day, year, clock, half = text.replace(",", "").split()
     number = MONTHS.index(month[:3].lower()) + 1 if month[:3].lower() in MONTHS else 0
-    return (
-        int(year),
-        number,
-        int(day),
-        (int(clock[:-2]) % 12 + (12 if half == "PM" else 0)),
-        int(clock[-2:]),
-    )
+    hour = int(clock[:-2]) % 12 + (12 if half == "PM" else 0)
+    return int(year), number, int(day), hour, int(clock[-2:])

@@ -35,7 +35,7 @@ from ..reading import AsJson
 from ..record import Identity, Remembered
 from ..store import REFUSED, Store
 from .identity import GRADESCOPE_TABLE, RESUBMITTED, Claim, Layout, looks_like
-from .pictures import PNG, is_picture
+from .pictures import JPEG, PNG, is_picture
 from .roster import Roster
 
 if TYPE_CHECKING:
@@ -113,11 +113,8 @@ class Refused(AsJson):
 
 def refused_of(store: Store) -> list[Refused]:
     """All files that were refused, of each folder that was handed in."""
-    return [
-        one
-        for place in (store.said(REFUSED, by_name(many(Refused.from_json))) or {}).values()
-        for one in place
-    ]
+    known = store.said(REFUSED, by_name(many(Refused.from_json))) or {}
+    return [one for place in known.values() for one in place]
 
 
 class Beside(NamedTuple):
@@ -440,9 +437,8 @@ def _with_student(
     if student is not None:
         identity = roster.identity(student) if roster else Identity()
         return one._replace(student=student, matched="as you said", identity=identity)
-    if one.claim.others and not (
-        roster and roster.are_a_group((one.claim.keys, *one.claim.others))
-    ):
+    people = one.claim.keys, *one.claim.others
+    if one.claim.others and not (roster and roster.are_a_group(people)):
         refused.append(Refused(one.file, one.claim.student, NO_GROUP))
         return None
     if roster is None:
@@ -778,9 +774,10 @@ class _Entry:
 
 
 def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
+    parts = name.replace("\\", "/").split("/")
     if (
         name.startswith(("/", "\\"))
-        or ".." in name.replace("\\", "/").split("/")
+        or ".." in parts
         or re.match(r"[A-Za-z]:", name)
         or "\\" in name
     ):
@@ -789,7 +786,9 @@ def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
         return "This is a link to another place. It was not followed."
     if entry.flag_bits & 1:
         return "It is locked with a password."
-    return f"It is larger than {MOST_BYTES >> 20} MB." if entry.file_size > MOST_BYTES else ""
+    if entry.file_size > MOST_BYTES:
+        return f"It is larger than {MOST_BYTES >> 20} MB."
+    return ""
 
 
 def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
@@ -952,18 +951,21 @@ def pictures_in(data: bytes) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     left = MOST_BYTES_OF_PICTURES
     for number, shown in outputs_in(data):
-        with contextlib.suppress(ValueError):
-            picture = "".join(_source(shown.get(PNG, "")).split())
-            if len(picture) <= left and is_picture(base64.b64decode(picture, validate=True)):
-                found.setdefault(str(number), []).append(f"{PNG};base64,{picture}")
-                left -= len(picture)
+        for kind in (PNG, JPEG):
+            with contextlib.suppress(ValueError):
+                picture = "".join(_source(shown.get(kind, "")).split())
+                if picture and len(picture) <= left:
+                    if is_picture(kind, base64.b64decode(picture, validate=True)):
+                        found.setdefault(str(number), []).append(f"{kind};base64,{picture}")
+                        left -= len(picture)
     return found
 
 
 def outputs_in(data: bytes) -> Iterator[tuple[int, dict[str, object]]]:
     """What the code cells of a notebook show, by kind, each with the number of its cell."""
     cells = [cell for cell in _list(_json(data).get("cells", [])) if isinstance(cell, dict)]
-    for number, cell in enumerate([cell for cell in cells if cell.get("cell_type") == "code"]):
+    code = [cell for cell in cells if cell.get("cell_type") == "code"]
+    for number, cell in enumerate(code):
         outputs = cell.get("outputs")
         for output in outputs if isinstance(outputs, list) else ():
             shown = output.get("data") if isinstance(output, dict) else None

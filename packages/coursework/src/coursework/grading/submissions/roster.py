@@ -185,9 +185,8 @@ class Roster:
 
     def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
         """Whether all whom these keys mean work in one group."""
-        groups = {
-            self.group_of.get(name, name) for name in [self.find(keys)[0] or "" for keys in people]
-        }
+        names = [self.find(keys)[0] or "" for keys in people]
+        groups = {self.group_of.get(name, name) for name in names}
         return len(groups) == 1 and groups <= set(self.group_of.values())
 
     def identity(self, student: str) -> Identity:
@@ -195,11 +194,8 @@ class Roster:
         if student not in self.people:
             return Identity({}, (student,))  # a group
         person = self.people[student]
-        called = {
-            kind: person.called[kind][0]
-            for kind in (("canvas", "moodle", "brightspace", "name", "email"))
-            if person.called.get(kind)
-        }
+        kinds = ("canvas", "moodle", "brightspace", "name", "email")
+        called = {kind: person.called[kind][0] for kind in kinds if person.called.get(kind)}
         return Identity(
             called,
             (*person.called.get("own", ()), *((person.local_part,) if person.local_part else ())),
@@ -209,11 +205,10 @@ class Roster:
 def cells_in(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """The names of a table's columns, in small letters, and the cells of each line."""
     text = decoded(path.read_bytes())
+    first = text.split("\n", 1)[0]
     # Not at every sign that ends a line somewhere: students choose their names,
     # and would begin a line of theirs.
-    reader = csv.reader(
-        io.StringIO(text, newline=""), delimiter=max(",;\t", key=text.split("\n", 1)[0].count)
-    )
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=first.count))
     header = [name.strip().casefold() for name in next(reader, [])]
     return header, ((reader.line_num, list(map(str.strip, cells))) for cells in reader)
 
@@ -308,8 +303,6 @@ def _same(kind: str, value: str) -> str:
     """One spelling of what people write in several ways."""
     value = unicodedata.normalize("NFKC", value).casefold()
     value = "".join(sign for sign in value if unicodedata.category(sign) != "Cf")
-    return (
-        "".join(sign for sign in unicodedata.normalize("NFKD", value) if sign.isalnum())
-        if kind == "letters"
-        else " ".join(value.split())
-    )
+    if kind == "letters":
+        return "".join(sign for sign in unicodedata.normalize("NFKD", value) if sign.isalnum())
+    return " ".join(value.split())
