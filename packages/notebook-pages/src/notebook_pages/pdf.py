@@ -16,8 +16,9 @@ from urllib.parse import urldefrag
 
 import pikepdf
 from bs4 import BeautifulSoup, Comment
+from pikepdf import Array, Dictionary, Name, String
 
-from . import fonts, tagged
+from . import fonts
 from .browser import open_browser
 from .mathematics import to_html
 from .paths import LICENCES_SAID, NODE_MODULES, WEBSITE, edition, moment_of_sources, parts
@@ -48,6 +49,8 @@ NOTE = (
     "stills, and the code that draws the figures is left out. "
     "The web pages and the notebooks have both."
 )
+# A prefix of the words of a formula, which distinguishes it from a picture.
+FORMULA = "\ue000"
 SMALLEST = 0.6  # of the size of the text; an element that is still too wide stops the printing
 
 # Shrink elements that are wider than their column, and return those that are still too wide. A page
@@ -124,7 +127,7 @@ def as_picture(formula):
     """Replace MathML, which a PDF lacks, by a description in words for screen readers."""
     formula["role"], formula["aria-label"] = (
         "img",
-        tagged.FORMULA + spoken(formula.select_one("math")),
+        FORMULA + spoken(formula.select_one("math")),
     )
     heard, drawn = formula.find_all(recursive=False)
     heard.decompose()
@@ -360,7 +363,7 @@ def in_order(bookmarks):
 
 
 def describe(pdf, title, author):
-    """Write the metadata of the file, for library programs, and mark it as accessible."""
+    """Write the metadata of the file, for library programs."""
     which = edition()
     with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=False) as metadata:
         metadata["dc:title"] = title
@@ -375,7 +378,40 @@ def describe(pdf, title, author):
         metadata["xmp:CreateDate"] = metadata["xmp:ModifyDate"] = (
             f"{moment_of_sources():%Y-%m-%dT%H:%M:%SZ}"
         )
-        metadata["pdfuaid:part"] = "1"
+
+
+def read_once(head):
+    """Keep the first page's content of a table's head, which Chromium repeats on later pages."""
+    inside = head.get("/K", Array())
+    inside = list(inside) if isinstance(inside, Array) else [inside]
+    head.K = Array(
+        part
+        for part in inside
+        if isinstance(part, int) or part.Type != Name.MCR or part.Pg == head.Pg
+    )
+    for part in inside:
+        if isinstance(part, Dictionary) and part.Type == Name.StructElem:
+            read_once(part)
+
+
+def correct_structure(pdf):
+    """Give Chromium's elements, which screen readers follow, the types that PDF 1.7 has for them.
+
+    A formula is no picture, and neither is a group of a picture and its caption.
+    """
+    pdf.Root.StructTreeRoot.RoleMap = Dictionary(Strong=Name.Span, Em=Name.Span)
+    for element in pdf.objects:
+        kind = element.get("/S") if isinstance(element, Dictionary) else None
+        if kind == Name.TH:
+            read_once(element)
+        elif kind == Name.Figure:
+            words = str(element.get("/Alt", ""))
+            if words.startswith(FORMULA):
+                element.S, element.Alt = Name.Formula, String(words.removeprefix(FORMULA))
+            elif not words:
+                element.S = Name.Div
+    for page in pdf.pages:
+        page.Tabs = Name.S
 
 
 def finish(printed, headings, title, author):
@@ -390,14 +426,14 @@ def finish(printed, headings, title, author):
             "/CreationDate": date,
             "/ModDate": date,
         }
-        pdf.trailer.Info = pdf.make_indirect(pikepdf.Dictionary(facts))
+        pdf.trailer.Info = pdf.make_indirect(Dictionary(facts))
         with pdf.open_outline() as outline:
             # Chromium makes the bookmarks, with some of their words twice.
             for bookmark, words in zip(in_order(outline.root), headings, strict=True):
                 bookmark.title = words
         # Open with the bookmarks beside the page.
-        pdf.Root.PageMode = pikepdf.Name.UseOutlines
-        tagged.mend(pdf, printed)
+        pdf.Root.PageMode = Name.UseOutlines
+        correct_structure(pdf)
         describe(pdf, title, author)
         pdf.save(
             file,

@@ -83,7 +83,7 @@ def stamps():
         for path, text in files.items()
         if path in kinds or path.endswith((".css", ".woff2"))
     }
-    programs = ("pdf.py", "tagged.py", "spoken.py", "print.css", "browser.py")
+    programs = ("pdf.py", "spoken.py", "print.css", "browser.py")
     digests = {PDF.name: digest(printed, *(WEBSITE / name for name in programs))}
     texts = {path: text for path, text in files.items() if path in kinds}
     digests[EPUB.name] = digest(
