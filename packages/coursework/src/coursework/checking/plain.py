@@ -228,6 +228,7 @@ IDLE = {
     "CACHE",
     "POP_TOP",
     "LOAD_CONST",
+    "LOAD_COMMON_CONSTANT",
     "RETURN_CONST",
     "RETURN_VALUE",
     "COPY_FREE_VARS",
