@@ -82,7 +82,7 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
         and "new" in blocks[1]
         and "try" in blocks[2]
         and "grade" in blocks[3]
-        and len(blocks) == 6
+        and len(blocks) == 7
     )
     blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parents[1])))
     # Nothing below opens JupyterLab, and to install it takes longer than all the rest.

@@ -1,5 +1,5 @@
 """The commands of authors: ``coursework new``, ``release``, ``publish``, ``try``, ``ask``,
-``selftest`` and ``wheels``.
+``bank``, ``selftest`` and ``wheels``.
 """
 
 from __future__ import annotations
@@ -69,6 +69,20 @@ def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     ask.add_argument(
         "--to", type=Path, metavar="FILE.ipynb", help="file for the notebook with those answers"
+    )
+    bank = commands.add_parser(
+        "bank", help="write the questions WITH ALL ANSWERS for Moodle or another system"
+    )
+    bank.add_argument("out", type=Path, metavar="OUT", help="file for the questions")
+    bank.add_argument(
+        "--format", choices=("moodle", "qti"), required=True, help="Moodle XML or a QTI 2.2 package"
+    )
+    bank.add_argument(
+        "--questions",
+        nargs="*",
+        default=[],
+        metavar="NOTEBOOK/QUESTION",
+        help="questions or notebooks (default: all)",
     )
     wheels = commands.add_parser(
         "wheels", help="build the packages of coursework, to install elsewhere"
@@ -183,6 +197,18 @@ def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
     )
 
 
+def bank(out: Path, format: str, questions: Sequence[str]) -> None:
+    from .bank import bank as write
+
+    carried, left = write(_course(), out, format, questions)
+    print(*left, sep="\n", end="\n" * bool(left))
+    print(
+        f"{out} has {len(carried)} questions in {sum(map(len, carried.values()))} variants; "
+        f"{len(left)} questions cannot be carried."
+    )
+    print(f"{out} HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only: never publish it.")
+
+
 def selftest(only: Sequence[str], page: str | None, sources: Path | None) -> None:
     from .selftest import selftest as try_all
 
@@ -201,6 +227,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "publish": publish,
     "try": trial,
     "ask": ask,
+    "bank": bank,
     "selftest": selftest,
     "wheels": wheels,
 }

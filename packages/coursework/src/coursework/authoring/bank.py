@@ -1,0 +1,297 @@
+"""The questions of a course for another house: every variant with its answer, replies and solution.
+
+:mod:`coursework.authoring.houses` writes them.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..checking.catalogue import message
+from ..checking.evaluate import MP
+from ..checking.kinds import Number, one_sign
+from ..checking.plain import Plain, Value, parts_of, size_of
+from ..checking.plugins import kinds
+from ..checking.reading import read, tolerances
+from ..checking.variants import text_of
+from .asking import PICTURE
+from .author import AuthoredQuestion, AuthorError
+from .course import Course
+from .source import (
+    CHAPTERS,
+    answered_in,
+    checked_names,
+    names_asked,
+    notebooks_in,
+    posed,
+    processes_for,
+    read_source,
+    texts_of_questions,
+)
+from .variation import drawn_in
+
+if TYPE_CHECKING:
+    from nbformat import NotebookNode
+
+OPPOSITES = "an answer and its opposite are right, and Moodle marks each number by itself"
+#: The line in which students write their answer.
+BLANK = re.compile(r"^.*# your answer\n?", re.M)
+#: A mistake in one place: another house judges every place by itself, and says so.
+OF_ONE_PLACE = "one wrong"
+
+
+class NotCarried(ValueError):
+    """No other house can judge the answers of a question; the message says why."""
+
+
+class Wrong(NamedTuple):
+    """The answer that a mistake leads to, its note and share of the points, and the reply to it."""
+
+    values: tuple[str, ...]
+    note: str
+    share: float
+    reply: str
+
+
+class Item(NamedTuple):
+    """One variant of a question.
+
+    Attributes
+    ----------
+    name : str
+    number : int
+        That of the variant.
+    worth : float
+    text, solution : str
+        As Markdown, with pictures inside.
+    columns : int
+        How many places stand in a row.
+    options : tuple of str
+        The words to choose from, if the answer is some of them.
+    tolerances : tuple of float
+        One for each number of the answer; none if it consists of words.
+    right : tuple of tuples of str
+        The right answer; and its opposite, where a question accepts both.
+    wrong : list of Wrong
+    """
+
+    name: str
+    number: int
+    worth: float
+    text: str
+    solution: str
+    columns: int
+    options: tuple[str, ...]
+    tolerances: tuple[float, ...]
+    right: tuple[tuple[str, ...], ...]
+    wrong: list[Wrong]
+
+    @property
+    def identifier(self) -> str:
+        """A name that XML takes as an identifier."""
+        return re.sub(r"[^A-Za-z0-9_-]", ".", f"Q-{self.name}") + f".{self.number}"
+
+    @property
+    def heading(self) -> str:
+        return f"{self.name}, variant {self.number}"
+
+    @property
+    def places(self) -> int:
+        return len(self.right[0])
+
+    def same(self, place: int, first: str, second: str) -> bool:
+        """Whether two values are one answer in a place."""
+        if not self.tolerances:
+            return first == second
+        return abs(float(first) - float(second)) <= self.tolerances[place]
+
+
+def items_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> Item:
+    """One variant of a question, below what its notebook has ``above`` it.
+
+    Raises
+    ------
+    NotCarried
+    """
+    public, kind = question.public, kinds()[question.public.kind]
+    for applies, reason in (
+        (kind.by_a_person, "a person reads its answers"),
+        (public.kind == "function", "its answer is a function"),
+        (public.symbols, f"its answer is a formula in {', '.join(public.symbols)}"),
+        (public.kind == "measurement", "its answer is a number with a unit"),
+        (kind.unique not in (None, one_sign), f"many answers of the kind {public.kind} are right"),
+    ):
+        if applies:
+            raise NotCarried(reason)
+    known = {str(entry.plain): entry for entry in question.entries.values()}
+    values = {text: _values(question, entry.plain) for text, entry in known.items()}
+    right = [values[text] for text, entry in known.items() if entry.outcome == "correct"]
+    if public.either_sign:
+        right.append(tuple(_number(question, -float(value)) for value in right[0]))
+    wrong = [
+        Wrong(values[text], note, question.credit.get(note, 0), message(public, note, details))
+        for text, entry in known.items()
+        for note, details in entry.notes[:1]
+        if note != OF_ONE_PLACE
+    ]
+    absolute, relative = map(float, tolerances(public))
+    options = public.options or (("True", "False") if public.kind == "truth values" else ())
+    figures = "\n\n".join(found[0] for found in PICTURE.finditer(above))
+    variant = public.variant
+    return Item(
+        question.name,
+        question.number,
+        question.worth,
+        (f"{figures}\n\n{text_of(variant)}" if variant else above) + _given(question, notebook),
+        question.solution,
+        _columns(question.plain["value"], len(right[0])),
+        options,
+        # The third digit of a tolerance says nothing, and its rounding would be read.
+        ()
+        if kind.text
+        else tuple(float(f"{absolute + relative * abs(float(n)):.3g}") for n in right[0]),
+        tuple(right),
+        wrong,
+    )
+
+
+def _given(question: AuthoredQuestion, notebook: NotebookNode) -> str:
+    """What students of the notebook get in the cell of their answer, with its numbers."""
+    owners = {variable: name for name, variable in checked_names(notebook).items()}
+    drawn, code = "", ""
+    for cell in notebook.cells:
+        if cell.cell_type != "code":
+            continue
+        variable, name = drawn_in(cell.source) or ("", "")
+        drawn = variable if name == question.name else drawn
+        if question.name in answered_in(cell.source, owners):
+            code = BLANK.sub("", posed(cell.source, owners)).strip()
+    numbers = [
+        f"{drawn}.{name} = {value!r}"
+        for name, value in question.public.given.items()
+        if re.search(rf"\b{drawn}\.{name}\b", code)
+    ]
+    return "\n".join(["\n\n```python", *numbers, code, "```"]) if code else ""
+
+
+def _values(question: AuthoredQuestion, plain: Plain) -> tuple[str, ...]:
+    value = plain["value"]
+    if kinds()[question.public.kind].text:
+        return tuple(str(part[1]) for part in (parts_of(value) if value[0] == "list" else [value]))
+    return tuple(_number(question, number) for number in read(question.public, plain).numbers[0])
+
+
+def _number(question: AuthoredQuestion, number: Number) -> str:
+    """A number with more digits than the tolerance asks for, and no trace of rounding."""
+    digits = 3 - int(MP.floor(MP.log10(tolerances(question.public)[0])))
+    return f"{round(float(number), digits) + 0.0:.12g}"
+
+
+def _columns(value: Value, places: int) -> int:
+    if value[0] == "matrix":
+        return size_of(value)[1]
+    rows = parts_of(value) if value[0] == "list" else []
+    widths = {len(parts_of(row)) if row[0] == "list" else 0 for row in rows}
+    return max(widths.pop(), 1) if len(widths) == 1 and widths != {0} else places
+
+
+def _carried(
+    path: Path, course: Course, names: Collection[str]
+) -> tuple[dict[str, list[Item]], dict[str, str]]:
+    """The items of each question of a notebook; or why it cannot be carried."""
+    if path.stem == CHAPTERS:
+        return {}, dict.fromkeys(names, "its text stands in a chapter")
+    items, left = dict[str, list[Item]](), dict[str, str]()
+    source = read_source(path, 0, course.edition, names, pictures=True)
+    above = texts_of_questions(source.notebook, source.figures)
+    number, questions = 0, source.questions
+    while questions:
+        for name, question in questions.items():
+            try:
+                item = items_of(question, above[name], source.notebook)
+                items.setdefault(name, []).append(item)
+            except NotCarried as reason:
+                left[name] = str(reason)
+        number += 1
+        having = [name for name in items if number < source.questions[name].public.variants]
+        again = having and read_source(path, number, course.edition, having, pictures=True)
+        questions = again.questions if again else {}
+    return items, left
+
+
+def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, list[str]]]:
+    """The notebooks with the questions of each that are wanted, by their names or that of theirs.
+
+    Raises
+    ------
+    AuthorError
+        There is no question, and no notebook, of a name.
+    """
+    asked = {path: list(names_asked(path)) for path in notebooks_in(course.sources)}
+    known = {*(path.stem for path in asked), *(name for names in asked.values() for name in names)}
+    for name in wanted:
+        if name not in known:
+            raise AuthorError(f"There is no question and no notebook {name!r}.")
+    for path, names in asked.items():
+        chosen = [name for name in names if not wanted or {name, path.stem} & {*wanted}]
+        if chosen:
+            yield path, chosen
+
+
+def bank(
+    course: Course, out: str | Path, house: str, wanted: Collection[str] = ()
+) -> tuple[dict[str, list[Item]], list[str]]:
+    """Write a course's questions for another house, and what it cannot carry beside it.
+
+    Parameters
+    ----------
+    course : Course
+    out : path
+    house : str
+        ``'moodle'`` or ``'qti'``.
+    wanted : collection of str
+        Questions or notebooks; all of them if there is none.
+
+    Returns
+    -------
+    (dict of list of Item, list of str)
+        The variants of each question that was written, and a line for each question that was not.
+
+    Raises
+    ------
+    AuthorError
+        The file would reach students, or there is no such question.
+    """
+    from . import houses
+
+    path = Path(out).resolve()
+    for folder in (course.exercises, course.sealed, course.archive.parent):
+        if path.is_relative_to(folder.resolve()):
+            raise AuthorError(
+                f"{path} would hold all answers, and students may get what is in {folder}. Write "
+                "it somewhere else."
+            )
+    paths, names = zip(*_chosen(course, wanted))
+    # Only the author needs what a solution prints.
+    with contextlib.redirect_stdout(io.StringIO()), processes_for(paths) as pool:
+        found = list(pool.map(_carried, paths, [course] * len(paths), names))
+    questions = {name: items for items_by_name, _ in found for name, items in items_by_name.items()}
+    left = {name: reason for _, reasons in found for name, reason in reasons.items()}
+    if house == "moodle":
+        left |= {name: OPPOSITES for name, (item, *_) in questions.items() if len(item.right) > 1}
+        questions = {name: items for name, items in questions.items() if name not in left}
+    write = houses.moodle if house == "moodle" else houses.qti
+    lines = [f"{name}: {reason}." for name, reason in left.items()]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    for place, content in (
+        (path, write(course.title, questions)),
+        (path.with_name(f"{path.stem}-not-carried.txt"), "\n".join([*lines, ""]).encode()),
+    ):
+        place.touch(mode=0o600)
+        place.write_bytes(content)
+    return questions, lines

@@ -1,0 +1,170 @@
+"""Questions as other houses read them: Moodle XML, and a package of QTI 2.2.
+
+Moodle gets a category for each question, and in it a question for each variant. An answer of
+several places becomes a cloze question, whose places Moodle marks one by one. QTI gets an item for
+each variant, which judges the whole answer, and a test that draws one variant of each question.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import io
+import re
+import urllib.parse
+import zipfile
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from ..checking.mistakes import GENERAL
+from ..checking.reply import mathml, to_html
+from .author import to_page
+from .bank import Item
+
+#: A picture within a page, as authors' figures are held.
+EMBEDDED = re.compile(r'(?<=src=")data:image/(svg|png|jpe?g|gif)[^,"]*?(;base64)?,([^"]+)')
+#: Elements without content, which XML closes.
+VOID = re.compile(r"<(img|br|hr)\b([^>]*?)/?>")
+#: What would be a place of a cloze question, in a text.
+CLOZE = re.compile(r"\{(?=\d*:)")
+#: What has a meaning in the answers of a cloze question, as the importer decodes it.
+SPECIAL = {ord(sign): f"&#{ord(sign)};" for sign in "{}~#=%"}
+#: More replies than these to one place nobody reads.
+MOST_REPLIES = 2
+#: Moodle compares one place at a time, and a reply is to a whole answer.
+PERHAPS = Markup("<p>If the rest of your answer fits, too:</p>")
+ENVIRONMENT = Environment(
+    loader=PackageLoader("coursework.authoring", "templates"),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+ENVIRONMENT.filters |= {
+    "base64": lambda data: base64.b64encode(data).decode("ascii"),
+    "message": lambda reply: Markup(to_html(reply, mathml)),
+}
+
+
+class Page(Markup):
+    """HTML that is XML as well, whose pictures are files beside it."""
+
+    files: dict[str, bytes]
+
+    @classmethod
+    def of(cls, text: str, folder: str) -> Page:
+        files: dict[str, bytes] = {}
+
+        def as_file(found: re.Match[str]) -> str:
+            kind, coded, content = found.groups()
+            data = urllib.parse.unquote_to_bytes(content)
+            data = base64.b64decode(data) if coded else data
+            name = f"{hashlib.sha256(data).hexdigest()[:12]}.{kind}"
+            files[name] = data
+            return f"{folder}/{name}"
+
+        page = cls(VOID.sub(r"<\1\2/>", EMBEDDED.sub(as_file, text)))
+        page.files = files
+        return page
+
+
+class Answer(NamedTuple):
+    """A value in one place, its share of the points of the place, and the replies to it."""
+
+    value: str
+    share: float
+    replies: list[str]
+
+    @property
+    def percent(self) -> str:
+        return f"{100 * self.share:.7g}"
+
+    @property
+    def reply(self) -> Page:
+        replies = (f"<p>{to_html(text, in_moodle)}</p>" for text in self.replies[:MOST_REPLIES])
+        return Page.of("".join(replies), "@@PLUGINFILE@@")
+
+
+def in_moodle(tex: str) -> str:
+    """A formula for Moodle's filter; its importer takes the backslash from a brace in a reply."""
+    tex = tex.replace(r"\{", r"\lbrace ").replace(r"\}", r"\rbrace ")
+    return html.escape(rf"\({tex}\)", quote=False)
+
+
+def answers(item: Item, place: int) -> list[Answer]:
+    """What is known of a place, the right answer first; of words, all in the order of the choice.
+
+    Moodle takes the first answer that fits, so the mistakes that earn most come before the others.
+    """
+    known = [Answer(item.right[0][place], 1, [])]
+    for wrong in sorted(item.wrong, key=lambda wrong: -wrong.share):
+        if wrong.note in GENERAL and item.places > 1:
+            continue  # twice as much in one place says nothing of the others
+        value = wrong.values[place]
+        same = next((one for one in known if item.same(place, one.value, value)), None)
+        if same is None:
+            known.append(Answer(value, wrong.share, [wrong.reply]))
+        elif same.share < 1:
+            same.replies.append(wrong.reply)
+    by_value = {answer.value: answer for answer in known}
+    return [by_value.get(option, Answer(option, 0, [])) for option in item.options] or known
+
+
+def cloze(kind: str, item: Item, place: int) -> Markup:
+    """One place of a cloze question; the importer decodes its answers and replies once more."""
+
+    def plain(text: str) -> str:
+        # Markup would escape what it is to put in place of a sign.
+        return html.escape(str(text)).translate(SPECIAL)
+
+    allowed = f":{item.tolerances[place]}" if item.tolerances else ""
+    known = (
+        f"{'=' if answer.share == 1 else f'%{answer.percent}%'}{plain(answer.value)}{allowed}"
+        + (f"#{plain(PERHAPS + answer.reply)}" if answer.replies else "")
+        for answer in answers(item, place)
+    )
+    return Markup("{{1:{}:{}}}".format(kind.upper(), "~".join(known)))
+
+
+def moodle(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
+    """The file that Moodle imports."""
+
+    def page(markdown: str) -> Page:
+        return Page.of(CLOZE.sub("&#123;", to_page(markdown, in_moodle)), "@@PLUGINFILE@@")
+
+    template = ENVIRONMENT.get_template("moodle.xml")
+    return template.render(
+        title=title, questions=questions, page=page, answers=answers, cloze=cloze
+    ).encode()
+
+
+def qti(title: str, questions: Mapping[str, Iterable[Item]]) -> bytes:
+    """The package."""
+    contents, files = dict[str, bytes](), dict[str, list[str]]()
+
+    def add(place: str, template: str, **about: object) -> None:
+        contents[place] = ENVIRONMENT.get_template(template).render(**about).encode()
+
+    for item in (item for items in questions.values() for item in items):
+        text, solution = (
+            Page.of(to_page(markdown, mathml), "pictures")
+            for markdown in (item.text, item.solution)
+        )
+        pictures = {
+            f"pictures/{name}": data for name, data in (text.files | solution.files).items()
+        }
+        add(f"{item.identifier}.xml", "qti-item.xml", item=item, text=text, solution=solution)
+        contents |= pictures
+        files[item.identifier] = list(pictures)
+    add("test.xml", "qti-test.xml", title=title, questions=questions)
+    add("imsmanifest.xml", "imsmanifest.xml", files=files)
+    package = io.BytesIO()
+    with zipfile.ZipFile(package, "w") as archive:
+        for place, content in contents.items():
+            # With the same time, the same bank is the same file.
+            archive.writestr(zipfile.ZipInfo(place), content, zipfile.ZIP_DEFLATED)
+    return package.getvalue()

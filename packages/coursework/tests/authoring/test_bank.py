@@ -1,0 +1,128 @@
+"""The questions for another house: read back by readers of the tests' own, and marked by them."""
+
+import html
+import re
+import stat
+from functools import partial
+
+import pytest
+from other_houses import marked_by_moodle, marked_by_qti, of_moodle, of_qti
+from trial_course import PROJECT, SETUP, made_in, write_source
+
+from coursework.__main__ import main
+from coursework.authoring.author import AuthorError
+from coursework.authoring.bank import bank
+from coursework.authoring.course import find_course
+from coursework.authoring.source import read_source
+
+HOUSES = {"moodle": (of_moodle, marked_by_moodle), "qti": (of_qti, marked_by_qti)}
+
+
+def judged_as_here(course, house, names, place):
+    """Mark every variant's right answer, the author's mistakes and a wrong answer elsewhere."""
+    of_house, marked = HOUSES[house]
+    carried, left = bank(course, place / "bank", house, names)
+    questions = of_house(place / "bank")
+    assert len(questions) == sum(map(len, carried.values()))
+    for name in carried:
+        path = course.sources / f"{name.partition('/')[0]}.ipynb"
+        count = read_source(path, only=[name]).questions[name].public.variants
+        for number in range(count):
+            question = read_source(path, number, only=[name]).questions[name]
+            mark = partial(marked, questions.pop(f"{name}, variant {number}"))
+            right = values(question.answer)
+            assert mark(right)[0] == pytest.approx(1)
+            for mistake in question.mistakes:
+                text = str(mistake.details.get("text"))
+                if mistake.note != "authored" or text in question.no_mistakes:
+                    continue
+                share, reply = mark(values(mistake.answer))
+                assert share < 1
+                assert plainly(text) in plainly(reply), (name, number, text, reply)
+                if house == "qti" or len(right) == 1:
+                    assert share == pytest.approx(question.credit.get("authored", 0))
+            wrong = ["-777.5" if is_number(value) else "nonsense" for value in right]
+            assert mark(wrong) == (0, "")
+    assert not questions
+    return left
+
+
+def values(answer):
+    """The entries of an answer, row by row, as a student types or chooses them."""
+    if isinstance(answer, str):
+        return [answer]
+    if hasattr(answer, "tolist"):
+        answer = answer.tolist()
+    if isinstance(answer, (list, tuple)):
+        return [value for part in answer for value in values(part)]
+    return [str(answer) if isinstance(answer, bool) else f"{float(answer):.9f}"]
+
+
+def is_number(value):
+    return re.fullmatch(r"-?[\d.]+", value) is not None
+
+
+def plainly(text):
+    """The letters of a reply outside of formulas, which houses write each in its own way."""
+    text = re.sub(r"\$[^$]+\$|\\\(.*?\\\)|<(\w+:)?math.*?</(\w+:)?math>", "", text)
+    return re.sub(r"<[^>]*>|\W", "", html.unescape(text))
+
+
+@pytest.mark.parametrize("house", HOUSES)
+def test_every_variant_is_judged_elsewhere_as_it_is_here(house, tmp_path):
+    course = find_course(PROJECT / "examples" / "plane-statics")
+    left = judged_as_here(course, house, [], tmp_path)
+    assert "equilibrium/cantilever: its answer is a function." in left
+    assert "equilibrium/ladder: its answer is a formula in W, theta." in left
+    assert "units/torque: its answer is a number with a unit." in left
+    listed = (tmp_path / "bank-not-carried.txt").read_text("utf8")
+    assert listed.splitlines() == left
+    assert stat.S_IMODE((tmp_path / "bank").stat().st_mode) == 0o600
+
+
+ODD = 'Is <i>1</i> < 2 & 3 > 2, says "he"? {1:SHORTANSWER:=cheat} ]]> $a < b$ <br>'
+CHOICE = """
+### BEGIN HIDDEN TESTS
+question('trial/odd', kind='words', options=['=a~b#c', 'x & {y}', '50% <z>'], length=2, worth=2,
+         credit={'authored': 0.5}, solution='$\\\\{a\\\\} < b$ ]]>',
+         mistakes={'Not ~ } # $\\\\{a\\\\}$ `=` <b>': ['50% <z>', 'x & {y}']})
+### END HIDDEN TESTS"""
+
+
+@pytest.fixture
+def odd(tmp_path):
+    course = made_in(tmp_path / "course", tmp_path / "solutions")
+    solution = "### BEGIN SOLUTION\nodd = ['=a~b#c', 'x & {y}']\n### END SOLUTION"
+    cells = [
+        ("code", SETUP),
+        ("markdown", ODD),
+        ("code", solution),
+        ("code", f"check('trial/odd', odd){CHOICE}"),
+    ]
+    write_source(course.sources, *cells)
+    return course
+
+
+@pytest.mark.parametrize("house", HOUSES)
+def test_signs_with_a_meaning_are_only_signs(odd, house, tmp_path):
+    of_house, marked = HOUSES[house]
+    bank(odd, tmp_path / "bank", house)
+    (question,) = of_house(tmp_path / "bank").values()
+    assert marked(question, ["=a~b#c", "x & {y}"])[0] == 1
+    share, reply = marked(question, ["50% <z>", "x & {y}"])
+    # Moodle adds half of the first place and all of the second.
+    assert share == {"moodle": 0.75, "qti": 0.5}[house]
+    assert "Not ~ } # " in reply and "<code>=</code> &lt;b&gt;" in re.sub(
+        r"\w+:(?=code)", "", reply
+    )
+
+
+def test_what_holds_answers_is_not_written_where_students_look(odd, tmp_path, monkeypatch, capsys):
+    for folder in (odd.exercises, odd.sealed, odd.archive.parent):
+        with pytest.raises(AuthorError, match="would hold all answers"):
+            bank(odd, folder / "deep" / "bank.xml", "moodle")
+    with pytest.raises(AuthorError, match="no question and no notebook 'trial/even'"):
+        bank(odd, tmp_path / "bank.xml", "moodle", ["trial/even"])
+    monkeypatch.chdir(PROJECT / "examples" / "plane-statics")
+    main(["bank", str(tmp_path / "a.xml"), "--format", "moodle", "--questions", "units/which"])
+    assert "HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only" in capsys.readouterr().out
