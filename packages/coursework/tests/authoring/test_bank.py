@@ -92,7 +92,7 @@ question('trial/odd', kind='words', options=['=a~b#c', 'x & {y}', '50% <z>'], le
 @pytest.fixture
 def odd(tmp_path):
     course = made_in(tmp_path / "course", tmp_path / "solutions")
-    solution = "### BEGIN SOLUTION\nodd = ['=a~b#c', 'x & {y}']\n### END SOLUTION"
+    solution = "given = [7, 11]\n### BEGIN SOLUTION\nodd = ['=a~b#c', 'x & {y}']\n### END SOLUTION"
     cells = [
         ("code", SETUP),
         ("markdown", ODD),
@@ -106,8 +106,9 @@ def odd(tmp_path):
 @pytest.mark.parametrize("house", HOUSES)
 def test_signs_with_a_meaning_are_only_signs(odd, house, tmp_path):
     of_house, marked = HOUSES[house]
-    bank(odd, tmp_path / "bank", house)
+    ((item,),) = bank(odd, tmp_path / "bank", house)[0].values()
     (question,) = of_house(tmp_path / "bank").values()
+    assert item.text.endswith("```python\ngiven = [7, 11]\n```")
     assert marked(question, ["=a~b#c", "x & {y}"])[0] == 1
     share, reply = marked(question, ["50% <z>", "x & {y}"])
     # Moodle adds half of the first place and all of the second.

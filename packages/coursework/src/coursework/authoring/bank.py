@@ -169,7 +169,7 @@ def _given(question: AuthoredQuestion, notebook: NotebookNode) -> str:
             continue
         variable, name = drawn_in(cell.source) or ("", "")
         drawn = variable if name == question.name else drawn
-        if question.name in answered_in(cell.source, owners):
+        if question.variable in answered_in(cell.source, owners):
             code = BLANK.sub("", posed(cell.source, owners)).strip()
     numbers = [
         f"{drawn}.{name} = {value!r}"
