@@ -161,14 +161,7 @@ def try_forms(authored, number):
 
 @pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
 def test_any_form_of_the_right_answer_passes(authored):
-    try_forms(authored, 50)
-
-
-@pytest.mark.long
-@pytest.mark.sampled(3)
-@pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)
-def test_a_thousand_forms_of_the_right_answer_pass(authored):
-    try_forms(authored, 1000)
+    try_forms(authored, 100)
 
 
 @pytest.mark.parametrize("authored", KINDS.values(), ids=KINDS)

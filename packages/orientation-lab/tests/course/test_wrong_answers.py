@@ -109,15 +109,8 @@ def try_roots(names):
 
 
 @pytest.mark.long
-def test_no_root_passes_for_a_cosine():
-    """These agree where the cosine is
-    positive, and the points were there only.
-    """
-    assert try_roots(["cases-from-practice", "orientation-in-motion"]) >= 10
-
-
-@pytest.mark.long
 def test_no_root_passes_for_a_cosine_in_any_question():
+    """The two agree where the cosine is positive, and all points once lay there."""
     assert try_roots(NAMES) >= 150
 
 
@@ -140,7 +133,7 @@ def test_no_mutant_of_an_answer_passes():
 
 @pytest.mark.long
 def test_no_mutant_of_any_answer_passes():
-    assert try_mutants(NAMES, 102) >= 6600
+    assert try_mutants(NAMES, 30) >= 1900
 
 
 def try_forms(names, number):
@@ -178,7 +171,7 @@ def test_forms_of_right_answers_pass_and_lose_nothing_by_the_secret():
 
 @pytest.mark.long
 def test_every_form_of_every_right_answer_passes():
-    assert try_forms(NAMES, 45) >= 6000
+    assert try_forms(NAMES, 15) >= 2000
 
 
 @pytest.mark.parametrize("salt", range(12))

@@ -154,7 +154,6 @@ def test_angular_momentum_stays_where_it_is(description):
     assert abs(figure.dcm - np.eye(3)).max() > 0.5
 
 
-@pytest.mark.long
 def test_the_racket_flips_about_its_middle_axis_only():
     # What the chapter's program finds: flips after 3.3, 8.5, 13.7 and 18.9 s.
     counts = [

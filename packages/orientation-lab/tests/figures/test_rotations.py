@@ -180,7 +180,6 @@ def moved_by_rounding(value, draw):
     return value + 1e-14 * draw.standard_normal() if isinstance(value, float) else value
 
 
-@pytest.mark.long
 def test_no_rounding_is_seen():
     """Faces that lie as far off as others, or edge-on, are painted alike by every processor."""
     world, draw = scenes(), np.random.default_rng(1)

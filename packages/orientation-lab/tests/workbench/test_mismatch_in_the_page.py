@@ -169,12 +169,11 @@ def angles_that_fit_in_many_ways():
     yield case("0.3 0 0", "0.3 0 0", ({"sequence": "zyx"}, {"sequence": "zyx"}))
 
 
-@pytest.mark.parametrize("count", [10, pytest.param(100, marks=pytest.mark.long)])
-def test_both_say_the_same(count):
+def test_both_say_the_same():
     cases = [
-        *(special() if count > 10 else itertools.islice(special(), 0, None, 3)),
-        *(angles_that_fit_in_many_ways() if count > 10 else ()),
-        *mixtures(count, seed=8),
+        *itertools.islice(special(), 0, None, 2),
+        *itertools.islice(angles_that_fit_in_many_ways(), 0, None, 4),
+        *mixtures(12, seed=8),
     ]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)
@@ -210,8 +209,7 @@ def broken(generator, text):
     return text
 
 
-@pytest.mark.parametrize("count", [80, pytest.param(500, marks=pytest.mark.long)])
-def test_both_say_the_same_of_broken_text(count):
+def test_both_say_the_same_of_broken_text():
     """Whatever is pasted, there is an answer or a word on what was read,
     and both languages say the same.
     """
@@ -224,7 +222,7 @@ def test_both_say_the_same_of_broken_text(count):
     ]
     cases = [
         case(broken(generator, generator.choice(texts)), "0.9205 0.3602 -0.0702 0.1343")
-        for _ in range(count)
+        for _ in range(80)
     ]
     for one, found in zip(cases, in_the_page(cases)):
         wanted = in_python(one)
