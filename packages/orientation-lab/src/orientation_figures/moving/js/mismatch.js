@@ -478,10 +478,12 @@ function expectedRelations(mirrored, expected, table) {
 }
 const isMirrored = (first, second) => (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
 
-function chainsOf(first, second, noise, table, expected, special) {
+function* chainsOf(first, second, noise, table, expected, special) {
   const mirrored = isMirrored(first, second), { exactly } = expectedRelations(mirrored, expected, table);
   const fits = [], tried = [0, 0, 0, 0], pairs = [[], [], [], []], most = table['most faults'];
+  yield;
   for (const one of first) {
+    yield;
     one.turned = [];   // made as they are needed: those of few faults come first
     for (const other of second) {
       // This runs up to a million times: no more is worked out than what decides.
@@ -500,20 +502,23 @@ function chainsOf(first, second, noise, table, expected, special) {
   const angles = Math.max(first.length, second.length) > 24;
   let lowest = most;
   for (let level = 0; level <= most && (!angles || (level <= lowest + 1 && fits.length <= MANY)); level += 1) {
-    pairs.slice(0, level + 1).forEach((those, inReadings) => those.forEach(([one, other, tolerance]) => {
-      const wanted = other.flat[0], turned = (one.turned[level - inReadings] ??= []);
-      exactly[level - inReadings].forEach((relation, k) => {
-        const made = (turned[k] ??= related(relation, one.dcms[0]).flat());
-        for (let entry = 0; entry < 9; entry += 1) if (!(Math.abs(made[entry] - wanted[entry]) <= tolerance)) return;
-        const residual = gapOf(relation, one.dcms, other.dcms);
-        if (residual <= tolerance) {
-          fits.push({ first: one.reading, second: other.reading, relation, residual, faults: level, rarity: ofBoth(one.reading, other.reading).rarity + relation.rarity });
-        }
-      });
-    }));
+    for (const [inReadings, those] of pairs.slice(0, level + 1).entries()) {
+      for (const [one, other, tolerance] of those) {
+        yield;
+        const wanted = other.flat[0], turned = (one.turned[level - inReadings] ??= []);
+        exactly[level - inReadings].forEach((relation, k) => {
+          const made = (turned[k] ??= related(relation, one.dcms[0]).flat());
+          for (let entry = 0; entry < 9; entry += 1) if (!(Math.abs(made[entry] - wanted[entry]) <= tolerance)) return;
+          const residual = gapOf(relation, one.dcms, other.dcms);
+          if (residual <= tolerance) {
+            fits.push({ first: one.reading, second: other.reading, relation, residual, faults: level, rarity: ofBoth(one.reading, other.reading).rarity + relation.rarity });
+          }
+        });
+      }
+    }
     if (fits.length) lowest = Math.min(lowest, level);
   }
-  if (!mirrored && !(special && fits.length)) insideOf(first, second, noise, table, fits, tried, fits.length ? lowest : most);
+  if (!mirrored && !(special && fits.length)) yield* insideOf(first, second, noise, table, fits, tried, fits.length ? lowest : most);
   for (const chain of fits) chain.words = wordsOf(chain, table).join('; ');
   fits.sort((a, b) => price(a, b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
   return { fits, tried };
@@ -526,42 +531,59 @@ const INNER = [...SEQUENCES.flatMap((read) => SEQUENCES.flatMap((built) => PERMU
   rarity: (['123', '321'].includes(places) ? 0.2 : 0.4) - 0.1 * (built === [...read].reverse().join('') && places === '321')
     + 0.4 * (read[0] === read[2] || built[0] === built[2]) })))), ...MISREAD.map((order) => ({ inside: ['quaternion', 'wxyz', order, ''], rarity: 0.1 }))];
 
+// One matrix is handed to hundreds of causes.
+const nearest = onceFor((given) => nearestDcm(given).dcm), anglesOf = onceFor(() => ({}));
+
 function afterInside([what, read, built, places], given) {
-  const { dcm } = nearestDcm(given);
+  const dcm = nearest(given);
   if (what === 'quaternion') {
     const parts = quaternionFromDcm(dcm);
     return dcmFromQuaternion(indices(read, built).map((k) => parts[k]));
   }
-  const angles = bodyFixedFromDcm(dcm, read);
+  const angles = (anglesOf(given)[read] ??= bodyFixedFromDcm(dcm, read));
   return dcmFromBodyFixed([...places].map((place) => angles[place - 1]), built);
 }
 
 // Those that are no mere renaming of axes, and the known ones that are.
-const distinctOf = onceFor((table) => {
+const DISTINCT = new WeakMap();
+function* distinctOf(table) {
+  if (DISTINCT.has(table)) return DISTINCT.get(table);
   const key = (dcm) => dcm.flat().map((entry) => Math.round(entry * 1e6) + 0).join(), [dcm] = SAMPLES;
   const plain = { inverse: false, body: SAME_AXES, world: SAME_AXES };
-  const renamed = new Set(expectedRelations(false, plain, table).relations.map((relation) => key(related(relation, dcm))));
-  return INNER.filter(({ inside, inside: [what, read, built, places] }) => {
-    const made = key(afterInside(inside, dcm));
-    return made !== key(dcm) && (what === 'quaternion' || (places === '321' && built === [...read].reverse().join('')) || !renamed.has(made));
-  });
-});
+  const renamed = new Set(), distinct = [];
+  for (const relation of expectedRelations(false, plain, table).relations) {
+    renamed.add(key(related(relation, dcm)));
+    yield;
+  }
+  for (const cause of INNER) {
+    const { inside, inside: [what, read, built, places] } = cause, made = key(afterInside(inside, dcm));
+    if (made !== key(dcm) && (what === 'quaternion' || (places === '321' && built === [...read].reverse().join('')) || !renamed.has(made))) distinct.push(cause);
+    yield;
+  }
+  DISTINCT.set(table, distinct);
+  return distinct;
+}
 
-function insideOf(first, second, noise, table, fits, tried, most) {
+function* insideOf(first, second, noise, table, fits, tried, most) {
   const plain = { body: SAME_AXES, world: SAME_AXES, hand: false, left: IDENTITY, right: IDENTITY };
   for (const one of first.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind))) {
     const others = second.filter(({ reading }) => ['matrix', 'quaternion'].includes(reading.kind)
       && ofBoth(one.reading, reading).faults <= 1 && one.reading.rarity + reading.rarity === 0);
-    const made = others.length ? distinctOf(table).map((cause) => one.dcms.map((dcm) => afterInside(cause.inside, dcm))) : [];
+    const causes = others.length ? yield* distinctOf(table) : [], made = [];
+    for (const { inside } of causes) {
+      made.push(one.dcms.map((dcm) => afterInside(inside, dcm)));
+      yield;
+    }
     for (const other of others) {
       const both = ofBoth(one.reading, other.reading), tolerance = LOOSER * (Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise);
       for (const inverse of [false, true]) {
         tried[both.faults + 1 + inverse] += INNER.length;
+        yield;
         made.forEach((dcms, k) => {
           const relation = { ...plain, inverse };
           const residual = gapOf({ ...relation }, dcms, other.dcms);
           if (residual > tolerance || both.faults + 1 + inverse > most || gapOf(relation, dcms, one.dcms) <= tolerance) return;
-          const { inside, rarity } = distinctOf(table)[k];
+          const { inside, rarity } = causes[k];
           // A quaternion that stands on one side is read otherwise there, and not on the way.
           if (inside[0] === 'quaternion' && !(one.reading.kind === 'matrix' && other.reading.kind === 'matrix')) return;
           fits.push({ first: one.reading, second: other.reading, relation: { ...relation, inside }, residual, faults: both.faults + 1 + inverse, rarity: both.rarity + rarity });
@@ -789,8 +811,15 @@ function isSpecial({ numbers, half }) {
   return pairs.some(([i, j]) => sizes.every((pose) => Math.abs(pose[i] - pose[j]) <= near));
 }
 
-// As orientation_workbench.explain: { verdict, faults, residual, chains, furtherPose, poses } and the poses as read.
-export function explain(first, second, table, { firstDeclared = {}, secondDeclared = {}, firstProgram = '', secondProgram = '', noise = 0 } = {}) {
+export function explain(...given) {
+  const steps = explaining(...given);
+  let step = steps.next();
+  while (!step.done) step = steps.next();
+  return step.value;
+}
+
+// As orientation_workbench.explain, in steps of a few milliseconds at most: { verdict, faults, residual, chains, furtherPose, poses } and the poses as read.
+export function* explaining(first, second, table, { firstDeclared = {}, secondDeclared = {}, firstProgram = '', secondProgram = '', noise = 0 } = {}) {
   const given = [[first, 'first', firstDeclared], [second, 'second', secondDeclared]];
   const programs = [firstProgram, secondProgram].map((program) => table.programs[program]), asTheirManualsSay = programs.every(Boolean);
   const sides = given.map(([text, name, declared], k) => {
@@ -811,8 +840,10 @@ export function explain(first, second, table, { firstDeclared = {}, secondDeclar
   const [one, other] = sides.map((poses, k) => sideOf(poses, declared[k], table, noise));
   const kinds = sides.map((side) => side.kinds[0]), expected = expectedRelation(programs, kinds, table);
   const ways = kinds.map((kind, k) => table.ways[given[k][2].way] ?? (programs[k] ? programs[k].inverse.includes(kind) : null));
-  const special = sides.some(isSpecial), { fits, tried } = chainsOf(one, other, noise, table, expected, special);
+  const special = sides.some(isSpecial), { fits, tried } = yield* chainsOf(one, other, noise, table, expected, special);
+  yield;
   let together = classesOf(fits, sides[0], table);
+  yield;
   if (!together.length) together = mountingsOf(one, other, noise, table).slice(0, 1).map((chain) => [chain]);
   const limit = Math.max(1e-3, EXACT * Math.min(...together.map(([{ residual }]) => residual)));
   const chains = [false, true].flatMap((far) => together.map(([chain]) => chain).filter(({ residual }) => (residual > limit) === far));

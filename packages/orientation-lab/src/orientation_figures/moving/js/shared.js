@@ -428,6 +428,17 @@ export function onceAFrame(draw) {
   return () => { asked ||= requestAnimationFrame(() => { asked = 0; draw(); }); };
 }
 
+// The value of a generator, run for a few milliseconds at a time so that the page stays responsive, as long as it is wanted.
+export async function inSlices(steps, isWanted) {
+  for (;;) {
+    const until = performance.now() + 8;
+    let step = steps.next();
+    while (!step.done && performance.now() < until) step = steps.next();
+    if (step.done || !isWanted()) return step.value;
+    await new Promise((resume) => { setTimeout(resume); });
+  }
+}
+
 // A button and a slider for an animation from 0 to `seconds`. It starts only on request; for readers who
 // prefer less motion it proceeds in steps of half a second.
 export function player({ name, seconds, step = 0.05, show }) {

@@ -1,8 +1,8 @@
 import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, slerp } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
-import { drawnDcms, explain, formulaOf, mendingLine, taughtBy } from './mismatch.js';
+import { drawnDcms, explaining, formulaOf, mendingLine, taughtBy } from './mismatch.js';
 import { picture, SIZE } from './workbench_picture.js';
-import { button, calm, change, choice, element, follow, glide, group, liveText, numberField,
+import { button, calm, change, choice, element, follow, glide, group, inSlices, liveText, numberField,
   onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
 
 const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'xzy', 'yzx', 'zxz', 'zyz', 'xyx', 'xzx', 'yxy', 'yzy'];
@@ -38,7 +38,7 @@ const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
   const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);
-  let found = null, fault = '', drawn = false, shown = [IDENTITY, IDENTITY], stop = () => {};
+  let found = null, fault = '', searches = 0, drawn = false, shown = [IDENTITY, IDENTITY], stop = () => {};
   const sheet = new Sheet({ bounds: [-330, -172, 330, 172], size: SIZE, changed: () => redraw(),
     name: 'The frames of both programs, each beside the frame N.' });
   const redraw = onceAFrame(draw);
@@ -115,18 +115,23 @@ export function render({ model, el }) {
     });
   }
 
-  function judge() {
+  // Numbers that change meanwhile begin a new search, and nothing is said of the old ones.
+  async function judge() {
+    const search = (searches += 1);
     for (const side of sides) side.show();
     noise.show?.(model.get('noise'));
-    fault = '';
-    found = null;
+    put(verdict, 'aria-busy', 'true');
+    let explained = null, wrong = '';
     try {
-      found = explain(model.get('first'), model.get('second'), table, { firstDeclared: knownOf(model.get('first_is')),
+      explained = await inSlices(explaining(model.get('first'), model.get('second'), table, { firstDeclared: knownOf(model.get('first_is')),
         secondDeclared: knownOf(model.get('second_is')), firstProgram: model.get('first_is').program,
-        secondProgram: model.get('second_is').program, noise: model.get('noise') * Math.PI / 180 });
+        secondProgram: model.get('second_is').program, noise: model.get('noise') * Math.PI / 180 }), () => search === searches);
     } catch (error) {
-      fault = error.message;
+      wrong = error.message;
     }
+    if (search !== searches) return;
+    [found, fault] = [explained, wrong];
+    put(verdict, 'aria-busy', 'false');
     sides.forEach((side, k) => {
       put(side.field, 'aria-invalid', String(fault.includes(`the ${['first', 'second'][k]} side`)));
       write(side.read, found ? wasRead(found, k, table) : '');
@@ -169,6 +174,7 @@ export function render({ model, el }) {
   globalThis.addEventListener?.('hashchange', takeUp);
   const unfollow = follow(model, STATE, onceAFrame(judge));
   return () => {
+    searches += 1;
     globalThis.removeEventListener?.('hashchange', takeUp);
     unfollow();
   };
