@@ -246,31 +246,11 @@ class Scalar:
     def dtype(self):
         return DType(self.kind)
 
-    @property
-    def T(self):
-        return self
-
     def round(self, decimals=0):
         return around(self, decimals)
 
-    def sum(self):
-        return self
-
-    mean = max = min = sum
-
-    def all(self):
-        return Truth(self)
-
-    any = all
-
-    def reshape(self, *shape):
-        return array(self).reshape(*shape)
-
     def __getitem__(self, index):
         return array(self)[index]
-
-    def astype(self, dtype):
-        return as_array(self, dtype)[()]
 
     def __getattr__(self, name):
         # Other libraries ask every object for its ``free_symbols``.
@@ -435,22 +415,6 @@ class Array:
                                   "Use a.any() or a.all()"))  # fmt: skip
         return bool(self.values[0])
 
-    def __float__(self):
-        return float(self.zero_dimensional())
-
-    def __int__(self):
-        return int(self.zero_dimensional())
-
-    def __index__(self):
-        if self.kind != "i":
-            raise TypeError("only integer scalar arrays can be converted to a scalar index")
-        return self.zero_dimensional()
-
-    def zero_dimensional(self):
-        if self.shape:
-            raise TypeError("only 0-dimensional arrays can be converted to Python scalars")
-        return self.values[0]
-
     # Shapes.
 
     def reshape(self, *shape):
@@ -467,9 +431,6 @@ class Array:
 
     def ravel(self):
         return self.reshape(-1)
-
-    def flatten(self):
-        return self.copy().reshape(-1)
 
     flat = property(lambda self: iter([scalar(self.kind, value) for value in self.values]))
 
@@ -489,9 +450,6 @@ class Array:
         order = list(range(self.ndim))
         order[axis1], order[axis2] = order[axis2], order[axis1]
         return self.transpose(order)
-
-    def squeeze(self):
-        return self.reshape([length for length in self.shape if length != 1])
 
     def copy(self):
         return Array(list(self.values), self.shape, self.kind)
@@ -636,9 +594,6 @@ class Array:
 
     def round(self, decimals=0):
         return around(self, decimals)
-
-    def dot(self, other):
-        return dot(self, other)
 
     def trace(self):
         return trace(self)
@@ -926,6 +881,14 @@ for _name in ("add", "sub", "mul", "truediv", "pow", "mod"):
     setattr(Array, f"__i{_name}__", in_place(_name))
 
 
+def converted(name):
+    return lambda self: getattr(self.__array__(), name)()
+
+
+for _name in ("__float__", "__int__", "__index__"):
+    setattr(Array, _name, converted(_name))
+
+
 OF_TWO = {
     "arctan2", "hypot", "true_divide", "divide", "add", "subtract", "multiply", "power", "mod",
     "minimum", "maximum",
@@ -1016,14 +979,10 @@ def sign(value):
 
 @offered
 def around(a, decimals=0):
-    value, decimals = as_array(a), shape_of((operator.index(decimals),), -99)[0]
+    value, (decimals,) = as_array(a), shape_of((operator.index(decimals),))
     if value.kind != "f":
-        if value.kind == "i" and decimals >= 0:
-            return value[()] if not value.shape else value.copy()
         raise TypeError("not floats")
-    scale = 10.0 ** abs(decimals)
-    if decimals < 0:
-        return entry_by_entry(lambda entry: nearest_whole(entry / scale) * scale, value)
+    scale = 10.0**decimals
     return entry_by_entry(lambda entry: nearest_whole(entry * scale) / scale, value)
 
 
@@ -1050,19 +1009,6 @@ def putmask(a, /, mask, values):
     if not isinstance(a, Array) or as_array(values).size not in (1, a.size):
         raise NotImplementedError("repeated values")
     a[...] = where(as_array(mask).reshape(a.shape), values, a)
-
-
-@offered
-def choose(a, choices):
-    number = as_array(a)
-    if number.kind != "i" or not all(0 <= k < len(choices) for k in number.values):
-        raise ValueError("no such choice")
-    return in_other_words(
-        functools.partial(entry_by_entry, kind=as_array(choices[0]).kind, quiet=True),
-        lambda k, *entries: entries[k],
-        number,
-        *choices,
-    )
 
 
 @offered
@@ -1136,12 +1082,6 @@ def empty(shape, dtype=float):
 
 
 @offered
-def zeros_like(a):
-    value = as_array(a)
-    return zeros(value.shape, value.dtype)
-
-
-@offered
 def eye(N, *, dtype=float):
     (N,) = shape_of((N,))
     convert = KINDS[kind_of(dtype)]
@@ -1176,11 +1116,6 @@ def linspace(start, stop, num=50, endpoint=True):
 
 
 @offered
-def logspace(start, stop, num=50):
-    return entry_by_entry(lambda value: 10.0**value, linspace(start, stop, num))
-
-
-@offered
 def loadtxt(fname, *, delimiter, skiprows=0):
     lines = list(fname)[skiprows:]
     return as_array([list(map(float, line.split(delimiter))) for line in lines if line.strip()])
@@ -1209,29 +1144,6 @@ def broadcast_shapes(*args):
 @offered
 def reshape(a, /, shape):
     return as_array(a).reshape(shape)
-
-
-@offered
-def ravel(a):
-    return as_array(a).ravel()
-
-
-@offered
-def transpose(a, axes=None):
-    return as_array(a).transpose(*([] if axes is None else [axes]))
-
-
-@offered
-def swapaxes(a, axis1, axis2):
-    return as_array(a).swapaxes(axis1, axis2)
-
-
-@offered
-def moveaxis(a, source, destination):
-    value = as_array(a)
-    order = list(range(value.ndim))
-    order.insert(range(value.ndim)[destination], order.pop(range(value.ndim)[source]))
-    return value.transpose(*order)
 
 
 @offered
@@ -1268,16 +1180,6 @@ def column_stack(tup):
     return concatenate(
         [array.reshape(-1, 1) if array.ndim < 2 else array for array in map(as_array, tup)], 1
     )
-
-
-@offered
-def tile(A, reps):
-    value, counts = as_array(A), shape_of((reps,))
-    longest = max(value.ndim, len(counts))
-    value = value.reshape((1,) * (longest - value.ndim) + value.shape)
-    for axis, count in enumerate((1,) * (longest - len(counts)) + counts):
-        value = concatenate([value] * count, axis)
-    return value
 
 
 @offered
@@ -1512,30 +1414,6 @@ def diff(a, n=1, axis=-1, prepend=None):
 
 
 @offered
-def unwrap(p, *, period=2 * math.pi, axis=-1):
-    if as_array(p).kind != "f" and not isinstance(period, float):
-        raise NotImplementedError("whole numbers")
-    value, half = as_array(p, float), period / 2
-    steps = diff(value, axis=axis)
-
-    def wrapped(step):
-        rest_of_it = (step + half) % period - half
-        return half if rest_of_it == -half and step > 0 else rest_of_it
-
-    corrections = where(abs_(steps) < half, 0.0, entry_by_entry(wrapped, steps) - steps)
-    unwrapped = value.copy()
-    later = (*(slice(None),) * range(value.ndim)[axis], slice(1, None))
-    unwrapped[later] = value[later] + cumsum(corrections, axis)
-    return unwrapped
-
-
-@offered
-def flatnonzero(a):
-    places = [place for place, entry in enumerate(as_array(a).values) if entry]
-    return Array(places, (len(places),), "i")
-
-
-@offered
 def unravel_index(indices, shape):
     place = operator.index(indices)
     if not 0 <= place < math.prod(shape):
@@ -1601,16 +1479,6 @@ def product(first, second):
 
 
 @offered
-def dot(a, b):
-    left, right = as_array(a), as_array(b)
-    if not left.shape or not right.shape:
-        return left * right
-    if right.ndim > 2 or left.ndim > 2:
-        raise NotImplementedError("stacks")
-    return in_other_words(product, left, right)
-
-
-@offered
 def outer(a, b):
     return as_array(a).reshape(-1, 1) * as_array(b).reshape(1, -1)
 
@@ -1638,46 +1506,6 @@ def tensordot(a, b, axes):
     if axes != 1 or left.ndim != 1:
         raise NotImplementedError("other axes")
     return (left @ right.reshape(right.shape[0], -1)).reshape(right.shape[1:])
-
-
-@offered
-def einsum(formula, /, *operands):
-    arrays = [as_array(array) for array in operands]
-    inputs, _, output = formula.replace(" ", "").partition("->")
-    inputs = inputs.split(",")
-    if not output or any(array.kind != "f" for array in arrays):
-        raise NotImplementedError(formula)
-    dots = max(array.ndim - len(names.replace("...", "")) for array, names in zip(arrays, inputs))
-    batch = "".join(chr(ord("A") + k) for k in range(dots))
-    names, lengths = [], {}
-    for k, array in enumerate(arrays):
-        own = inputs[k].replace(
-            "...", batch[len(batch) - (array.ndim - len(inputs[k].replace("...", ""))) :]
-        )
-        if len(set(own)) < len(own) or len(own) != array.ndim:
-            raise NotImplementedError(formula)
-        names.append(own)
-        for name, length in zip(own, array.shape):
-            if lengths.setdefault(name, length) != length:
-                raise NotImplementedError(formula)
-    output = output.replace("...", batch)
-    added = [name for name in lengths if name not in output]
-    order = [*output, *added]
-    shape = [lengths[name] for name in order]
-    spend(math.prod(shape) * len(arrays))
-    columns = []
-    for own, array in zip(names, arrays):
-        steps = dict(zip(own, steps_of(array.shape)))
-        values = array.values
-        columns.append(
-            [values[place] for place in places_of(shape, [steps.get(name, 0) for name in order])]
-        )
-    products = columns[0]
-    for column in columns[1:]:
-        products = list(map(operator.mul, products, column))
-    count = math.prod(lengths[name] for name in added)
-    values = [in_turn(products[start : start + count]) for start in range(0, len(products), count)]
-    return result(values, tuple(lengths[name] for name in output), "f")
 
 
 def matrices(value):
@@ -1730,21 +1558,11 @@ def eliminated(rows, right, careful=True):
 def solve(a, b):
     stack_of, batch, n = matrices(a)
     right = as_array(b, float)
-    if batch or right.ndim > 2:
-        if right.ndim != len(batch) + 2:
-            raise NotImplementedError("stacks")
-        right = broadcast_to(right, (*batch, *right.shape[-2:]))
-    columns = right.shape[-1] if right.ndim > 1 else 1
-    if right.shape[-2 if right.ndim > 1 else 0] != n:
-        raise ValueError("rows")
-    rights = nested(right.values, (len(stack_of), n, columns))
-    values = [
-        entry
-        for rows, own in zip(stack_of, rights)
-        for row in eliminated(rows, own)[0]
-        for entry in row
-    ]
-    return Array(values, right.shape, "f")
+    if batch or right.ndim > 2 or right.shape[0] != n:
+        raise NotImplementedError("stacks, or another number of rows")
+    columns = right.shape[1] if right.ndim > 1 else 1
+    solution, _ = eliminated(stack_of[0], nested(right.values, (n, columns)))
+    return Array([entry for row in solution for entry in row], right.shape, "f")
 
 
 @within("linalg")
@@ -1925,15 +1743,6 @@ def matrix_power(a, n):
     return power
 
 
-@within("linalg")
-def matrix_rank(A):
-    sizes = svd(A, compute_uv=False)
-    if sizes.ndim != 1:
-        raise NotImplementedError("stacks")
-    limit = sizes.values[0] * as_array(A).shape[-1] * sys.float_info.epsilon
-    return Integer(sum(size > limit for size in sizes.values))
-
-
 class Quiet:
     """A context without effect: nothing here warns, and the real NumPy does whatever would."""
 
@@ -2045,6 +1854,7 @@ class Generator:
         self.state = self.increment
         self.state = (self.state + start) & HUGE
         self.step()
+        self.successor = None
 
     def __getattr__(self, name):
         if name.startswith("_"):
@@ -2052,10 +1862,13 @@ class Generator:
         return getattr(self.as_real(), name)
 
     def as_real(self):
-        bits = real().random.PCG64(0)
-        inner = {"state": self.state, "inc": self.increment}
-        bits.state = {"bit_generator": "PCG64", "state": inner, "has_uint32": 0, "uinteger": 0}
-        return real().random.Generator(bits)
+        """Return the real generator that goes on from this state; from then on it draws alone."""
+        if self.successor is None:
+            bits = real().random.PCG64(0)
+            inner = {"state": self.state, "inc": self.increment}
+            bits.state = {"bit_generator": "PCG64", "state": inner, "has_uint32": 0, "uinteger": 0}
+            self.successor = real().random.Generator(bits)
+        return self.successor
 
     def step(self):
         self.state = (self.state * 0x2360ED051FC65DA44385DF649FCCF645 + self.increment) & HUGE
@@ -2090,21 +1903,17 @@ class Generator:
                 return value
 
     def drawn(self, draw, size):
+        if self.successor is not None:
+            raise NotImplementedError("the real generator has gone on")
         if size is None:
             return draw()
         shape = shape_of((size,))
         spend(4 * math.prod(shape))
         return Array([draw() for _ in range(math.prod(shape))], shape, "f")
 
-    def random(self, size=None):
-        return self.drawn(self.share, size)
-
     def uniform(self, low=0.0, high=1.0, size=None):
         low, width = float(low), float(high) - float(low)
         return self.drawn(lambda: low + width * self.share(), size)
-
-    def standard_normal(self, size=None):
-        return self.drawn(self.bell, size)
 
     def normal(self, loc=0.0, scale=1.0, size=None):
         loc, scale = float(loc), float(scale)
@@ -2122,7 +1931,7 @@ def _from_here_on(name):
     return or_the_real_one(vars(Generator)[name], find)
 
 
-for _name in ("random", "uniform", "standard_normal", "normal"):
+for _name in ("uniform", "normal"):
     setattr(Generator, _name, _from_here_on(_name))
 
 
