@@ -3,7 +3,6 @@
 import json
 import shutil
 import subprocess
-import sys
 import threading
 import time
 import urllib.request
@@ -292,35 +291,3 @@ def test_policy_as_a_header_lets_python_run(page, tmp_path):
     added = f'add_header {POLICY_HEADER} "{rules}";'
     with nginx(tmp_path, added) as address:
         run_and_stop(page, address)
-
-
-@pytest.mark.long
-def test_pythons_own_server():
-    """Start it as the command line does."""
-    command = [
-        sys.executable,
-        "-u",
-        "-m",
-        "http.server",
-        "0",
-        "--bind",
-        "127.0.0.1",
-        "--directory",
-        str(HTML),
-    ]
-    process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    )
-    try:
-        port = process.stdout.readline().split("port ")[1].split()[0]
-        with urllib.request.urlopen(f"http://127.0.0.1:{port}/{QUIET}") as answer:
-            assert answer.headers["Content-Type"] == "text/html"
-        for name in ("pyodide.js", "pyodide.asm.js"):
-            (path,) = (HTML / "runtime").glob(f"pyodide-*/{name}")
-            with urllib.request.urlopen(
-                f"http://127.0.0.1:{port}/{path.relative_to(HTML)}"
-            ) as answer:
-                assert "javascript" in answer.headers["Content-Type"]
-    finally:
-        process.terminate()
-        process.communicate()

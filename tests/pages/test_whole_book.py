@@ -116,14 +116,6 @@ def is_there(words, texts):
     )
 
 
-def test_words_may_go_on_over_the_edge_of_a_page():
-    texts = ["It begins here, where the page", "ends, and goes on. Predict"]
-    assert is_there("where the page ends, and goes on.", texts) and is_there("It begins", texts)
-    assert not is_there("where the page comes to an end", texts) and not is_there(
-        "begins here, goes on.", texts
-    )
-
-
 @pytest.mark.long
 def test_it_says_what_it_is(book):
     assert str(book.docinfo.Title) == TITLE
@@ -592,13 +584,6 @@ def test_search_finds_a_word_from_disk(from_disk):
     page.wait_for_selector("ul.found a")
     page.keyboard.press("Enter")
     page.wait_for_url("**/gimbal-lock.html*")
-
-
-@pytest.mark.long
-def test_run_says_what_to_do_from_disk(from_disk, unpacked):
-    from_disk.goto((unpacked / f"{CHAPTERS[1]}.html").as_uri())
-    from_disk.click("button.run-page")
-    from_disk.wait_for_selector("text=python serve.py")
 
 
 @pytest.mark.long
