@@ -12,7 +12,6 @@ import re
 import shutil
 import zipfile
 from dataclasses import replace
-from pathlib import Path
 
 import nbformat
 import pytest
@@ -171,31 +170,6 @@ def test_a_classmates_answer_is_told_before_it_costs_anything(recorded, course):
         "others"
     ]
     assert len(base64.b85decode(others[1])) % (8 * sealing.NAME) == 0
-
-
-def test_whoever_says_later_who_they_are_keeps_what_was_solved_before(
-    beside, course, monkeypatch, tmp_path, capsys
-):
-    """Solved with everybody's numbers, and only then said who one is: both are
-    said, in every place that tells.
-    """
-    monkeypatch.setattr(progress, "KEPT", tmp_path / ".coursework" / "progress.json")
-    coursework.student("")
-    lever = coursework.variant(NAME)
-    assert coursework.check(NAME, lever.force * lever.arm).outcome == "correct"
-    coursework.student(student_with(2))
-    assert f"You are {student_with(2)}." in capsys.readouterr().out
-    assert f"not with yours yet: {NAME}" in repr(coursework.progress())
-    reply = coursework.check(NAME, lever.force * lever.arm)
-    assert (reply.outcome, reply.tries) == (
-        "wrong",
-        0,
-    ) and "right for other numbers" in reply.messages[0]
-    own = coursework.variant(NAME)
-    assert coursework.check(NAME, own.force * own.arm).outcome == "correct"
-    assert "not with yours" not in repr(coursework.progress()) and "is right" in repr(
-        coursework.progress()
-    )
 
 
 EDITIONS = [{0: (20, 2), 1: (30, 3), 2: (45, 7)}, {0: (20, 2), 1: (45, 7), 2: (65, 9)}]
@@ -386,33 +360,6 @@ def test_a_known_mistake_is_named_also_where_it_is_right_for_other_numbers(tmp_p
     }
 
 
-def test_who_one_is_is_said_once_in_a_folder(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(identity, "KEPT", Path(".coursework", "me.txt"))
-    try:
-        coursework.student("")
-        assert not list(tmp_path.iterdir()) and identity._identity == ""
-        coursework.student(" Ada@Uni.example")
-        coursework.student("")
-        assert (
-            identity._identity == "ada@uni.example"
-            and "You are ada@uni.example, as you said before." in capsys.readouterr().out
-        )
-        coursework.student("ben")  # another one says it anew
-        coursework.student("")
-        assert identity._identity == "ben"
-        (tmp_path / ".coursework" / "me.txt").write_bytes(b"\xff\xfe")
-        coursework.student("")
-        assert identity._identity == ""
-        monkeypatch.chdir(tmp_path / ".coursework")
-        (tmp_path / ".coursework" / ".coursework").write_text("a file where the folder would be")
-        coursework.student("ada")
-        assert identity._identity == "ada"
-    finally:
-        monkeypatch.chdir(tmp_path.parent)
-        monkeypatch.setattr(identity, "_identity", "")
-
-
 # --- siblings: other numbers for one who had help ------------------------------------------------
 
 
@@ -482,27 +429,6 @@ def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recor
     identity._identity = ""
     again = coursework.check(NAME, everybody.force * everybody.arm)
     assert (again.tries, again.help) == (4, "hint")
-
-
-def test_a_name_that_is_no_text_or_names_a_notebook_is_explained(recorded):
-    for wrong in (None, 3, [1, 2]):
-        with pytest.raises(questions.NoSuchQuestion, match="comes first"):
-            coursework.check(wrong, NAME)
-    with pytest.raises(
-        questions.NoSuchQuestion, match="'levers' is a notebook. Its questions are 'levers/"
-    ):
-        coursework.check("levers", 1)
-    with pytest.raises(questions.NoSuchQuestion, match=f"Did you mean '{NAME}'"):
-        coursework.check(NAME.upper(), 1)
-
-
-def test_what_is_no_help_asks_for_no_sibling(recorded):
-    lever = coursework.variant(NAME)
-    coursework.check(NAME, lever.force * lever.arm + 0.001)  # rounded too far
-    right = coursework.check(NAME, lever.force * lever.arm)
-    assert right.outcome == "correct" and not right.help and right.messages == []
-    coursework.check(NAME, lever.force + lever.arm)  # after the right answer nothing is help
-    assert coursework.check(NAME, lever.force * lever.arm).help == ""
 
 
 @pytest.mark.parametrize("way", ["hint", "solution"])

@@ -66,6 +66,10 @@ def test_signs_that_look_alike_are_one_unit(text, same):
         ("J/\u00b0F", "\u00b0F"),
         ("m & s", " & s"),
         ("furlong", "furlong"),
+        ("Nm", "Nm"),
+        ("3 N", "3 N"),
+        ("N + m", " + m"),
+        ("kg m^99", "m^99"),
         ("m& 45678901234567890123", "& 456789012345678901"),
         ("m abcdefghijklmnopqrstuvwxyz", "abcdefghijklmnopqrst"),
         ("m^13", "m^13"),
@@ -89,6 +93,10 @@ def test_an_angle_times_a_unit_is_no_temperature():
 @pytest.mark.parametrize(
     ("text", "size", "exponents"),
     [
+        ("kN m", "1000", (2, 1, -2)),
+        ("N/mm^2", "1e6", (-1, 1, -2)),
+        ("kg·m²/s²", "1", (2, 1, -2)),
+        ("L/min", str(sm.Rational(1, 60_000).n(45)), (3, 0, -1)),
         ("", "1", ()),
         ("1", "1", ()),
         ("m^12/s^-12", "1", (12, 0, 12)),

@@ -8,9 +8,8 @@ import sys
 import numpy as np
 import pytest
 import sympy as sm
-import sympy.physics.mechanics as me
 
-from coursework.checking.evaluate import FUNCTIONS, MP, Undefined, number, real, values
+from coursework.checking.evaluate import FUNCTIONS, MP, number, values
 from coursework.checking.plain import NotPlain, read_plain, to_plain
 
 x, y = sm.symbols("x y")
@@ -101,48 +100,6 @@ def test_plain_numbers_and_numpy_numbers():
     assert value_of(1 + 2j) == MP.mpc(1, 2)
 
 
-def test_functions_of_time_go_by_their_name():
-    theta = me.dynamicsymbols("x")
-    assert value_of(theta) == POINT["x"]
-    assert to_plain([[1, theta]])["value"][0] == "list"
-    assert value_of(theta + 1) == POINT["x"] + 1
-    assert value_of(theta.diff()) == POINT["x'"]
-
-
-def test_assumptions_do_not_matter():
-    assert to_plain(sm.Symbol("x", positive=True) + 1) == to_plain(x + 1)
-
-
-@pytest.mark.parametrize("blank", [..., None, NotImplemented])
-def test_blanks(blank):
-    assert to_plain(blank)["value"] == ["blank"]
-
-
-def test_shapes():
-    matrix = sm.Matrix([[1, x], [y, 2]])
-    assert to_plain(matrix)["value"][:3] == ["matrix", 2, 2]
-    assert to_plain(sm.ImmutableMatrix(matrix)) == to_plain(matrix)
-    assert to_plain(sm.MatMul(sm.ImmutableMatrix(matrix), sm.Identity(2)))["value"][:3] == [
-        "matrix",
-        2,
-        2,
-    ]
-    assert to_plain(np.eye(3))["value"][0] == "list"
-    assert to_plain([[1, 2], [3, 4]])["value"][0] == "list"
-    assert to_plain(sm.Quaternion(1, x, 0, y))["value"][0] == "list"
-    assert to_plain("zxz")["value"] == ["text", "zxz"]
-    assert to_plain(True)["value"] == to_plain(sm.true)["value"] == ["truth", True]
-
-
-def test_frames_and_vectors_are_written_with_respect_to_every_frame():
-    N, A, B = map(me.ReferenceFrame, "NAB")
-    A.orient_axis(N, x, N.z)
-    B.orient_axis(A, y, A.x)
-    kind, name, others = to_plain(B)["value"]
-    assert (kind, name, set(others)) == ("frame", "B", {"N", "A", "B"})
-    assert set(to_plain(2 * N.x + A.y)["value"][1]) == {"N", "A", "B"}
-
-
 def test_a_shared_part_is_written_once():
     import sympy.physics.units  # noqa: F401  from then on, units are looked for in every answer
 
@@ -150,12 +107,6 @@ def test_a_shared_part_is_written_once():
     for _ in range(60):
         expression = sm.sin(expression) * sm.cos(expression, evaluate=False)
     assert len(to_plain(expression)["nodes"]) < 200
-
-
-def test_calls_of_a_function_keep_its_errors():
-    value = to_plain(lambda a: 1 / a, [[2], [0]])["value"]
-    assert value[1][0][0] == "expression"
-    assert value[1][1] == ["raised", "ZeroDivisionError: division by zero"]
 
 
 TOWER = sm.Pow(10, sm.Pow(10, 10, evaluate=False), evaluate=False)
@@ -179,17 +130,6 @@ TOWER = sm.Pow(10, sm.Pow(10, 10, evaluate=False), evaluate=False)
 def test_values_beyond_bounds_are_refused(expression):
     plain = to_plain(expression)
     assert isinstance(values(plain["nodes"], POINT)[plain["value"][1]], Exception)
-
-
-def test_division_by_zero_is_undefined():
-    plain = to_plain(sm.Pow(sm.Add(x, -x, evaluate=False), -1, evaluate=False))
-    with pytest.raises(Undefined):
-        number(values(plain["nodes"], POINT)[-1])
-
-
-def test_an_imaginary_part_that_cancels_is_rounding():
-    plain = to_plain((sm.exp(sm.I * x) + sm.exp(-sm.I * x)) / 2)
-    assert abs(real(values(plain["nodes"], POINT)[-1]) - MP.cos(POINT["x"])) < MP.mpf(10) ** -30
 
 
 def test_random_data_is_refused_or_read_without_any_other_error():

@@ -129,7 +129,7 @@ WRITTEN = [
     (sm.true, ["truth", True]),
     (sm.false, ["truth", False]),
     (np.str_("zxz"), ["text", "zxz"]),
-    (..., ["blank"]),
+    *((blank, ["blank"]) for blank in (..., None, NotImplemented)),
     ([1, x], listed(ONE, X)),
     ((1, "a"), listed(ONE, ["text", "a"])),
     ({2, 1}, listed(ONE, TWO)),

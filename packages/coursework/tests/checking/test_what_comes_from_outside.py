@@ -28,12 +28,6 @@ RECORD = {
 }
 
 
-def test_a_sealed_question_is_written_as_it_was_read():
-    sealed = Sealed.from_json(LEVER, "levers/one")
-    assert sealed.as_json() == LEVER and sealed.question.variant.given == {"arm": 2}
-    assert sealed.question.arguments == {"sequence": "zxy"}  # of a kind that a plug-in brings
-
-
 @pytest.mark.parametrize(
     "reader, content, change, message",
     [

@@ -3,6 +3,7 @@ is worth: the corpus of forgeries.
 """
 
 import io
+import re
 import shutil
 import sys
 import zipfile
@@ -220,12 +221,29 @@ def test_records_of_two_lie_in_two_places_on_every_system():
         "bob.",
         "bob ",
         "b\u043eb",
+        "a",
+        "A",
+        "../a",
+        "/a",
+        "a/b",
+        "a b",
+        "a-b",
+        "..",
+        ".",
+        "",
+        "-",
+        "é",
+        "e",
+        "a\0",
+        "a" * 100,
+        "a" * 101,
+        "con.",
     ]
     places = [file_name(name) for name in names]
     assert len({place.casefold() for place in places}) == len(names)
     for place in places:
         assert place.partition(".")[0] not in ("con", "nul", "aux", "com1", "lpt9", "prn")
-        assert place.rstrip(". ") == place
+        assert re.fullmatch(r"[a-z0-9_][a-z0-9._-]*", place) and place.rstrip(". ") == place
     # Long enough that nobody finds a second name for the place of another's record.
     assert len(file_name("Bob Smith").rpartition("-")[2]) * 4 >= 80
 

@@ -40,7 +40,6 @@ from coursework.checking.reply import plain_text, to_html
 from coursework.checking.writing import answer_as_text
 from coursework.grading.assignments import NothingToGrade
 from coursework.grading.execution.sandbox import (
-    Sandbox,
     WeakIsolation,
     WorkerDied,
     given_up,
@@ -513,14 +512,6 @@ def test_a_second_time_nothing_is_run(course, copied, monkeypatch):
     assert contents(copied) == contents(course / "out")
 
 
-def test_what_changed_is_graded_again(course, copied, tmp_path):
-    submissions = shutil.copytree(course / "submissions", tmp_path / "submissions", symlinks=True)
-    put(submissions, "right", handed_in(sum="sine = 0"))
-    said = grade_quietly(submissions, copied, course / "solutions")
-    assert said == {"graded": 1, "kept": 14, "refused": 3, "held": 0}
-    assert Store(copied).read("right", "turns").points == 5
-
-
 def test_changed_code_judges_everybody_again(course, copied, tmp_path, monkeypatch):
     """Classmates are judged by the same code: a change anywhere in the two packages is one."""
     from coursework.grading import versions
@@ -636,23 +627,6 @@ def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
     )
 
 
-def test_what_this_machine_could_not_run_is_tried_again(course, copied, tmp_path, monkeypatch):
-    few = tmp_path / "few"
-    put(few, "right", handed_in(sum="sine = 0"))
-
-    def die(*arguments, **options):
-        raise WorkerDied("no memory")
-
-    with monkeypatch.context() as patched:
-        patched.setattr(Sandbox, "run", die)
-        grade_quietly(few, copied, course / "solutions")
-    assert {mark.outcome for mark in Store(copied).read("right", "turns").marks.values()} == {
-        "undecided"
-    }
-    again = grade_quietly(few, copied, course / "solutions")
-    assert again["graded"] == 1 and Store(copied).read("right", "turns").points == 5
-
-
 @pytest.mark.parametrize("workers", [0, -1])
 def test_without_workers_nothing_is_graded_and_it_is_said(course, tmp_path, workers):
     with pytest.raises(ValueError, match=f"the number of workers is {workers}"):
@@ -738,32 +712,6 @@ def test_feedback_gives_no_outputs_of_calls_away(course):
 def test_two_runs_on_one_folder_are_refused(course, copied):
     with Store(copied).locked(), pytest.raises(InUse):
         grade_quietly(course / "submissions", copied, course / "solutions")
-
-
-def test_names_lead_nowhere_and_stay_apart():
-    names = [
-        "a",
-        "A",
-        "../a",
-        "/a",
-        "a/b",
-        "a b",
-        "a-b",
-        "..",
-        ".",
-        "",
-        "-",
-        "é",
-        "e",
-        "a\0",
-        "a" * 100,
-        "a" * 101,
-        "con.",
-    ]
-    files = [file_name(name) for name in names]
-    assert len(set(map(str.lower, files))) == len(names)
-    assert all(re.fullmatch(r"[a-z0-9_][a-z0-9._-]*", name) for name in files)
-    assert file_name(file_name("A")) != file_name("A")
 
 
 class Stub:
@@ -852,20 +800,6 @@ def test_no_process_is_left_and_errors_are_told():
 # ---- the same wherever it is run
 
 
-# Daily the run that is killed shows it: one worker begins what another number ends.
-@pytest.mark.long
-@pytest.mark.parametrize("workers", [1, 4])
-def test_the_number_of_workers_changes_no_byte(course, prepared, workers):
-    grade(
-        course / "submissions",
-        prepared,
-        solutions=course / "solutions",
-        running=Running(limits=LIMITS, workers=workers),
-        show=io.StringIO(),
-    )
-    assert contents(prepared) == contents(course / "out")
-
-
 def test_it_fails_closed(course, prepared, monkeypatch):
     from coursework.grading.execution import isolation
 
@@ -899,24 +833,6 @@ def test_it_fails_closed(course, prepared, monkeypatch):
 # ---- judged again
 
 
-def test_a_changed_question_moves_only_whom_it_concerns(course, copied, tmp_path):
-    changed = write_sources(
-        tmp_path / "solutions",
-        [
-            ("credit={'transposed': 0.5}", "credit={'transposed': 1}"),
-            ("symbols='alpha beta', worth=1", "symbols='alpha beta', worth=4"),
-        ],
-    )
-    shutil.copy(course / "solutions" / ".grading-secret", changed)
-    moved = {
-        one.student: (one.before, one.after) for one in regrade(copied, solutions=changed).moves
-    }
-    assert moved["mistaken"] == (4, 5) and moved["right"] == (6, 9) and moved["blank"] == (0, 0)
-    assert "mistaken" in moved and regrade(copied, solutions=changed).moves == []
-    regrade(copied, solutions=course / "solutions")
-    assert contents(copied / "records") == contents(course / "out" / "records")
-
-
 @pytest.mark.parametrize(
     "table, points, unused",
     [
@@ -948,55 +864,6 @@ def test_tables_of_decisions_are_read_as_spreadsheets_leave_them(
     if "much" in path.read_text():
         with pytest.raises(ValueError, match="line 2: credit is a number from 0 to 1, .*'much'"):
             journal.take_in_table(path, store.all())
-
-
-def test_the_ledger_only_grows_and_a_new_answer_is_judged_anew(course, copied, tmp_path):
-    store, journal = Store(copied), Journal(copied)
-    found = store.read("mistaken", "turns")
-    journal.add(found, "turns/sum", 1, who="Ann", comment="All right.", why="appeal")
-    before = journal.path.read_bytes()
-    journal.add(found, "turns/sum", 0.25, who="Bea", rubric=["Sign"])
-    assert journal.path.read_bytes().startswith(before)
-    assert [one.after for one in regrade(copied, solutions=course / "solutions").moves] == [4.25]
-    mark = store.read("mistaken", "turns").marks["turns/sum"]
-    assert (
-        mark.before.note == "opposite"
-        and mark.decided["who"] == "Bea"
-        and mark.messages == ("Sign",)
-    )
-    Journal(copied).add(found, "turns/sum", None, who="Bea", why="taken back")
-    assert [one.after for one in regrade(copied, solutions=course / "solutions").moves] == [4]
-    journal = Journal(copied)
-    journal.add(found, "turns/sum", 1, who="Ann")
-    assert [one.credit for one in journal.by_people] == [1, 0.25, None, 1]
-    # Graded again with another answer, the decision on the old one does not count.
-    again = tmp_path / "again"
-    put(again, "mistaken", handed_in(sum="sine = 0"))
-    grade_quietly(again, copied, course / "solutions")
-    assert store.read("mistaken", "turns").marks["turns/sum"].outcome == "wrong"
-    with pytest.raises(ValueError, match="from 0 to 1"):
-        journal.add(found, "turns/sum", 2)
-
-
-def test_ledgers_of_several_graders_are_put_together(course, copied, tmp_path):
-    found = Store(copied).read("mistaken", "turns")
-    (tmp_path / "other").mkdir()
-    mine, other = Journal(copied), Journal(tmp_path / "other")
-    mine.add(found, "turns/sum", 1, who="Ann")
-    other.add(found, "turns/about-x", 1, who="Bea")
-    assert mine.merge(other.path) == (other.events, []) and mine.merge(other.path) == ([], [])
-    assert {key[2]: one.who for key, one in mine.standing().decisions.items()} == {
-        "turns/sum": "Ann",
-        "turns/about-x": "Bea",
-    }
-    other.add(found, "turns/sum", 0, who="Bea")
-    new, ((first, second),) = mine.merge(other.path)
-    assert (len(new), first.who, second.who) == (1, "Ann", "Bea")
-    other.path.write_text(other.path.read_text() + "{}\n")
-    with pytest.raises(ValueError, match="line 3: this is not what was written"):
-        mine.merge(other.path)
-    with pytest.raises(SystemExit, match="without decisions has no journal"):
-        main(["merge", str(copied), str(other.path), str(tmp_path / "nothing.jsonl")])
 
 
 # ---- handed on
@@ -1103,26 +970,6 @@ def test_what_stands_in_a_gradebook_stays_unless_told(marks, tmp_path):
     assert "mistaken: 5.00 -> 4" in said.partition("written over as you said")[2]
     with pytest.raises(gradebooks.CannotExport, match="'nobody', who is not in"):
         gradebooks.fill(path, marks, overwrite=["nobody"])
-
-
-def test_what_was_written_from_here_is_brought_up_to_date(marks, tmp_path):
-    """After an appeal 17 stayed where 18 was due, since something stood there."""
-    path = tmp_path / "book.csv"
-    path.write_text(
-        "Student,ID,SIS User ID,SIS Login ID,Section,Essay (5)\nA,1,,right,,\nB,2,,mistaken,,\n"
-    )
-    gradebooks.fill(path, marks)
-    # Later the same marks are others; what stands in the system is what
-    # was written from here, or is not.
-    (*_, written) = marks.journal.events
-    marks.journal.append([replace(written, marks={"right": "5.5"})])
-    path.write_text(
-        path.read_text().replace("right,,", "right,,5.50").replace("mistaken,,", "mistaken,,3")
-    )
-    said = "\n".join(gradebooks.fill(path, marks))
-    after = (tmp_path / "book-filled.csv").read_text().splitlines()
-    assert [line.rpartition(",")[2] for line in after[1:]] == ["6", "3"]
-    assert "right: 5.50 -> 6" in said and "mistaken: 3, and graded 4" in said
 
 
 @pytest.mark.parametrize("language", languages.LANGUAGES)

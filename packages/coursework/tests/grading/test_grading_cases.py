@@ -4,7 +4,6 @@ question takes nobody's marks by chance.
 
 import dataclasses
 import io
-import json
 import re
 import shutil
 from types import SimpleNamespace
@@ -32,9 +31,8 @@ from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
-from coursework.grading.judging.contract import Asked, Contract
-from coursework.grading.judging.journal import CUT, Collision, Journal
-from coursework.grading.judging.laboratory import BadPolicy
+from coursework.grading.judging.contract import Contract
+from coursework.grading.judging.journal import CUT, Journal
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
 from coursework.grading.review import Class
@@ -117,25 +115,6 @@ def marks_of(store, name):
     return {record.student: record.marks[name] for record in store.all()}
 
 
-def test_a_variant_that_is_taken_out_moves_only_those_who_had_it(begun, out, tmp_path):
-    """By its number, nearly everybody had another one then: of 145
-    right answers 122 became wrong.
-    """
-    before = marks_of(out, NAME)
-    assert all(before[student].points == 2 for student in STUDENTS) and before["wrong"].points == 0
-    taken_out = begun.own[STUDENTS[0]]
-    left = [weight for weight in WEIGHTS if weight != taken_out]
-    moved = regrade(out.folder, solutions=write_beams(tmp_path / "solutions", left)).moves
-    assert moved == []
-    # Who had it is judged by what was asked then, and everybody else by the question as it is now.
-    mended = write_beams(tmp_path / "mended", left)
-    text = (mended / "beams.ipynb").read_text().replace("2*beam.weight", "3*beam.weight")
-    (mended / "beams.ipynb").write_text(text)
-    assert {one.student for one in regrade(out.folder, solutions=mended).moves} == {
-        student for student in STUDENTS if begun.own[student] != taken_out
-    }
-
-
 def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     """What a function returned was compared by position: all right functions fell from 3 to 0."""
     fewer = write_beams(tmp_path / "fewer", WEIGHTS, "[[0.25], [1.5]]")
@@ -156,18 +135,6 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {
         2
     }
-
-
-def test_a_function_is_judged_by_the_calls_that_it_was_given():
-    def calling(*calls):
-        return Contract("Twice", "twice", 1, Question("function", calls=calls))
-
-    before = calling([1], [2], [3])
-    plain = to_plain(lambda x: 2 * x, before.question.calls)
-    kind, results, works = marking.in_calls_of(Asked(calling([3], [1]), before), plain)["value"]
-    assert [plain["nodes"][result[1]][1] for result in results] == ["6", "2"]
-    assert marking.in_calls_of(Asked(calling([3], [9]), before), plain) is None
-    assert marking.in_calls_of(Asked(before), plain) is plain
 
 
 def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out):
@@ -307,49 +274,6 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
 # --- decisions ----------------------------------------------------------------------------------
 
 RECORD = Record("ann", "turns")
-
-
-def test_who_decides_upon_what_another_has_decided_meanwhile_is_told(tmp_path):
-    first, second = Journal(tmp_path), Journal(tmp_path)
-    one = first.decision(RECORD, "turns/sum", 0.5, who="Ann")
-    first.append([one], collisions=True)
-    with pytest.raises(Collision) as found:
-        second.append([second.decision(RECORD, "turns/sum", 1, who="Ben")], collisions=True)
-    assert found.value.decisions == [one] and list(second.standing().decisions.values()) == [one]
-    second.append(
-        [second.decision(RECORD, "turns/sum", 1, who="Ben", after=one.id)], collisions=True
-    )
-    with pytest.raises(Collision):  # it looked at what Ann had decided, and that counts no more
-        first.append(
-            [first.decision(RECORD, "turns/sum", 0, who="Ann", after=one.id)], collisions=True
-        )
-    (counts,) = Journal(tmp_path).standing().decisions.values()
-    assert (counts.who, counts.credit) == ("Ben", 1)
-
-
-def test_only_an_own_decision_is_taken_back_and_what_stood_before_counts_again(tmp_path):
-    journal = Journal(tmp_path)
-    journal.add(RECORD, "turns/sum", 0.5, who="Ann")
-    journal.add(RECORD, "turns/sum", 1, who="Ben")
-    key = "ann", "turns", "turns/sum"
-    journal.take_back([RECORD], "turns/sum", "Ben")
-    assert journal.standing().decisions[key].who == "Ann"
-    with pytest.raises(Collision, match="no decision of yours"):
-        journal.take_back([RECORD], "turns/sum", "Ben")
-    journal.take_back([RECORD], "turns/sum", "Ann")
-    assert Journal(tmp_path).standing().decisions == {} and len(Journal(tmp_path).by_people) == 4
-    # As it was written before one could tell whose: all earlier ones are taken back.
-    journal.add(RECORD, "turns/sum", 1, who="Ann")
-    journal.add(RECORD, "turns/sum", None, who="Ben")
-    lines = (tmp_path / "journal.jsonl").read_text().splitlines()
-    without = [
-        {key: value for key, value in json.loads(line).items() if key not in ("undoes", "after")}
-        for line in lines
-    ]
-    (tmp_path / "journal.jsonl").write_text(
-        "".join(json.dumps(line) + "\n" for line in without[-2:])
-    )
-    assert Journal(tmp_path).standing().decisions == {}
 
 
 @pytest.mark.parametrize("left", [1, 20, -1])
@@ -522,23 +446,6 @@ def test_what_cannot_be_read_or_written_is_named(tmp_path, submissions, out, sai
         )
 
 
-def test_who_handed_in_a_damaged_file_is_not_said_to_have_handed_in_nothing(begun, tmp_path):
-    put(tmp_path / "in", "ann", "no notebook at all", "beams.ipynb")
-    put(tmp_path / "in", "ben", answered(1), "beams.ipynb")
-    (tmp_path / "in" / "cem").mkdir()
-    (tmp_path / "in" / "cem" / "work.zip").write_bytes(b"PK damaged")
-    (tmp_path / "roster.csv").write_text("student\nann\nben\ncem\ndora\n")
-    options = {
-        "solutions": begun.place / "solutions",
-        "dry_run": True,
-    }
-    write_term(tmp_path / "out", tmp_path / "roster.csv", {"beams": ["beams"]})
-    said = io.StringIO()
-    grade(tmp_path / "in", tmp_path / "out", show=said, **options)
-    assert "1 handed in nothing: dora." in said.getvalue()
-    assert "2 handed in what cannot be graded: ann, cem." in said.getvalue()
-
-
 def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
     """It was "Errno 22"."""
     monkeypatch.setattr("os.geteuid", lambda: 0)
@@ -578,15 +485,6 @@ def test_by_name_a_variant_that_is_taken_out_moves_only_those_who_had_it():
     assert numbers_of_variants("", NAME, whole, 8) == list(range(8))
 
 
-def test_without_names_the_rule_is_that_of_before():
-    """Whoever holds sealed files of today keeps the own numbers."""
-    for one in STUDENTS:
-        first = variant_of(one, NAME, 8, "autumn")
-        assert numbers_of_variants(one, NAME, Variant(edition="autumn"), 8) == [
-            (first + k) % 8 for k in range(8)
-        ]
-
-
 def test_a_course_that_gives_variants_by_name_says_so_to_students_and_graders(tmp_path):
     sources = write_beams(tmp_path / "solutions", WEIGHTS)
     (tmp_path / "course.toml").write_text('title = "Beams"\nvariants = "by name"\n')
@@ -619,67 +517,6 @@ def mended(folder, exchanged, weights=WEIGHTS, **more):
     assert exchanged[0] in text
     path.write_text(text.replace(*exchanged))
     return folder
-
-
-def test_before_a_mark_moves_it_is_said_who_gains_and_who_loses(begun, out, tmp_path, capsys):
-    solutions = mended(
-        tmp_path / "mended", ("2*beam.weight", "2*beam.weight if beam.weight > 50 else 1")
-    )
-    losing = {student for student in STUDENTS if begun.own[student] < 50}
-    before = list(out.all())
-    found = regrade(out.folder, solutions=solutions, dry_run=True)
-    assert {one.student for one in found.lose} == losing and list(out.all()) == before
-    gaining = {one.student for one in found.gain}
-    assert gaining <= {"wrong"}
-    page = (out.folder / "regrade.html").read_text()
-    assert all(f">{student}<" in page for student in losing)
-    # Without a yes nothing moves; with one what was said.
-    with pytest.raises(SystemExit, match="No existing mark was changed"):
-        main(["regrade", str(out.folder), "--solutions", str(solutions)])
-    assert list(out.all()) == before and f"{len(losing)} student" in capsys.readouterr().out
-    main(["regrade", str(out.folder), "--solutions", str(solutions), "--yes"])
-    assert f"Marks changed: {len(losing) + len(gaining)}." in capsys.readouterr().out
-    assert {one.student for one in out.all() if one.marks[NAME].points == 0} == losing | {
-        "wrong"
-    } - gaining
-    assert regrade(out.folder, solutions=solutions, dry_run=True).moves == []
-
-
-@pytest.mark.parametrize("policy", ["never lower", "full credit", "taken out", "void"])
-def test_policies_say_what_a_mended_question_may_do(begun, out, tmp_path, policy):
-    gone = begun.own[STUDENTS[0]]
-    had = {student for student in STUDENTS if begun.own[student] == gone}
-    left = [weight for weight in WEIGHTS if weight != gone]
-    solutions = mended(tmp_path / "mended", ("2*beam.weight", "7*beam.weight"), left)
-    questions = {
-        "never lower": f'never-lower = ["{NAME}"]',
-        "full credit": f'full-credit = ["{NAME}"]',
-        "taken out": f'full-credit = ["{NAME}@taken-out"]\nnever-lower = ["{NAME}"]',
-        "void": f'void = ["{NAME}"]',
-    }[policy]
-    of_beams = {"beams": ["beams"]}
-    write_term(out, assignments=of_beams, text=f"[regrading]\n{questions}")
-    before = marks_of(out, NAME)
-    regrade(out.folder, solutions=solutions)
-    after = marks_of(out, NAME)
-    for student, mark in after.items():
-        expected = {
-            "never lower": (before[student].points, 2),
-            "full credit": (2, 2),
-            "taken out": (2 if student in had else before[student].points, 2),
-            "void": (0, 0),
-        }[policy]
-        if student != "wrong" or policy != "taken out":
-            assert (mark.points, mark.worth) == expected, student
-    # What was chosen holds from then on; and a person's decision stands above it.
-    records = list(out.all())
-    assert regrade(out.folder, solutions=solutions).moves == [] and list(out.all()) == records
-    Journal(out.folder).add(out.read(STUDENTS[0], "beams"), NAME, 0.5, who="Ann")
-    regrade(out.folder, solutions=solutions)
-    assert out.read(STUDENTS[0], "beams").marks[NAME].points == (0 if policy == "void" else 1)
-    with pytest.raises(BadPolicy, match="no question 'beams/lode'"):
-        write_term(out, assignments=of_beams, text='[regrading]\nvoid = ["beams/lode"]')
-        regrade(out.folder, solutions=solutions)
 
 
 def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):

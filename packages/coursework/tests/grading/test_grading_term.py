@@ -20,7 +20,6 @@ from nbformat import writes
 
 from coursework.__main__ import main
 from coursework.grading.execution.sandbox import Limits
-from coursework.grading.export import gradebooks
 from coursework.grading.grade import bring_in_decisions, grade
 from coursework.grading.judging import term
 from coursework.grading.judging.journal import Journal
@@ -139,19 +138,6 @@ def test_a_day_is_as_long_as_any_other_when_clocks_are_changed(rules, due, when,
         rules(RULES.replace("2026-10-25T02:30:00", due)), record(2, 2, when, assignment="axes")
     )
     assert found["axes"].penalty == pytest.approx(penalty)
-
-
-def test_extensions_hold_for_whom_they_are(rules):
-    text = (
-        RULES
-        + '[extensions.ann]\nturns = 2026-10-08T12:00:00\n[extensions.bob]\nturns = "excused"\n'
-    )
-    late = record(6, when="2026-10-08T12:00:00")
-    assert result(rules(text), late)[0]["turns"].penalty == 0
-    assert result(rules(text), late, student="carl")[0]["turns"].penalty == pytest.approx(0.3)
-    found, total = result(rules(text), late, record(1, 2, assignment="axes"), student="bob")
-    assert found["turns"].state == "excused" and total == 0.5
-    assert result(rules(text), record(1, 2, assignment="axes"), student="bob")[1] == 0.5
 
 
 def test_what_is_missing_counts_once_it_is_due(rules):
@@ -414,11 +400,6 @@ def test_the_counts_of_a_year_name_nobody_and_stand_beside_the_next(out, rules, 
         write_course(Store(out), rules(), earlier=[earlier])
 
 
-def test_an_extension_for_nobody_is_said(out, rules):
-    with pytest.raises(term.BadTerm, match="'anne', and nobody in the course"):
-        write_course(Store(out), rules(RULES + "[extensions.anne]\nturns = 'excused'\n"))
-
-
 def test_names_and_answers_stay_text(rules, tmp_path):
     name = '<img src=x onerror="alert(1)">'
     store = Store(tmp_path / "out")
@@ -500,16 +481,6 @@ def test_what_a_system_marks_as_late_costs_what_the_rules_say(late, tmp_path):
             command(late)
     rules.write_text(rules.read_text().replace("a-day = 0.1", "a-day = 0.1\nmarked = 0.25"))
     assert filled(late) == ["4.8", "", "4.5"]
-
-
-def test_who_handed_in_what_cannot_be_graded_has_not_handed_in_nothing(late, tmp_path):
-    (tmp_path / "book.csv").write_text(BOOK + '"Last, Dora",4,,dora,,\n"Other, Eve",5,,eve,,\n')
-    late.folder.joinpath("refused.json").write_text(
-        '{"in": [{"file": "d.ipynb", "student": "Dora Last", "why": "It is damaged."}]}'
-    )
-    said = "\n".join(gradebooks.fill(tmp_path / "book.csv", gradebooks.Marks(late)))
-    assert "Dora" in said.partition("cannot be graded")[2]
-    assert "Eve" in said.partition("nothing was handed in")[2].partition("cannot be graded")[0]
 
 
 def test_marks_are_handed_on_as_of_a_date(late):

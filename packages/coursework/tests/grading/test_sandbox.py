@@ -489,27 +489,6 @@ def test_the_same_bytes_on_any_number_of_workers_and_when_one_is_killed():
     ) == bytes_of(once)
 
 
-@pytest.mark.long
-@pytest.mark.sampled(2, of="sandboxes under strain")
-def test_a_busy_machine_costs_nobody_an_answer():
-    """What a notebook waits for while others compute is not its own
-    time: three share one processor here.
-    """
-    start = "import time\nbegun = time.process_time()"
-    source = "while time.process_time() - begun < 1.2:\n    pass\ncheck('q', 1)"
-    jobs = [
-        notebook(start, source, questions={"q": None}) | {"id": str(number)} for number in range(3)
-    ]
-    limits = Limits(cell_seconds=30, cell_wall_seconds=1.5, grace_seconds=0.5)
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {min(before)})
-    try:
-        results = list(run_notebooks(jobs, workers=3, limits=limits))
-    finally:
-        os.sched_setaffinity(0, before)
-    assert [result["answers"]["q"]["outcome"] for result in results] == ["recorded"] * 3, results
-
-
 @pytest.mark.parametrize(
     "ticks, charged",
     [

@@ -4,8 +4,6 @@ import contextlib
 import csv
 import io
 import os
-import signal
-import subprocess
 import sys
 from pathlib import Path
 
@@ -110,17 +108,6 @@ class Course:
 
     def export(self, book, *words, **more):
         return self.run("export", "marks", "--lms", book, "--filled", book, *words, **more)
-
-    def reviews(self, who, decide):
-        """Somebody opens the page, decides, and stops it."""
-        command = [sys.executable, "-m", "coursework", "review", "marks", "--grader", who, "--yes"]
-        hears = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
-        with subprocess.Popen(
-            command, cwd=self.place, stdout=subprocess.PIPE, text=True, preexec_fn=hears
-        ) as page:
-            decide(page.stdout.readline().split()[-1])
-            page.send_signal(signal.SIGINT)
-            return page.stdout.read()
 
     def points(self, assignment=None):
         """What grades.csv says of each student, or of each in an assignment."""

@@ -102,6 +102,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
         ("[late-days]\nmost = 1", "line 14: what is 'late-days'?"),
         ("[extensions.ada]\ntime = 1.5", "line 15: time = 1.5 .* hw1 has no opening date"),
         ("[groups]\nteam = ['ada', 'zoe']", "groups name 'zoe', and nobody"),
+        ("[regrading]\nvoid = ['hw1/sums']", "no question 'hw1/sums'"),
     ],
 )
 def test_what_is_misspelt_is_refused_with_its_line(course, more, said):
@@ -218,17 +219,22 @@ def test_more_time_is_for_whom_it_is(course):
 def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     collected(course, "ada", "hw1")
     (collected(course, "ben", "hw1") / "hw1.ipynb").write_text("no notebook")
-    course.grade()
+    packed = course.handed_in / "submitted" / "dan" / "hw1"
+    packed.mkdir(parents=True)
+    (packed / "work.zip").write_bytes(b"PK damaged")
+    said = course.grade()
+    assert "2 handed in what cannot be graded: ben, dan." in said
+    assert "1 handed in nothing: cem." in said
     # Another assignment in another folder forgets nothing of it.
     other = course.place / "later"
     (other / "cem").mkdir(parents=True)
     nbformat.write(course.answers("hw2"), other / "cem" / "hw2.ipynb")
     course.run("grade", "later", "--out", "marks", "--solutions", "solutions")
-    assert [row["student"] for row in course.table("refused.csv")] == ["ben"]
+    assert [row["student"] for row in course.table("refused.csv")] == ["ben", "dan"]
     book = book_of(course)
     said = course.export(book, "--assignment", "hw1")
-    assert "what they handed in cannot be graded (1):\n  ben" in said
-    assert course.column(book, "HW 1 (11)") == {"ada": "8", "ben": "", "cem": "0", "dan": "0"}
+    assert "what they handed in cannot be graded (2):\n  ben\n  dan" in said
+    assert course.column(book, "HW 1 (11)") == {"ada": "8", "ben": "", "cem": "0", "dan": ""}
 
 
 def test_a_mark_tells_its_life(course):

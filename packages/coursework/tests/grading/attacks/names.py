@@ -10,8 +10,8 @@ import dataclasses
 import io
 import zipfile
 
-#: A notebook of its owner, where a file is one.
-WORK = "a notebook"
+#: A notebook without cells, of an owner that nobody can know.
+BLANK = b'{"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}'
 
 
 @dataclasses.dataclass(frozen=True)
@@ -79,6 +79,14 @@ ATTACKS = [
     Named(
         "Moodle's marks in the name of a file",
         {f"{JANE}{BOB}turns.ipynb": "Jane Doe 101", f"{BOB}turns.ipynb": "Bob 202"},
+    ),
+    Named(
+        "Moodle's marks in a file of the own folder",
+        {f"jane/{BOB}turns.ipynb": "jane", "bob/turns.ipynb": "bob"},
+    ),
+    Named(
+        "Canvas's marks in a file of the own folder",
+        {"jane/bob_202_502_turns.ipynb": "jane", "bob/turns.ipynb": "bob"},
     ),
     Named(
         "Moodle's folder inside the own one",
@@ -173,6 +181,11 @@ ATTACKS = [
         {"bob_202_502_turns.ipynb": "", "bobby_202_503_turns.ipynb": ""},
         True,
     ),
+    Named(
+        "one number of Moodle, and a zero-width space",
+        {"Bo\u200bb_202_assignsubmission_file_/a.ipynb": "", f"{BOB}/a.ipynb": ""},
+        True,
+    ),
     Named("capitals", {"Bob/turns.ipynb": "", "bob/turns.ipynb": ""}, True),
     Named(
         "a letter that is two small ones",
@@ -218,7 +231,8 @@ ATTACKS = [
         "a name that ends in a classmate's number",
         {"bob_202_101_5_turns.ipynb": "jane", "smithbob_202_7_01_turns.ipynb": "bob"},
         roster='Student,ID,SIS User ID,SIS Login ID,Section,T\n"bob_202",101,,jane,1,\n'
-        '"Smith, Bob",202,,bob,1,\n',
+        '"Smith, Bob",202,,bob,1,\n"Doe, Eve",303,,eve,1,\n',
+        also={"eve_doe_202_303_6_turns.ipynb": BLANK},
     ),
     Named(
         "two equal names in the roster",
