@@ -1,5 +1,6 @@
 """An instructor writes down the term once, in one file; commands need no flags from then on."""
 
+import csv
 import json
 import os
 import stat
@@ -234,6 +235,19 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     book = book_of(course)
     said = course.export(book, "--assignment", "hw1")
     assert "what they handed in cannot be graded (2):\n  ben\n  dan" in said
+    # The totals leave it open as well, in every place that has them, until a person has looked.
+    said = course.run("term", "marks")
+    assert "hw1: the files of ben, dan cannot be graded" in said
+    totals = {
+        row["student"]: (row["total in %"], row["hw1: state"])
+        for row in course.table("course/course.csv")
+    }
+    assert totals["ben"] == totals["dan"] == ("", "damaged") and totals["cem"][1] == "missing"
+    page = (course.marks / "course" / "students" / "ben.html").read_text()
+    assert "your file cannot be graded: a person has to look at it" in page
+    course.run("export", "marks", "--nbgrader", "grades.csv", "--assignment", "hw1")
+    rows = list(csv.DictReader((course.place / "grades.csv").read_text().splitlines()))
+    assert [row["student_id"] for row in rows] == ["ada", "cem"]
     assert course.column(book, "HW 1 (11)") == {"ada": "8", "ben": "", "cem": "0", "dan": ""}
 
 

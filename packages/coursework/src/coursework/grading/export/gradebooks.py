@@ -22,7 +22,7 @@ from typing import NamedTuple
 from ...checking.reply import plain_text
 from ...checking.writing import readable
 from ..judging.journal import Exported, Given, Journal, with_decisions
-from ..judging.term import EXCUSED, Result, Term, result_of, term_of, unknown_times
+from ..judging.term import DAMAGED, EXCUSED, Result, Term, result_of, term_of, unknown_times
 from ..record import Identity, Record
 from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
@@ -123,6 +123,7 @@ class Marks:
                 self.students.setdefault(member, []).append(record)
         people = set(term.roster.people) if term.roster else set()
         worth = {record.assignment: record.worth for record in self.records}
+        refused = {one.student for one in refused_of(store)}
         self.results: dict[tuple[str, str], Result] = {}
         moment = as_of or datetime.datetime.now(datetime.UTC)
         for student in sorted(people | set(self.students)):
@@ -134,7 +135,7 @@ class Marks:
             }
             for name in self.assignments:
                 self.results[student, name] = result_of(
-                    student, name, own.get(name), term, worth, moment, sat
+                    student, name, own.get(name), term, worth, moment, sat, refused
                 )
         self.unknown = unknown_times(self.results.values(), term)
 
@@ -158,14 +159,13 @@ class Marks:
         return [
             student
             for (student, _), result in self.results.items()
-            if result.state == "missing" and about and about.due and student not in self.damaged
+            if result.state == "missing" and about and about.due
         ]
 
-    @functools.cached_property
-    def damaged(self) -> set[str]:
+    @property
+    def damaged(self) -> list[str]:
         """Who is known to have handed in nothing but what cannot be graded."""
-        refused = {one.student for one in refused_of(self.store)} - set(self.students)
-        return refused.intersection(student for student, _ in self.results)
+        return [student for (student, _), one in self.results.items() if one.state == DAMAGED]
 
     @property
     def excused(self) -> list[str]:

@@ -27,6 +27,8 @@ from .laboratory import Policies
 FILE = "term.toml"
 Some = TypeVar("Some")
 EXCUSED = "excused"
+#: The state of an assignment for a student whose only file cannot be graded: a person has to look.
+DAMAGED = "damaged"
 #: Which of several attempts counts; never one that answers nothing where another answers something.
 IN_TIME, BEST, LAST = "newest in time", "best", "last"
 #: What tables of systems call the time at which something was handed in.
@@ -656,7 +658,8 @@ class Result:
     ----------
     assignment : str
     state : str
-        ``counted``, ``dropped``, ``excused``, ``missing`` (counted as nothing) or ``not due``.
+        ``counted``, ``dropped``, ``excused``, ``missing`` (counted as nothing), ``damaged`` (left
+        out until a person has looked) or ``not due``.
     points, worth : float
         As graded.
     due, handed_in : datetime or None
@@ -697,6 +700,7 @@ def results_of(
     term: Term,
     worth: Mapping[str, float],
     now: datetime.datetime,
+    refused: Collection[str] = (),
 ) -> tuple[list[Result], float | None]:
     """What each assignment of the term comes to for a student, and the
     share of everything that counts.
@@ -711,6 +715,8 @@ def results_of(
         What each assignment is worth; for those that were not handed in.
     now : datetime
         What is due later and was not handed in is not counted yet.
+    refused : collection of str
+        The students, or groups, who handed in files that cannot be graded.
 
     Returns
     -------
@@ -720,7 +726,7 @@ def results_of(
     """
     sat = {name: records[name].marks for name in term.sittings if name in records}
     results = [
-        result_of(student, name, records.get(name), term, worth, now, sat)
+        result_of(student, name, records.get(name), term, worth, now, sat, refused)
         for name in term.assignments
     ]
     dropped = _dropped(results, term)
@@ -738,13 +744,20 @@ def result_of(
     worth: Mapping[str, float],
     now: datetime.datetime,
     sat: Sat | None = None,
+    refused: Collection[str] = (),
 ) -> Result:
-    """What one assignment comes to for a student, by the marks of the student's sittings."""
+    """What one assignment comes to for a student, by the marks of the student's sittings.
+
+    A student who is in ``refused`` and has no record handed in nothing but what cannot be graded.
+    Of which assignment the file was, nobody knows, so that every one that is missing is open.
+    """
     about, group = term.assignments.get(name, Assignment()), term.group_of(student, name)
     due = term.due(group, name)
     state, points, late, penalty, when = "counted", 0.0, False, 0.0, None
     if record is None:
-        state = "not due" if name not in worth or (due is not None and now <= due) else "missing"
+        not_due = name not in worth or (due is not None and now <= due)
+        damaged = name in worth and not {student, group}.isdisjoint(refused)
+        state = DAMAGED if damaged else "not due" if not_due else "missing"
     else:
         points, when = record.points, _handed_in(student, record, about, term.time_zone)
         if when is None:
@@ -780,7 +793,9 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     BadTerm
         A system marked work as late, and the term does not say what that costs.
     """
-    graded = [one for one in results if one.state not in ("missing", "not due", EXCUSED)]
+    graded = [
+        one for one in results if one.state not in ("missing", DAMAGED, "not due", EXCUSED)
+    ]
     unknown = [one.assignment for one in graded if one.due and not one.handed_in]
     marked = [one.assignment for one in graded if one.late and not one.handed_in]
     if marked and term.late.marked is None and term.late.costs:

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...checking.writing import answer_as_text
-from ..judging.term import FILE, BadTerm, Result, Term, results_of, unknown_times
+from ..judging.term import DAMAGED, FILE, BadTerm, Result, Term, results_of, unknown_times
 from ..reading import AsJson
 from ..store import Store, as_text, file_name, write
+from ..submissions.intake import refused_of
 from ..tables import number, table
 from .statistics import FORMAT, Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
@@ -24,6 +25,7 @@ STATES = {
     "dropped": "dropped: it does not count",
     "excused": "excused",
     "missing": "nothing was handed in",
+    "damaged": "your file cannot be graded: a person has to look at it",
     "not due": "not due yet",
 }
 OUTCOMES = {
@@ -98,17 +100,27 @@ def write_course(
     term.demand_people(store.folder / FILE, students)
     said = _misspelt(term, worth)
     folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
+    refused = {one.student for one in refused_of(store)}
+    damaged: dict[str, list[str]] = {}
     for student in sorted(students):
         records = {
             name: found
             for name in term.assignments
             if (found := store.read(term.group_of(student, name), name)) is not None
         }
-        results, total = results_of(student, records, term, worth, now)
+        results, total = results_of(student, records, term, worth, now, refused)
+        for result in results:
+            if result.state == DAMAGED:
+                damaged.setdefault(result.assignment, []).append(student)
         _write_student(folder, student, records, results, total, term)
         rows.append(_row(student, results, total))
         all_results += results
     said += unknown_times(all_results, term)
+    said += [
+        f"{name}: the files of {', '.join(those)} cannot be graded. The totals leave them out until "
+        f"a person has looked: {store.folder / 'refused.csv'} says why."
+        for name, those in damaged.items()
+    ]
     write(folder / "course.csv", table(_header(term), rows))
     _write_questions(folder, statistics, term.name, counts)
     write(folder / "counts.json", as_text(statistics.counts(term.name)))
@@ -140,7 +152,7 @@ def _row(student: str, results: Sequence[Result], total: float | None) -> list[o
         sum(one.undecided for one in results),
     ]
     for one in results:
-        graded = one.state not in ("missing", "not due")
+        graded = one.state not in ("missing", DAMAGED, "not due")
         row += [
             one.points if graded else "",
             one.state,

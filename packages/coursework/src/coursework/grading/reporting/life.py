@@ -44,12 +44,15 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         for other in (record.superseded if record else ())
     ]
     now = datetime.datetime.now(datetime.UTC)
-    result = of_term.result_of(student, assignment, record, term, {assignment: 0}, now)
+    files = {one.student for one in refused}
+    result = of_term.result_of(
+        student, assignment, record, term, {assignment: 0}, now, refused=files
+    )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
     in_time = "in time" if result.handed_in else "nothing says when it came"
     late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time
     if not record:
-        missing = result.due and result.state == "missing" and not refused
+        missing = result.due and result.state == "missing"
         late = "it is exported as 0" if missing else "no mark is exported"
     said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items() if record else ():
