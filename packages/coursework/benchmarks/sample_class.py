@@ -23,11 +23,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from coursework.authoring.course import edition_of, find_course
 from coursework.authoring.release import KERNEL, exercise_notebook, shows_variants
 from coursework.authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
+from coursework.authoring.variation import drawn_in
 from coursework.checking.question import Variant
 from coursework.checking.variants import numbers_of_variants
 
 if TYPE_CHECKING:
-    import sympy
     from nbformat import NotebookNode
 
     from coursework.authoring.author import AuthoredQuestion
@@ -106,10 +106,10 @@ class _Exercise:
             for number in range(1, max((rule.count for rule in source.rules.values()), default=1)):
                 for name, question in read_source(path, number, self.edition).questions.items():
                     self.questions[name].append(question)
+        self.rules = {name: rule for source in sources for name, rule in source.rules.items()}
         self.cells: list[NotebookNode] = []
         self.parts: list[Part] = []
         self.solved: dict[int, str] = {}
-        self.names: dict[str, str] = {}
         for source in sources:
             notebook = exercise_notebook(source)
             checked = checked_names(source.notebook)
@@ -125,7 +125,7 @@ class _Exercise:
                 cell = copy.deepcopy(cell)
                 if cell.cell_type == "code":
                     if "### BEGIN VARIANTS" in original.source:
-                        made = _names_made(original.source)
+                        made = _names_made(original.source) | self._not_given(original.source)
                     answered = [
                         owners[variable] for variable in answered_in(original.source, owners)
                     ]
@@ -134,13 +134,25 @@ class _Exercise:
                         answer = solved(original.source)
                         if not made & _names_in(answer):
                             self.solved[len(self.cells)] = answer
-                    self.names.update(_symbols(cell.source))
                 self.cells.append(cell)
         for number, cell in enumerate(self.cells):
             cell["id"] = f"cell-{number}"
         self.metadata = nbformat.v4.new_notebook(
             metadata={"kernelspec": KERNEL, "language_info": {"name": "python"}}
         )
+
+    def _not_given(self, source: str) -> set[str]:
+        """Return what a cell draws for solutions, but a sealed question does not give."""
+        drawn = drawn_in(source)
+        if drawn is None:
+            return set()
+        variable, name = drawn
+        variants = [question.public.given for question in self.questions[name]]
+        return {
+            f"{variable}.{pool}"
+            for pool in self.rules[name].pools
+            if not all(pool in given for given in variants)
+        }
 
     def variant(self, name: str, identity: str) -> int:
         """The number of a student's variant of a question."""
@@ -156,8 +168,12 @@ class _Exercise:
 
 
 def _names_in(source: str) -> set[str]:
-    """The names that code uses."""
-    return {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
+    """Return the names that code uses, with those of attributes as ``name.attribute``."""
+    return {
+        ast.unparse(node)
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Name | ast.Attribute)
+    }
 
 
 def _names_made(source: str) -> set[str]:
@@ -171,75 +187,23 @@ def _names_made(source: str) -> set[str]:
     return made
 
 
-def _symbols(source: str) -> dict[str, str]:
-    """The variable of each symbol that a cell makes by
-    ``sm.symbols('...')`` or ``me.dynamicsymbols``.
-    """
-    variable_of: dict[str, str] = {}
-    for node in ast.parse(source).body:
-        if (
-            isinstance(node, ast.Assign)
-            and isinstance(node.value, ast.Call)
-            and getattr(node.value.func, "attr", "") in ("symbols", "dynamicsymbols", "Symbol")
-            and node.value.args
-            and isinstance(node.value.args[0], ast.Constant)
-        ):
-            target = node.targets[0]
-            variables = [
-                part.id for part in getattr(target, "elts", [target]) if isinstance(part, ast.Name)
-            ]
-            names = str(node.value.args[0].value).replace(",", " ").split()
-            variable_of.update(zip(names, variables))
-    return variable_of
-
-
-def code_of(answer: Any, names: Mapping[str, str]) -> str | None:
-    """Python code for an answer, or ``None`` where there is no short one."""
+def code_of(answer: Any) -> str | None:
+    """Return Python code for an answer, or ``None`` if it has none that a student would write."""
     import sympy
-    from sympy.printing.str import StrPrinter
-
-    class Code(StrPrinter):  # type: ignore[misc]  # SymPy says nothing of its types
-        def _print_Symbol(self, symbol: sympy.Symbol) -> str:
-            return names.get(symbol.name) or f"sm.Symbol({symbol.name!r})"
-
-        def _print_Function(self, function: sympy.Function) -> str:
-            name = function.func.__name__
-            if isinstance(function, sympy.core.function.AppliedUndef):
-                return names.get(name) or f'sm.Function({name!r})(sm.Symbol("t"))'
-            return f"sm.{name}({self.stringify(function.args, ', ')})"
-
-        _print_ExpBase = _print_exp = _print_Abs = _print_Function
-
-        def _print_Rational(self, number: sympy.Rational) -> str:
-            return f"sm.Rational({number.p}, {number.q})" if number.q != 1 else str(number.p)
-
-        def _print_Pow(self, power: sympy.Pow, rational: bool = False) -> str:
-            if power.exp == sympy.Rational(1, 2):
-                return f"sm.sqrt({self._print(power.base)})"
-            return f"({self._print(power.base)})**({self._print(power.exp)})"
-
-        def _print_Pi(self, pi: sympy.Expr) -> str:
-            return "sm.pi"
-
-        def _print_ImaginaryUnit(self, unit: sympy.Expr) -> str:
-            return "sm.I"
-
-        def _print_Exp1(self, base: sympy.Expr) -> str:
-            return "sm.E"
 
     if hasattr(answer, "tolist") and not isinstance(answer, sympy.MatrixBase):
         answer = answer.tolist()
     if isinstance(answer, (str, bool, int, float)):
         return repr(answer)
     if isinstance(answer, (list, tuple)):
-        codes = [code_of(part, names) for part in answer]
+        codes = [code_of(part) for part in answer]
         parts = [code for code in codes if code is not None]
         return f"[{', '.join(parts)}]" if len(parts) == len(codes) else None
     if isinstance(answer, sympy.MatrixBase):
-        rows = code_of(answer.tolist(), names)
+        rows = code_of(answer.tolist())
         return rows and f"sm.Matrix({rows})"
     if isinstance(answer, sympy.Expr) and not answer.atoms(sympy.Derivative):
-        return str(Code().doprint(answer))
+        return f"sm.sympify({sympy.srepr(answer)!r})"
     return None
 
 
@@ -312,9 +276,7 @@ class _Answers:
             order = dice.random()
             for number, question in enumerate(variants):
                 judged = Asked(known[number], siblings=(*known[:number], *known[number + 1 :]))
-                self.right[name, number] = self._with_code(
-                    exercise, question, judged, _forms(question)
-                )
+                self.right[name, number] = self._with_code(question, judged, _forms(question))
                 mistaken = list(
                     {
                         (mistake.note, str(mistake.details)): mistake.answer
@@ -324,12 +286,11 @@ class _Answers:
                 # A class has its favourite mistakes, also where the numbers of its members differ.
                 random.Random(order).shuffle(mistaken)
                 self.wrong[name, number] = self._with_code(
-                    exercise, question, judged, [*mistaken[:6], _slip(question)]
+                    question, judged, [*mistaken[:6], _slip(question)]
                 )
 
     def _with_code(
         self,
-        exercise: _Exercise,
         question: AuthoredQuestion,
         judged: Asked,
         answers: Iterable[Any],
@@ -339,8 +300,8 @@ class _Answers:
 
         written: list[Written] = []
         for answer in answers:
-            code = code_of(answer, exercise.names) if not callable(answer) else None
-            if code is not None and len(code) < 1500:
+            code = code_of(answer) if not callable(answer) else None
+            if code is not None:
                 given = Answer("recorded", question.to_plain(answer))
                 expected = mark(question.name, judged, given)
                 outcome = expected.outcome, expected.note

@@ -743,8 +743,7 @@ def _history(
             if isinstance(one, Appeal):
                 said.append((one.when, one.who, one.student, f"appeal {one.state}", one.words))
             elif one.credit is None:
-                words = "took an own decision back" if one.undoes else "taken back"
-                said.append((one.when, one.who, one.student, words, one.why))
+                said.append((one.when, one.who, one.student, "took a decision back", one.why))
             else:
                 words = f"{number(one.credit * cluster.mark.worth)} points"
                 words += " by the rubric" * (one.points is not None) + ", appeal accepted" * bool(

@@ -5,11 +5,11 @@ a :class:`Decision` on one answer, a step of an :class:`Appeal`, what a line of 
 from now on (:class:`Worth`), or marks that were :class:`Exported`. The marks of a class are those
 that were given last, and nothing else moves them (:mod:`coursework.grading.judging.laboratory`).
 
-Of several decisions on the same answer the last one counts, and none is ever taken out; who takes
-an own decision back enters another one that says so, and what stood before it counts again. A
-decision belongs to the answer that was looked at and to the question as it stood then: handed in
-anew, an answer is judged anew. Who decides names what was decided when they looked: if it is
-another by then, nothing is entered, and both are told.
+Of several decisions on the same answer the last one counts, and none is ever removed. Graders take
+back a decision of their own by entering another one that says so, and the decision before it counts
+again. A decision belongs to the answer that the grader saw and to the question as it stood then, so
+an answer that is handed in anew is judged anew. A decision names the decision that counted when the
+grader looked. If another one counts by then, nothing is entered, and both graders are told.
 """
 
 import contextlib
@@ -105,8 +105,7 @@ class Decision(OnAnswer):
     Attributes
     ----------
     credit : float or None
-        From 0 to 1; ``None`` takes the decision ``undoes`` back, or all earlier ones where that is
-        empty.
+        From 0 to 1; ``None`` takes back the decision ``undoes``.
     comment : str
         For the student.
     rubric : tuple of str
@@ -240,13 +239,13 @@ class Collision(ValueError):
 
 
 def digest_of_answer(record: Record, question: str) -> str:
-    """A short text that follows from what was answered, in whichever cell."""
+    """Return a digest of an answer, whatever cell it stands in."""
     answer = replace(record.answer(question), cell=None, source=None).as_json()
     return hashlib.sha256(json.dumps(answer, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def _on(record: Record, question: str) -> dict[str, str]:
-    """What every event on an answer says of it, by whoever sits at this machine."""
+    """Return the fields that every event on an answer has, by the user of this machine."""
     return {
         "who": getpass.getuser(),
         "student": record.student,
@@ -258,8 +257,9 @@ def _on(record: Record, question: str) -> dict[str, str]:
 
 
 def case_id(record: Record, question: str) -> str:
-    """What a line of a table is known by, whatever a spreadsheet makes of the names in it: another
-    answer of the same student has another one.
+    """Return the ID of an answer in a table, which no spreadsheet changes as it does with names.
+
+    Another answer of the same student has another ID.
     """
     key = [record.student, record.assignment, question, digest_of_answer(record, question)]
     return hashlib.sha256(json.dumps(key).encode()).hexdigest()[:12]
@@ -289,7 +289,7 @@ class Appealed:
 
     @property
     def last(self) -> str:
-        """What happened last: who goes on names it."""
+        """The event that the next step has to name."""
         return self.accepted.id if self.accepted else self.steps[-1].id
 
     @property
@@ -301,7 +301,7 @@ class Appealed:
         return self.state in OPEN
 
     def as_json(self) -> dict[str, str]:
-        """What its student is told."""
+        """Return what its student is told."""
         first, last = self.steps[0], self.steps[-1]
         answered = (
             self.accepted.comment if self.accepted else last.words if len(self.steps) > 1 else ""
@@ -336,51 +336,47 @@ class Standing:
     given: Mapping[tuple[str, str], Given] = field(default_factory=dict)
 
     def decision(self, record: Record, question: str) -> Decision | None:
-        """The decision on an answer that counts; one on an answer
-        that was handed in before does not.
-        """
-        found = self.decisions.get((record.student, record.assignment, question))
-        return found if found and found.answer == digest_of_answer(record, question) else None
+        """Return the decision that counts, unless it is on an answer that was handed in before."""
+        decision = self.decisions.get((record.student, record.assignment, question))
+        is_on_this = decision and decision.answer == digest_of_answer(record, question)
+        return decision if is_on_this else None
 
     def worth(self, question: str, line: str, source: float | None) -> float | None:
-        """What a line of a rubric is worth: what was said last, on the page or in the source."""
-        said = self.worths.get((question, line))
-        return said.points if said is not None and said.source == source else source
+        """Return what a line of a rubric is worth: the newer of the page and the source."""
+        on_page = self.worths.get((question, line))
+        return on_page.points if on_page is not None and on_page.source == source else source
 
     def points(self, decision: Decision, mark: Mark) -> float:
-        """The points of a decision: a share of all, or what the
-        lines of the rubric are worth now.
-        """
+        """Return the points of a decision: a share of all, or what the rubric's lines give now."""
         worth = float(mark.worth)
         if decision.points is None:
             return round(worth * (decision.credit or 0), 4)
-        source, found = mark.rubric, 0.0
+        points = 0.0
         for line, then in zip(decision.rubric, decision.points, strict=True):
-            now = self.worth(decision.question, line, source.get(line))
-            # A line that nobody knows any more stays what it was.
-            found += (then if now is None else now) or 0
-        return round(min(worth, max(0.0, found)), 4)
+            now = self.worth(decision.question, line, mark.rubric.get(line))
+            # A line that was removed keeps the worth that it had.
+            points += (then if now is None else now) or 0
+        return round(min(worth, max(0.0, points)), 4)
 
 
 def with_decisions(record: Record, standing: Standing) -> Record:
-    """A record with what people decided on its answers, in place of what the
-    machine said; nothing is judged.
-    """
+    """Return a record with people's decisions in place of the machine's; nothing is judged."""
     marks = {}
     for name, mark in record.marks.items():
-        judged = mark.judged
-        found, decided = judged, standing.decision(record, name)
+        judged = standing_mark = mark.judged
+        decided = standing.decision(record, name)
         if decided is not None:
-            found = replace(
+            standing_mark = replace(
                 judged,
                 outcome="decided",
                 points=standing.points(decided, judged),
-                messages=tuple(said for said in (*decided.rubric, decided.comment) if said),
+                messages=tuple(text for text in (*decided.rubric, decided.comment) if text),
                 before=Judged(judged.outcome, judged.note, judged.points, judged.messages),
                 decided={"who": decided.who, "when": decided.when, "id": decided.id},
             )
         appeals = standing.appeals.get((record.student, record.assignment, name), ())
-        marks[name] = replace(found, appeals=tuple(one.as_json() for one in appeals))
+        told = tuple(appeal.as_json() for appeal in appeals)
+        marks[name] = replace(standing_mark, appeals=told)
     return replace(record, marks=marks)
 
 
@@ -439,7 +435,7 @@ class Journal:
             if until is None or datetime.datetime.fromisoformat(one.when) <= until
         ]
         made = _in_order(one for one in events if isinstance(one, ByPeople))
-        decisions = {key: several[-1] for key, several in _not_taken_back(made).items() if several}
+        decisions = {key: several[-1] for key, several in _not_taken_back(made).items()}
         worths = {(one.question, one.line): one for one in made if isinstance(one, Worth)}
         undone = {one.undoes for one in made if isinstance(one, Decision) and one.undoes}
         accepted = {
@@ -820,10 +816,9 @@ class Journal:
 
 
 def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
-    """Events by time, since journals of several graders may have been put together;
-    but none before what it came after.
+    """Sort the events of several graders' journals by time, but none before the one it names.
 
-    A clock may be wrong, or be set back: who saw another decision decided later all the same.
+    Clocks may be wrong: a grader who saw another decision decided later, whatever the times say.
     """
     events = list(events)
     by_id = {one.id: one for one in events}
@@ -847,16 +842,14 @@ def _in_order(events: Iterable[ByPeople]) -> list[ByPeople]:
 
 
 def _not_taken_back(made: Sequence[ByPeople]) -> dict[Key, list[Decision]]:
-    """The decisions on each answer that nobody took back, the last one last."""
-    decisions = [one for one in made if isinstance(one, Decision)]
-    undone = {one.undoes for one in decisions if one.undoes}
-    found: dict[Key, list[Decision]] = {}
-    for one in decisions:
-        if one.credit is not None and one.id not in undone:
-            found.setdefault(one.key, []).append(one)
-        elif one.credit is None and not one.undoes:
-            found.pop(one.key, None)
-    return found
+    """Return the decisions on each answer that nobody took back, the newest last."""
+    decisions = [event for event in made if isinstance(event, Decision)]
+    undone = {decision.undoes for decision in decisions}
+    standing: dict[Key, list[Decision]] = {}
+    for decision in decisions:
+        if decision.credit is not None and decision.id not in undone:
+            standing.setdefault(decision.key, []).append(decision)
+    return standing
 
 
 # --- lines ---------------------------------------------------------------------------------------

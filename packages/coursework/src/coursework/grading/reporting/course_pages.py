@@ -1,6 +1,4 @@
-"""What is written about a whole course: a table of all marks, a page for each
-student, and pages on the questions.
-"""
+"""Writes a table of all marks of a course, a page for each student, and pages on the questions."""
 
 import datetime
 import json
@@ -18,8 +16,7 @@ from .statistics import FORMAT, Question, Same, Statistics
 from .templates_of_pages import ENVIRONMENT, page
 
 FOLDER = "course"
-#: How the state of an assignment is told to a student; where it
-#: simply counts there is nothing to tell.
+#: What the page tells a student of each state; an assignment that simply counts needs no words.
 STATES = {
     "counted": "",
     "dropped": "dropped: it does not count",
@@ -42,9 +39,7 @@ ENVIRONMENT.filters["moment"] = lambda moment: moment.strftime("%Y-%m-%d %H:%M %
 
 @dataclass(frozen=True)
 class Then(AsJson):
-    """What was kept of a question in an earlier year: the mean
-    share of the credit, and the version.
-    """
+    """A question of an earlier year: the mean share of the credit, and the version."""
 
     version: str
     share: float | None = None
@@ -66,7 +61,7 @@ def write_course(
     earlier: Iterable[str | Path] = (),
     now: datetime.datetime | None = None,
 ) -> list[str]:
-    """Write what a course comes to into the folder ``course`` of the results.
+    """Write the totals of a course into the folder ``course`` of the results.
 
     Parameters
     ----------
@@ -98,15 +93,15 @@ def write_course(
     if term.roster:
         students.update(term.roster.people)
     term.demand_people(store.folder / FILE, students)
-    said = _misspelt(term, worth)
+    lines = _misspelt(term, worth)
     folder, rows, all_results = store.folder / FOLDER, [], list[Result]()
     refused = {one.student for one in refused_of(store)}
     damaged: dict[str, list[str]] = {}
     for student in sorted(students):
         records = {
-            name: found
+            name: own_record
             for name in term.assignments
-            if (found := store.read(term.group_of(student, name), name)) is not None
+            if (own_record := store.read(term.group_of(student, name), name)) is not None
         }
         results, total = results_of(student, records, term, worth, now, refused)
         for result in results:
@@ -115,16 +110,16 @@ def write_course(
         _write_student(folder, student, records, results, total, term)
         rows.append(_row(student, results, total))
         all_results += results
-    said += unknown_times(all_results, term)
-    said += [
-        f"{name}: the files of {', '.join(those)} cannot be graded. The totals leave them out until "
-        f"a person has looked: {store.folder / 'refused.csv'} says why."
+    lines += unknown_times(all_results, term)
+    lines += [
+        f"{name}: the files of {', '.join(those)} cannot be graded. The totals leave them out "
+        f"until a person has looked: {store.folder / 'refused.csv'} says why."
         for name, those in damaged.items()
     ]
     write(folder / "course.csv", table(_header(term), rows))
     _write_questions(folder, statistics, term.name, counts)
     write(folder / "counts.json", as_text(statistics.counts(term.name)))
-    return said
+    return lines
 
 
 def _misspelt(term: Term, worth: Mapping[str, float]) -> list[str]:
@@ -215,9 +210,7 @@ def _write_questions(
 
 
 def _groups(found: Question, assignment: str) -> tuple[list[dict[str, object]], dict[str, str]]:
-    """The answers of a question, by what the machine or a person said
-    of them, the most frequent first.
-    """
+    """Group the answers of a question by what was said of them, the most frequent first."""
     groups: dict[tuple[str, str], list[Same]] = {}
     anchors: dict[str, str] = {}
     for (outcome, did, _), same in found.answers.items():

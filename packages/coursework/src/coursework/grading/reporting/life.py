@@ -10,7 +10,7 @@ from ..tables import in_a_line, number
 
 
 def life_of(store: Store, student: str, assignment: str) -> list[str]:
-    """What happened to the marks of a student for an assignment.
+    """Return the lines that explain a student's mark for an assignment.
 
     Raises
     ------
@@ -20,33 +20,36 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     term, journal = of_term.term_of(store.folder), Journal(store.folder)
     whose = term.group_of(student, assignment)
     key = whose, assignment
-    record, given = store.read(*key), (keys := journal.standing().given).get(key)
+    record, all_given = store.read(*key), journal.standing().given
+    given = all_given.get(key)
     expected = term.roster and student in term.roster.people and assignment in term.assignments
     if given and record is None or not given and not expected:
-        own = sorted(name for one, name in keys if one == whose)
+        own = sorted(name for owner, name in all_given if owner == whose)
         raise ValueError(
             f"There are no marks of {student!r} for {assignment!r} in {store.folder}. There are "
             f"marks {'for' if own else 'of'} "
-            f"{', '.join(own or sorted({one for one, _ in keys})[:40]) or 'nobody yet'}"
+            f"{', '.join(own or sorted({owner for owner, _ in all_given})[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
         )
     named = f"{student} (in {whose})" if whose != student else student
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
-    said = [f"{named}, {assignment}: {comes_to}."]
-    refused = [one for one in refused_of(store) if one.student in (student, whose)]
-    said += [f"  cannot be graded: {in_a_line(one.file, 120)}, since {one.why}" for one in refused]
+    lines = [f"{named}, {assignment}: {comes_to}."]
+    refused = [file for file in refused_of(store) if file.student in (student, whose)]
+    lines += [
+        f"  cannot be graded: {in_a_line(file.file, 120)}, since {file.why}" for file in refused
+    ]
     cases = record.cases if record else {}
     for notebook in record.notebooks if record else ():
         when = f", handed in {notebook.handed_in}" if notebook.handed_in else ""
-        said.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
-    said += [
+        lines.append(f"  counts: {in_a_line(notebook.file, 120)}{when}")
+    lines += [
         f"  does not count: {in_a_line(other.file, 120)}, since {other.why}"
         for other in (record.superseded if record else ())
     ]
     now = datetime.datetime.now(datetime.UTC)
-    files = {one.student for one in refused}
+    senders = {file.student for file in refused}
     result = of_term.result_of(
-        student, assignment, record, term, {assignment: 0}, now, refused=files
+        student, assignment, record, term, {assignment: 0}, now, refused=senders
     )
     due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
     in_time = "in time" if result.handed_in else "nothing says when it came"
@@ -54,13 +57,13 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     if not record:
         missing = result.due and result.state == "missing"
         late = "it is exported as 0" if missing else "no mark is exported"
-    said.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
+    lines.append(f"  {due}; {'excused' if result.state == of_term.EXCUSED else late}")
     for name, mark in record.marks.items() if record else ():
         case = cases.get(name)
         rule = f", variant {case.own.variant} ({case.rule})" if case and case.rule else ""
         decided = f", decided by {mark.decided['who']}" if mark.decided else ""
         note = f" ({mark.note})" if mark.note else ""
-        said.append(
+        lines.append(
             f"  {name}{rule}: {mark.outcome}{note}, {number(mark.points)} of {number(mark.worth)}"
             f"{decided}"
         )
@@ -75,8 +78,8 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         elif isinstance(event, Decision | Appeal) and event.key[:2] == key:
             happened = f"{event.question}: {_step(event)}"
         if happened:
-            said.append(f"  {event.when[:16].replace('T', ' ')} {event.who}: {happened}")
-    return said
+            lines.append(f"  {event.when[:16].replace('T', ' ')} {event.who}: {happened}")
+    return lines
 
 
 def _of(given: Given) -> str:
