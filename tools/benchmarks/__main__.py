@@ -1,7 +1,7 @@
 """Print two tables, all measured in this run: ``python -m tools.benchmarks``.
 
 The other modules here are separate programs, each described at its beginning; most measure the
-built book. Checking and grading are measured in ``packages/coursework/benchmarks``.
+built book. Grading is measured in ``packages/coursework/benchmarks``.
 """
 
 import platform

@@ -1,10 +1,10 @@
-"""Compare the speed of grading by coursework, nbgrader and plain nbclient.
+"""Compare the speed of grading by coursework and by nbgrader.
 
 Run it with ``python packages/coursework/benchmarks/grading.py``. We grade the whole sample class,
 with its mistakes, broken cells and attacks, with ``coursework grade``, from an empty folder to the
-report. The others grade only the first honest notebooks, one after another, since they cannot do
-otherwise; nbclient runs the cells and grades nothing. Processor times count all processes, and
-hardly depend on the load of the machine; times by the clock do.
+report. nbgrader grades only the first honest notebooks, one after another, since it cannot do
+otherwise. Processor times count all processes, and hardly depend on the load of the machine; times
+by the clock do.
 """
 
 import argparse
@@ -39,9 +39,7 @@ c.Exchange.enabled = False
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--students", type=int, default=200, help="students in the sample class")
-    parser.add_argument(
-        "--sample", type=int, default=8, help="number of notebooks for nbgrader and nbclient"
-    )
+    parser.add_argument("--sample", type=int, default=8, help="number of notebooks for nbgrader")
     parser.add_argument("--workers", type=int, default=2, help="notebooks to run at a time")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
@@ -57,8 +55,6 @@ def main():
         honest = _only(good, submissions, place / "honest")
         of_questions(place)
         ours = of_grading(honest, place, options.workers)
-        paths = [next((honest / student).glob("*.ipynb")) for student in good]
-        alone = of_cells(paths)
         sample = [
             next((honest / student).glob("*.ipynb"))
             for student in good
@@ -70,9 +66,7 @@ def main():
                 *of_grading(submissions, place, options.workers),
             ),
             ("coursework grade: the honest ones", *ours),
-            ("their cells alone, each in a copy of one warm process", *alone),
-            ("nbclient, which grades nothing", *of_nbclient(sample)),
-            ("nbgrader autograde", *of_nbgrader(sample, place)[:3]),
+            ("nbgrader autograde", *of_nbgrader(sample, place)),
         )
         print(
             f"{options.students} notebooks of {questions} questions, {options.workers} workers.\n"
@@ -137,67 +131,8 @@ def of_grading(submissions, place, workers):
     return done["graded"], *seconds
 
 
-def of_cells(paths):
-    """Run the code of notebooks in copies of one process that has loaded
-    everything, with a check that does nothing.
-
-    Each copy is new, as caches that are warm from a neighbour's notebook would make the cells look
-    cheaper than they are. What is counted is the time between the first cell and the last; making
-    the copies is not.
-    """
-    code = (
-        "import contextlib, io, json, os, sys, time, types, warnings\n"
-        "import coursework, numpy, orientation, sympy, sympy.physics.mechanics\n"
-        'warnings.simplefilter("ignore")\n'
-        "known = dict(vars(coursework), check=lambda *answers: None)\n"
-        'sys.modules["coursework"] = types.SimpleNamespace(**known)\n'
-        "def run(cells):\n"
-        '    names = {"__name__": "__main__"}\n'
-        "    for cell in cells:\n"
-        '        if cell["cell_type"] == "code":\n'
-        "            with contextlib.suppress(Exception), "
-        "contextlib.redirect_stdout(io.StringIO()):\n"
-        '                exec(compile("".join(cell["source"]), "cell", "exec"), names)\n'
-        "total = [0, 0]\n"
-        "for path in sys.argv[1:]:\n"
-        '    cells = json.load(open(path))["cells"]\n'
-        "    reading, writing = os.pipe()\n"
-        "    if os.fork() == 0:\n"
-        "        start = time.perf_counter(), time.process_time()\n"
-        "        run(cells)\n"
-        '        os.write(writing, f"{time.perf_counter() - start[0]} {time.process_time() - '
-        'start[1]}".encode())\n'
-        "        os._exit(0)\n"
-        "    total = [a + float(b) for a, b in zip(total, os.read(reading, 100).split())]\n"
-        "    os.close(reading), os.close(writing), os.wait()\n"
-        "print(*total)\n"
-    )
-    said = subprocess.run(
-        [sys.executable, "-W", "ignore", "-c", code, *map(str, paths)],
-        check=True,
-        capture_output=True,
-        text=True,
-        cwd=paths[0].parent,  # where it is kept who works here
-    )
-    return len(paths), *map(float, said.stdout.split())
-
-
-def of_nbclient(paths):
-    import nbformat
-    from nbclient import NotebookClient
-
-    with measured() as seconds:
-        for path in paths:
-            NotebookClient(
-                nbformat.read(path, as_version=4), kernel_name="python3", allow_errors=True
-            ).execute()
-    return len(paths), *seconds
-
-
 def of_nbgrader(paths, place):
-    """nbgrader's own commands: how many notebooks, the seconds of grading,
-    and those of what is made before.
-    """
+    """Return how many notebooks nbgrader's own commands graded, and the seconds of that."""
     course = place / "course"
     name = paths[0].name
     for path in paths:
@@ -225,11 +160,10 @@ def of_nbgrader(paths, place):
         if done.returncode:
             sys.exit(done.stderr[-3000:])
 
-    with measured() as before:
-        run("generate_assignment", ASSIGNMENT, "--force")
+    run("generate_assignment", ASSIGNMENT, "--force")
     with measured() as seconds:
         run("autograde", ASSIGNMENT)
-    return len(paths), *seconds, *before
+    return len(paths), *seconds
 
 
 if __name__ == "__main__":
