@@ -1,4 +1,4 @@
-"""The questions for another house: read back by readers of the tests' own, and marked by them."""
+"""The questions for another system, read back and marked by readers of the tests' own."""
 
 import html
 import re
@@ -6,7 +6,7 @@ import stat
 from functools import partial
 
 import pytest
-from other_houses import marked_by_moodle, marked_by_qti, of_moodle, of_qti
+from exported_banks import marked_by_moodle, marked_by_qti, of_moodle, of_qti
 from trial_course import PROJECT, SETUP, made_in, write_source
 
 from coursework.__main__ import main
@@ -15,16 +15,16 @@ from coursework.authoring.bank import bank
 from coursework.authoring.course import find_course
 from coursework.authoring.source import read_source
 
-HOUSES = {"moodle": (of_moodle, marked_by_moodle), "qti": (of_qti, marked_by_qti)}
+FORMATS = {"moodle": (of_moodle, marked_by_moodle), "qti": (of_qti, marked_by_qti)}
 
 
-def judged_as_here(course, house, names, place):
+def judged_as_here(course, format, names, place):
     """Mark every variant's right answer, the author's mistakes and a wrong answer elsewhere."""
-    of_house, marked = HOUSES[house]
-    carried, left = bank(course, place / "bank", house, names)
-    questions = of_house(place / "bank")
-    assert len(questions) == sum(map(len, carried.values()))
-    for name in carried:
+    read_back, marked = FORMATS[format]
+    exported, left = bank(course, place / "bank", format, names)
+    questions = read_back(place / "bank")
+    assert len(questions) == sum(map(len, exported.values()))
+    for name in exported:
         path = course.sources / f"{name.partition('/')[0]}.ipynb"
         count = read_source(path, only=[name]).questions[name].public.variants
         for number in range(count):
@@ -39,7 +39,7 @@ def judged_as_here(course, house, names, place):
                 share, reply = mark(values(mistake.answer))
                 assert share < 1
                 assert plainly(text) in plainly(reply), (name, number, text, reply)
-                if house == "qti" or len(right) == 1:
+                if format == "qti" or len(right) == 1:
                     assert share == pytest.approx(question.credit.get("authored", 0))
             wrong = ["-777.5" if is_number(value) else "nonsense" for value in right]
             assert mark(wrong) == (0, "")
@@ -63,19 +63,19 @@ def is_number(value):
 
 
 def plainly(text):
-    """The letters of a reply outside of formulas, which houses write each in its own way."""
+    """The letters of a reply outside of formulas, which each format writes in its own way."""
     text = re.sub(r"\$[^$]+\$|\\\(.*?\\\)|<(\w+:)?math.*?</(\w+:)?math>", "", text)
     return re.sub(r"<[^>]*>|\W", "", html.unescape(text))
 
 
-@pytest.mark.parametrize("house", HOUSES)
-def test_every_variant_is_judged_elsewhere_as_it_is_here(house, tmp_path):
+@pytest.mark.parametrize("format", FORMATS)
+def test_every_variant_is_judged_elsewhere_as_it_is_here(format, tmp_path):
     course = find_course(PROJECT / "examples" / "plane-statics")
-    left = judged_as_here(course, house, [], tmp_path)
+    left = judged_as_here(course, format, [], tmp_path)
     assert "equilibrium/cantilever: its answer is a function." in left
     assert "equilibrium/ladder: its answer is a formula in W, theta." in left
     assert "units/torque: its answer is a number with a unit." in left
-    listed = (tmp_path / "bank-not-carried.txt").read_text("utf8")
+    listed = (tmp_path / "bank-not-exported.txt").read_text("utf8")
     assert listed.splitlines() == left
     assert stat.S_IMODE((tmp_path / "bank").stat().st_mode) == 0o600
 
@@ -103,16 +103,16 @@ def odd(tmp_path):
     return course
 
 
-@pytest.mark.parametrize("house", HOUSES)
-def test_signs_with_a_meaning_are_only_signs(odd, house, tmp_path):
-    of_house, marked = HOUSES[house]
-    ((item,),) = bank(odd, tmp_path / "bank", house)[0].values()
-    (question,) = of_house(tmp_path / "bank").values()
+@pytest.mark.parametrize("format", FORMATS)
+def test_signs_with_a_meaning_are_only_signs(odd, format, tmp_path):
+    read_back, marked = FORMATS[format]
+    ((item,),) = bank(odd, tmp_path / "bank", format)[0].values()
+    (question,) = read_back(tmp_path / "bank").values()
     assert item.text.endswith("```python\ngiven = [7, 11]\n```")
     assert marked(question, ["=a~b#c", "x & {y}"])[0] == 1
     share, reply = marked(question, ["50% <z>", "x & {y}"])
     # Moodle adds half of the first place and all of the second.
-    assert share == {"moodle": 0.75, "qti": 0.5}[house]
+    assert share == {"moodle": 0.75, "qti": 0.5}[format]
     assert "Not ~ } # " in reply and "<code>=</code> &lt;b&gt;" in re.sub(
         r"\w+:(?=code)", "", reply
     )

@@ -1,17 +1,17 @@
-"""Three questions of the book in another house: a matrix with a picture, a word, and many words."""
+"""Three questions of the book for another system: a matrix with a picture, a word, many words."""
 
 import pytest
-from test_bank import HOUSES, judged_as_here
+from test_bank import FORMATS, judged_as_here
 
 from coursework.authoring.course import find_course
 
-CARRIED = [
+EXPORTED = [
     "simple-orientations/crank",
     "euler-angles/which-sequence",
     "measured-matrices/eight-tables",
 ]
 
 
-@pytest.mark.parametrize("house", HOUSES)
-def test_the_books_variants_are_judged_elsewhere_as_they_are_here(house, tmp_path):
-    assert judged_as_here(find_course(), house, CARRIED, tmp_path) == []
+@pytest.mark.parametrize("format", FORMATS)
+def test_the_books_variants_are_judged_elsewhere_as_they_are_here(format, tmp_path):
+    assert judged_as_here(find_course(), format, EXPORTED, tmp_path) == []

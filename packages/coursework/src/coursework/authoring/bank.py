@@ -1,6 +1,6 @@
-"""The questions of a course for another house: every variant with its answer, replies and solution.
+"""The questions of a course for another system, each variant with its answers and solution.
 
-:mod:`coursework.authoring.houses` writes them.
+:mod:`coursework.authoring.exporting` writes them.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
 OPPOSITES = "an answer and its opposite are right, and Moodle marks each number by itself"
 #: The line in which students write their answer.
 BLANK = re.compile(r"^.*# your answer\n?", re.M)
-#: A mistake in one place: another house judges every place by itself, and says so.
-OF_ONE_PLACE = "one wrong"
+#: The note of an answer with one wrong entry, whatever that is: it has no values of its own.
+ONE_WRONG = "one wrong"
 
 
-class NotCarried(ValueError):
-    """No other house can judge the answers of a question; the message says why."""
+class NotExported(ValueError):
+    """No other system can judge the answers of a question; the message says why."""
 
 
 class Wrong(NamedTuple):
@@ -111,12 +111,12 @@ class Item(NamedTuple):
         return abs(float(first) - float(second)) <= self.tolerances[place]
 
 
-def items_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> Item:
+def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> Item:
     """One variant of a question, below what its notebook has ``above`` it.
 
     Raises
     ------
-    NotCarried
+    NotExported
     """
     public, kind = question.public, kinds()[question.public.kind]
     for applies, reason in (
@@ -127,7 +127,7 @@ def items_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> 
         (kind.unique not in (None, one_sign), f"many answers of the kind {public.kind} are right"),
     ):
         if applies:
-            raise NotCarried(reason)
+            raise NotExported(reason)
     known = {str(entry.plain): entry for entry in question.entries.values()}
     values = {text: _values(question, entry.plain) for text, entry in known.items()}
     right = [values[text] for text, entry in known.items() if entry.outcome == "correct"]
@@ -137,11 +137,11 @@ def items_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> 
         Wrong(values[text], note, question.credit.get(note, 0), message(public, note, details))
         for text, entry in known.items()
         for note, details in entry.notes[:1]
-        if note != OF_ONE_PLACE
+        if note != ONE_WRONG
     ]
     absolute, relative = map(float, tolerances(public))
     options = public.options or (("True", "False") if public.kind == "truth values" else ())
-    figures = "\n\n".join(found[0] for found in PICTURE.finditer(above))
+    figures = "\n\n".join(picture[0] for picture in PICTURE.finditer(above))
     variant = public.variant
     return Item(
         question.name,
@@ -200,10 +200,10 @@ def _columns(value: Value, places: int) -> int:
     return max(widths.pop(), 1) if len(widths) == 1 and widths != {0} else places
 
 
-def _carried(
+def _exported(
     path: Path, course: Course, names: Collection[str]
 ) -> tuple[dict[str, list[Item]], dict[str, str]]:
-    """The items of each question of a notebook; or why it cannot be carried."""
+    """The items of each question of a notebook; or why it cannot be exported."""
     if path.stem == CHAPTERS:
         return {}, dict.fromkeys(names, "its text stands in a chapter")
     items, left = dict[str, list[Item]](), dict[str, str]()
@@ -213,9 +213,9 @@ def _carried(
     while questions:
         for name, question in questions.items():
             try:
-                item = items_of(question, above[name], source.notebook)
+                item = item_of(question, above[name], source.notebook)
                 items.setdefault(name, []).append(item)
-            except NotCarried as reason:
+            except NotExported as reason:
                 left[name] = str(reason)
         number += 1
         having = [name for name in items if number < source.questions[name].public.variants]
@@ -244,15 +244,15 @@ def _chosen(course: Course, wanted: Collection[str]) -> Iterator[tuple[Path, lis
 
 
 def bank(
-    course: Course, out: str | Path, house: str, wanted: Collection[str] = ()
+    course: Course, out: str | Path, format: str, wanted: Collection[str] = ()
 ) -> tuple[dict[str, list[Item]], list[str]]:
-    """Write a course's questions for another house, and what it cannot carry beside it.
+    """Write a course's questions for another system, and beside them a list of those left out.
 
     Parameters
     ----------
     course : Course
     out : path
-    house : str
+    format : str
         ``'moodle'`` or ``'qti'``.
     wanted : collection of str
         Questions or notebooks; all of them if there is none.
@@ -267,7 +267,7 @@ def bank(
     AuthorError
         The file would reach students, or there is no such question.
     """
-    from . import houses
+    from . import exporting
 
     path = Path(out).resolve()
     for folder in (course.exercises, course.sealed, course.archive.parent):
@@ -279,19 +279,20 @@ def bank(
     paths, names = zip(*_chosen(course, wanted))
     # Only the author needs what a solution prints.
     with contextlib.redirect_stdout(io.StringIO()), processes_for(paths) as pool:
-        found = list(pool.map(_carried, paths, [course] * len(paths), names))
-    questions = {name: items for items_by_name, _ in found for name, items in items_by_name.items()}
-    left = {name: reason for _, reasons in found for name, reason in reasons.items()}
-    if house == "moodle":
+        of_notebooks = list(pool.map(_exported, paths, [course] * len(paths), names))
+    questions = {name: items for by_name, _ in of_notebooks for name, items in by_name.items()}
+    left = {name: reason for _, reasons in of_notebooks for name, reason in reasons.items()}
+    if format == "moodle":
         left |= {name: OPPOSITES for name, (item, *_) in questions.items() if len(item.right) > 1}
         questions = {name: items for name, items in questions.items() if name not in left}
-    write = houses.moodle if house == "moodle" else houses.qti
+    write = exporting.moodle if format == "moodle" else exporting.qti
     lines = [f"{name}: {reason}." for name, reason in left.items()]
     path.parent.mkdir(parents=True, exist_ok=True)
     for place, content in (
         (path, write(course.title, questions)),
-        (path.with_name(f"{path.stem}-not-carried.txt"), "\n".join([*lines, ""]).encode()),
+        (path.with_name(f"{path.stem}-not-exported.txt"), "\n".join([*lines, ""]).encode()),
     ):
         place.touch(mode=0o600)
+        place.chmod(0o600)
         place.write_bytes(content)
     return questions, lines

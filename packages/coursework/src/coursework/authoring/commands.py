@@ -200,11 +200,11 @@ def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
 def bank(out: Path, format: str, questions: Sequence[str]) -> None:
     from .bank import bank as write
 
-    carried, left = write(_course(), out, format, questions)
+    exported, left = write(_course(), out, format, questions)
     print(*left, sep="\n", end="\n" * bool(left))
     print(
-        f"{out} has {len(carried)} questions in {sum(map(len, carried.values()))} variants; "
-        f"{len(left)} questions cannot be carried."
+        f"{out} has {len(exported)} questions in {sum(map(len, exported.values()))} variants; "
+        f"{len(left)} questions cannot be exported."
     )
     print(f"{out} HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only: never publish it.")
 

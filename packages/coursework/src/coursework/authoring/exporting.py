@@ -1,4 +1,4 @@
-"""Questions as other houses read them: Moodle XML, and a package of QTI 2.2.
+"""Questions in the formats of other systems: Moodle XML, and a package of QTI 2.2.
 
 Moodle gets a category for each question, and in it a question for each variant. An answer of
 several places becomes a cloze question, whose places Moodle marks one by one. QTI gets an item for
