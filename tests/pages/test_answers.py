@@ -28,7 +28,6 @@ KEPT = (
     "() => Object.fromEntries(Object.entries(localStorage).filter(([key]) => / (answer|earlier) "
     "/.test(key)))"
 )
-pytestmark = pytest.mark.long
 
 
 @pytest.fixture
@@ -206,6 +205,7 @@ def test_fingerprints_are_those_of_the_page(context, site):
 # --- hand in and load, back up and restore --------------------------------------------------------
 
 
+@pytest.mark.long
 def test_page_is_handed_in_and_graded(context, site, tmp_path):
     tab = Tab(context, site).edit()
     right = re.sub("### (BEGIN|END) SOLUTION\n?", "", solution("simple-orientations/crank")).strip()
@@ -276,6 +276,7 @@ def test_notebook_is_loaded_back(context, site, tmp_path):
     assert tab.text(ANSWER) == "answer = 'mine'" and tab.errors == []
 
 
+@pytest.mark.long
 def test_chapter_is_taken_away_and_loaded(context, site, browser, tmp_path):
     tab = Tab(context, site, CHAPTER).edit()
     tab.write(3, "mine = 3")
@@ -287,6 +288,7 @@ def test_chapter_is_taken_away_and_loaded(context, site, browser, tmp_path):
     other_context.close()
 
 
+@pytest.mark.long
 def test_everything_is_backed_up_and_restored(context, site, browser, tmp_path):
     tab = Tab(context, site).edit()
     tab.write(ANSWER, "answer = 1")
@@ -403,6 +405,7 @@ ALL_COPIES = """async () => {
 CRANK, BOOM = "simple-orientations-crank", "simple-orientations-boom"
 
 
+@pytest.mark.long
 def test_answers_go_to_the_notebook_and_come_back(context, site):
     tab = Tab(context, site).edit()
     tab.write(ANSWER, "page = 1")
@@ -697,6 +700,7 @@ def test_books_code_needs_no_room(context, site):
     assert "mine = 1" in tab.page.inner_text(".live-earlier") and tab.text(ANSWER) == BLANK
 
 
+@pytest.mark.long
 def test_stored_number_does_not_stand_under_other_code(context, site):
     """Without NumPy, the book's result is folded away from below the reader's changed code."""
     page = "chapters/measured-matrices"
@@ -861,12 +865,9 @@ class Life:
         return self.written - lines
 
 
-@pytest.mark.parametrize(
-    ("seed", "steps"),
-    [(1, 25), *(pytest.param(seed, 200, marks=pytest.mark.long) for seed in (2, 3, 4))],
-)
-def test_nothing_is_ever_lost(context, site, seed, steps):
-    life = Life(context, site, seed)
+@pytest.mark.long
+def test_nothing_is_ever_lost(context, site):
+    life, steps = Life(context, site, seed=2), 100
     history = []
     for number in range(steps):
         history.append(life.step())

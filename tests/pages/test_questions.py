@@ -12,8 +12,6 @@ CHAPTER = "chapters/reference-frames"
 COVERING = '.question[data-covers]:not([data-covers="0"])'
 KEPT = "() => ({ pages: bookStore.record() })"
 
-pytestmark = pytest.mark.long
-
 
 @pytest.fixture
 def context(browser):

@@ -21,7 +21,6 @@ ALL = (
     "/^(book|progress|code) /.test(key)))"
 )
 HERE = "() => bookStore.record()"
-pytestmark = pytest.mark.long
 
 
 def kept_before(page, site, stored):

@@ -610,7 +610,6 @@ def test_the_archive_brings_all_variants_and_a_smaller_count_takes_them_away(cou
     ]
 
 
-@pytest.mark.long
 def test_variants_kept_from_another_machine_are_made_anew(tmp_path, monkeypatch):
     """Their pages follow upon those of the first variant, which another
     machine's numbers had made others.

@@ -573,7 +573,6 @@ def test_a_renamed_folder_does_not_leave_the_old_student(course, copied, tmp_pat
     assert (copied / "put-aside" / "warns" / "turns.json").exists()
 
 
-@pytest.mark.long
 def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else(
     course, copied, tmp_path
 ):
