@@ -143,12 +143,6 @@ def test_a_symbol_of_the_name_of_a_unit_is_a_symbol():
     assert outcome(question, 3 * units.meter * units.newton)[0] == "wrong"
 
 
-def test_a_number_alone_has_no_unit():
-    question = make("expression", sm.Rational(25, 2))
-    reply = question.reply_to(question.to_plain(12.5 * units.newton))
-    assert reply.note == "shape" and "this is a number with a unit" in repr(reply)
-
-
 def test_the_unit_of_an_exam_is_not_told():
     """What a student receives is the same for another unit."""
     one, other = (make("measurement", (3, unit), exam=True).sealed() for unit in ("kN m", "mm"))

@@ -403,34 +403,6 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
         coursework.variant("levers/plain/sibling")
 
 
-def test_what_was_right_before_somebody_said_who_they_are_is_not_their_own(recorded):
-    """The record is of a variant: with an identity the points are still to be
-    earned, and no hint is brought along.
-    """
-    coursework.student(" ")
-    everybody = coursework.variant(NAME)
-    for wrong in (11, 12, 13):
-        coursework.check(NAME, wrong)
-    assert coursework.check(NAME, everybody.force * everybody.arm).help == "hint"
-    assert "tried is right" in repr(coursework.progress())
-    coursework.student(student_with(3))
-    assert "not with yours yet" in repr(coursework.progress()) and "no hint yet" in repr(
-        coursework.hint(NAME)
-    )
-    first = coursework.check(NAME, 11)
-    assert (
-        first.tries == 1
-        and "Hint:" not in repr(first)
-        and "not right yet" in repr(coursework.progress())
-    )
-    lever = coursework.variant(NAME)
-    assert coursework.check(NAME, lever.force * lever.arm).help == ""
-    # Back again: nothing of the first record is lost.
-    identity._identity = ""
-    again = coursework.check(NAME, everybody.force * everybody.arm)
-    assert (again.tries, again.help) == (4, "hint")
-
-
 @pytest.mark.parametrize("way", ["hint", "solution"])
 def test_hints_and_the_worked_solution_are_help(recorded, course, way):
     lever = coursework.variant(NAME)

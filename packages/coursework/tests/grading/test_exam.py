@@ -99,11 +99,6 @@ def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
     assert "no hint" in str(checks.hint("trial/about-x"))
 
 
-def test_an_exam_counts_as_run_where_nbgrader_looks_for_errors(exam, monkeypatch):
-    monkeypatch.setenv("NBGRADER_EXECUTION", "autograde")
-    assert checks.check("trial/about-x", RIGHT.T).outcome == "recorded"
-
-
 def test_the_selftest_is_content_and_finds_nothing_to_guess(exam):
     found = selftest.try_question(
         release.read_source(exam.sources / "trial.ipynb").questions["trial/about-x"]
