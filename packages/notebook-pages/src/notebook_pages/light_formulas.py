@@ -5,6 +5,12 @@ writes it again for book.css, which draws it alike. The tags of the drawing, whi
 reads, are ``i`` for a box, ``var`` and ``b`` for a slanted or bold letter, and ``s``, ``u`` and
 ``q`` for the three spaces. ``tests/pages`` compare the position of each letter with KaTeX's own, in
 three engines.
+
+MathML alone, set by the browser in Latin Modern Math or STIX, was not as good in November 2026:
+Chromium 156 and WebKit 2.50 drew the brackets of a matrix larger than its rows, centred the lines
+of ``cases``, put ``cos`` close to its angle, and moved an arrow off its letter; Firefox 153 left
+space above and below each formula in STIX; and all three drew wide hats in Latin Modern. KaTeX's
+own HTML would give a page 1.8 times as many elements, and 2.3 to 2.6 times as many bytes.
 """
 
 import re
