@@ -31,7 +31,7 @@ from coursework.grading.grade import grade, regrade
 from coursework.grading.judging import judge as judging
 from coursework.grading.judging import marking, secret
 from coursework.grading.judging.cases import Contracts, case_by_rule, variants_of
-from coursework.grading.judging.contract import Contract
+from coursework.grading.judging.contract import Asked, Contract
 from coursework.grading.judging.journal import CUT, Journal
 from coursework.grading.judging.marking import questions_of
 from coursework.grading.record import Answer, Identity, Mark, Record, Remembered
@@ -135,6 +135,18 @@ def test_calls_that_are_mended_take_no_marks(begun, out, tmp_path):
     assert {mark.points for student, mark in marks_of(out, NAME).items() if student != "wrong"} == {
         2
     }
+
+
+def test_a_function_is_judged_by_the_calls_that_it_was_given():
+    def calling(*calls):
+        return Contract("Twice", "twice", 1, Question("function", calls=calls))
+
+    before = calling([1], [2], [3])
+    plain = to_plain(lambda x: 2 * x, before.question.calls)
+    kind, results, works = marking.in_calls_of(Asked(calling([3], [1]), before), plain)["value"]
+    assert [plain["nodes"][result[1]][1] for result in results] == ["6", "2"]
+    assert marking.in_calls_of(Asked(calling([3], [9]), before), plain) is None
+    assert marking.in_calls_of(Asked(before), plain) is plain
 
 
 def test_an_answer_is_reviewed_beside_the_question_of_its_own_student(begun, out):
@@ -274,6 +286,11 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
 # --- decisions ----------------------------------------------------------------------------------
 
 RECORD = Record("ann", "turns")
+
+
+def test_a_credit_is_a_share_of_the_points(tmp_path):
+    with pytest.raises(ValueError, match="from 0 to 1, and this is 2"):
+        Journal(tmp_path).add(RECORD, "turns/sum", 2)
 
 
 @pytest.mark.parametrize("left", [1, 20, -1])

@@ -4,6 +4,9 @@ import nbformat
 import pytest
 from course_by_commands import Course
 
+from coursework.grading.judging.journal import Journal
+from coursework.grading.store import Store
+
 pytestmark = pytest.mark.usefixtures("libraries_are_loaded_once")
 
 TOO_SHORT = "no idea, sorry"
@@ -53,6 +56,33 @@ def test_the_worth_of_a_question_changes(tmp_path):
     assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "16"}
     course.regrade("--yes")
     assert course.points() == {"ada": 24, "ben": 32}
+
+
+@pytest.mark.parametrize(
+    "policy, points, says",
+    [
+        ("never-lower", {"ada": 16, "ben": 8}, ""),
+        ("full-credit", {"ada": 16, "ben": 16}, "There was a fault in this question"),
+        ("void", {"ada": 8, "ben": 8}, "This question does not count."),
+    ],
+)
+def test_a_policy_says_what_a_mended_question_may_do(tmp_path, policy, points, says):
+    course = Course(tmp_path, hw2={"load": (7, 8), "arm": (2, 8)})
+    course.hands_in("ada", "hw2")
+    course.hands_in("ben", "hw2", load=3)
+    course.grade()
+    course.change("hw2", load=(9, 8))
+    term = f'time-zone = "UTC"\n[assignments.hw2]\n[regrading]\n{policy} = ["hw2/load"]\n'
+    (course.marks / "term.toml").write_text(term)
+    course.regrade("--yes")
+    assert course.points() == points
+    assert says in (course.marks / "feedback" / "ben" / "hw2.html").read_text()
+    assert "Marks changed: 0." in course.regrade()
+    # A person's decision stands above a policy, but a question that is void counts for nobody.
+    record = Store(course.marks).read("ada", "hw2")
+    Journal(course.marks).add(record, "hw2/load", 0.5, who="Ann")
+    course.regrade("--yes")
+    assert course.points()["ada"] == (8 if policy == "void" else 12)
 
 
 def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
