@@ -178,7 +178,14 @@ def as_formula(plain: Plain | None) -> tuple[Markup, bool]:
 
 
 def _asked(contract: Contract, figures: str) -> Asked:
-    text = "\n\n".join([figures, text_of(contract.variant)])
+    variant = contract.variant
+    # What only a cell of the notebook shows stands in no text.
+    only_in_cells = (
+        f"`{name} = {value}`"
+        for name, value in variant.given.items()
+        if isinstance(value, list) and name not in variant.shown and not variant.picture
+    )
+    text = "\n\n".join([figures, text_of(variant), *only_in_cells])
     right, wide = as_formula(contract.plain)
     return Asked(
         contract.title,
