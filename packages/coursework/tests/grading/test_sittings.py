@@ -4,7 +4,11 @@ from trial_course import SETUP, write_source
 
 from coursework.grading import sitting as sittings
 
-DRAWN = "### BEGIN VARIANTS\nbench = draw('trial/sum', count=2, numbers=[[31, 41], [59, 26]])\n### END VARIANTS"
+DRAWN = (
+    "### BEGIN VARIANTS\n"
+    "bench = draw('trial/sum', count=2, numbers=[[31, 41], [59, 26]])\n"
+    "### END VARIANTS"
+)
 ANSWERED = "numbers = bench.numbers\n### BEGIN SOLUTION\ntotal = sum(numbers)\n### END SOLUTION"
 ASKED = (
     "check('trial/sum', total)\n### BEGIN HIDDEN TESTS\n"
