@@ -340,7 +340,7 @@ def test_who_works_is_said_once_for_pages_and_notebooks(browser, site):
     # One small file has all questions of the exercises in the variant.
     assert len(sealed) == 1 and sealed[0] < 25_000
     interface.write(first, f"from coursework import student, variant\nstudent('{ben}')")
-    assert f"You are {ben}; until now you were {ada}." in interface.run(first)[0]["text"]
+    assert f"You are {ben} now, and were {ada} before, " in interface.run(first)[0]["text"]
     page.reload()
     page.wait_for_selector(f".live-known:has-text('the numbers of {ben}')")
     assert interface.outside() == [] and interface.errors == []

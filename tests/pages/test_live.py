@@ -765,7 +765,7 @@ def test_page_shows_a_students_own_numbers_and_fetches_one_small_file(context, s
     assert run(again) == mine
     again.write(1, signed(codes[0], students[0]))
     assert run(again) == everybodys
-    assert f"You are {students[0]}; until now you were {students[own]}." in again.below(1)
+    assert f"You are {students[0]} now, and were {students[own]} before, " in again.below(1)
 
 
 @pytest.mark.long

@@ -235,7 +235,7 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
             )
             said = repr(check_module.progress())
             assert ("is right" in said) == (own in right), (steps, step, said)
-            assert ("not with yours yet" in said) == bool(right - {own} and own not in right), (
+            assert ("not yet with yours" in said) == bool(right - {own} and own not in right), (
                 steps,
                 step,
                 said,

@@ -307,8 +307,8 @@ def test_the_hints_of_the_last_mistake_come_first(desk):
 # --- help ---------------------------------------------------------------------------------------
 
 MORE = (
-    "{} more can be earned: hand in what you have to `check`, even if you are not sure of it. Each "
-    "different answer counts; pressing Run again does not."
+    "You can earn {} more. Pass what you have to `check`, even if you are not sure of it. "
+    "Each different answer counts, but running the same one again does not."
 )
 
 
@@ -355,7 +355,10 @@ def test_a_code_opens_the_worked_solution(desk):
     for code in ("abc", "efgh"):
         reply = check_module.worked_solution(ARM, code)
         assert (reply.question, reply.outcome, reply.note) == (ARM, "hints", "")
-        assert reply.messages[0].startswith("This code opens no solution.") and not reply.solution
+        assert (
+            reply.messages[0].startswith("This code does not open a solution.")
+            and not reply.solution
+        )
     assert entry_of() == Entry()
     reply = check_module.worked_solution(ARM, "ab cd")
     assert (reply.question, reply.outcome, reply.note) == (ARM, "hints", "")
@@ -368,7 +371,7 @@ def test_a_code_opens_the_worked_solution(desk):
 def offered(notice, order):
     name = SAW + ("/sibling", "/sibling-2")[order]
     return (
-        f"You had help: {notice}. For practice, solve it with other numbers and without help: "
+        f"You had help: {notice}. For practice, solve it with other numbers and without help. "
         f"`variant('{name}')` shows them, and `check('{name}', ...)` checks your answer."
     )
 
@@ -388,7 +391,7 @@ def test_who_had_help_is_offered_a_sibling(desk):
     ]
     assert last.sibling == ""
     Progress.read().put({f"{SAW}/sibling": Entry("wrong", help="of another kind")})
-    assert "You had help: it was shown." in check(f"{SAW}/sibling", "right").messages[1]
+    assert "You had help: we showed it." in check(f"{SAW}/sibling", "right").messages[1]
 
 
 def test_who_had_none_is_told_so_at_a_sibling(desk):
@@ -412,9 +415,9 @@ def put(**entries):
 def test_the_progress_of_who_has_begun_nothing(desk):
     reply = check_module.progress()
     assert (reply.question, reply.outcome, reply.note) == ("progress", "hints", "")
-    assert reply.messages == ["Nothing has been checked in this folder yet."]
+    assert reply.messages == ["You have not checked anything in this folder yet."]
     put(sibling=Entry("correct"), words=Entry(after=((ARM, Place(1, "k")),)))
-    assert check_module.progress().messages == ["Nothing has been checked in this folder yet."]
+    assert check_module.progress().messages == ["You have not checked anything in this folder yet."]
 
 
 def test_the_progress_with_one_question(desk):
@@ -437,14 +440,14 @@ def test_the_progress_with_several_questions(desk):
     put(saw=Entry("correct", help="hint"), words=Entry("recorded"), gone=Entry("wrong"))
     lines = check_module.progress().messages
     assert lines == [
-        "1 of the 3 questions that you have tried is right.",
+        "You have tried 3 questions, of which 1 is right.",
         "*gone*: 0 of 1 right, 0 of 1 points. Still open: `gone/a`.",
         f"*levers*: 1 of 2 right, 3 of 5 points. Still open: `{ARM}`.",
-        f"*texts*: 0 of 1 right, 0 of 4 points. Taken down, and marked later: `{WORDS}`.",
+        f"*texts*: 0 of 1 right, 0 of 4 points. Recorded, and marked later: `{WORDS}`.",
     ]
     put(gone=Entry("correct", help="hint"), arm=Entry("correct", help="hint"))
     lines = check_module.progress().messages
-    assert lines[0] == "3 of the 4 questions that you have tried are right."
+    assert lines[0] == "You have tried 4 questions, of which 3 are right."
     assert lines[2] == "*levers*: 2 of 2 right, 5 of 5 points."
     put(saw=Entry("wrong"))
     lines = check_module.progress().messages
@@ -463,7 +466,7 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
     assert looked(mistake="half", mistake_at=desk.now - 2.9 * DAY) == []
     assert looked(mistake="half") == looked(mistake_at=desk.now - 5 * DAY) == []
     assert looked(mistake="half", mistake_at=desk.now - 3.5 * DAY) == [
-        f"Worth another look, since you made a mistake there: `{ARM}` (3 days ago: half)."
+        f"Look at these again, where you made a mistake: `{ARM}` (3 days ago: half)."
     ]
     put(saw=Entry("wrong", mistake="double", mistake_at=desk.now - 4 * DAY))
     [line] = check_module.progress().messages[2:]
@@ -473,7 +476,7 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
 def test_what_is_right_with_other_numbers_is_told_apart(desk):
     put(saw=Entry("correct", variant=1, numbers="one", whose="bob"), arm=Entry("correct"))
     desk.numbers = {SAW: (2, "two")}
-    messages = [f"Right with other numbers, and not with yours yet: `{SAW}`."]
+    messages = [f"Right with other numbers, but not yet with yours: `{SAW}`."]
     assert check_module.progress().messages[2:] == messages
     put(arm=Entry("correct", others=(Entry("correct", variant=1, numbers="one"),)))
     assert check_module.progress().messages[2:] == messages
@@ -483,7 +486,7 @@ def test_what_is_right_with_other_numbers_is_told_apart(desk):
     assert check_module.progress().messages[0] == "The one question that you have tried is right."
     put(saw=Entry("wrong", variant=1, numbers="one"))
     desk.numbers = {SAW: (2, "two")}
-    assert check_module.progress().messages == ["Nothing has been checked in this folder yet."]
+    assert check_module.progress().messages == ["You have not checked anything in this folder yet."]
     check(SAW, "half")
     assert (
         entry_of(SAW).variant == 2

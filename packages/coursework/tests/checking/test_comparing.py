@@ -70,9 +70,9 @@ NEARLY = (
     "answer."
 )
 BLANK = "Put your answer in place of the `...` and run the cells again."
-STRAY = "The answer contains `y`; this question has the symbols `x`."
+STRAY = "The answer contains `y`, but this question has the symbols `x`."
 ALL_WRONG = questions.kind_of_values(EXACT).wrong
-NUMBERS_ONLY = "The question is asked with `x`, but your answer contains only numbers."
+NUMBERS_ONLY = "The question uses `x`, but your answer contains only numbers."
 FORM = "Otherwise: " + ALL_WRONG[:1].lower() + ALL_WRONG[1:]
 
 
@@ -118,7 +118,7 @@ def test_a_symbol_that_is_missing_is_named():
     assert questions.what_can_be_said(asked, plain) == f"{wrong} It does not contain `z`."
     holds = questions.what_can_be_said(asked, to_plain(sm.Symbol("z")))
     assert holds == f"{wrong} It does not contain `x` and no `phi`."
-    only = "The question is asked with `x`, `phi`, `z`, but your answer contains only numbers."
+    only = "The question uses `x`, `phi`, `z`, but your answer contains only numbers."
     assert questions.what_can_be_said(asked, to_plain(3)) == only
 
 
@@ -230,7 +230,7 @@ def test_numbers_that_nearly_fit_together_may_be_rounded():
         reply_to(unit, {}, answer) for answer in [[sm.sqrt(3) / 3] * 3, [0.577] * 3, [0.5] * 3]
     )
     assert right[1] == "" and coarse[:2] == wrong[:2] == ("invalid", "not unit length")
-    assert coarse[2].startswith("The numbers nearly fit together. If you rounded, ")
+    assert coarse[2].startswith("The numbers nearly agree. If you rounded, ")
     assert "0.999" in coarse[3]
     assert len(wrong) == 3 and wrong[2].endswith("this one has length 0.866.")
     exact = Question("vector", salt="s", unit_vector=True)
@@ -348,7 +348,7 @@ def test_a_mistake_is_found_beside_a_slip():
 def test_in_an_exam_only_the_form_is_looked_at():
     unit = Question("vector", salt="s", unit_vector=True)
     assert reply_to(unit, None, [1, 0, 0])[:2] == ("recorded", "")
-    assert "nothing that you have tells whether it is right" in reply_to(unit, None, [1, 0, 0])[2]
+    assert "nothing in your files tells whether it is right" in reply_to(unit, None, [1, 0, 0])[2]
     assert reply_to(unit, None, [1, 1, 0])[:2] == ("invalid", "not unit length")
     sealed = Sealed(Question("vector", salt="s", exam=True))
     reply = judge("a/b", sealed, to_plain([1, 1, 0]))
@@ -371,7 +371,7 @@ def test_words_and_what_a_person_reads():
         reply = compare("a/b", text, to_plain(answer), {}.get)
         assert (reply.question, reply.answer) == ("a/b", "")
         assert (reply.outcome, reply.note) == ("undecided", "for a person")
-        assert reply.messages == [f"A person will read this text of {words} and decide."]
+        assert reply.messages == [f"Somebody will read this answer of {words} and mark it."]
 
 
 # ---- what is sealed ----------------------------------------------------------------------------
@@ -557,7 +557,7 @@ LONG = "levers/" + "a" * 90
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        (7, "is a string and comes first: .* This is of type `int`"),
+        (7, "first, as a string: .* Yours is of type `int`"),
         (type("T" * 50, (), {})(), f"of type `{'T' * 40}`"),
         ("levers/arm/sibling-3", "-3' .* the siblings of 'levers/arm' are levers/arm/sibling and "),
         ("levers/plain/sibling", "does not exist: 'levers/plain' has no other numbers"),
@@ -579,13 +579,13 @@ def test_a_name_that_is_none_is_explained(folder, name, words):
 
 def test_files_that_are_not_there_or_too_new_are_explained(folder, tmp_path, monkeypatch):
     for name in ("later/a", "later"):
-        with pytest.raises(RuntimeError, match="of later are of format 5, .* reads format 4"):
+        with pytest.raises(RuntimeError, match="of later have format 5, .* which reads format 4"):
             find_question(name, "")
     (folder / "bad.json").write_text('{"format": "4", "questions": {}}')
     with pytest.raises(RuntimeError, match="^The sealed questions of bad: 'format' should be"):
         find_question("bad/a", "")
     monkeypatch.chdir(folder)
-    with pytest.raises(NoSuchQuestion, match="^There is no .*, and no other: ") as error:
+    with pytest.raises(NoSuchQuestion, match="^We cannot find .* or any other question: ") as error:
         find_question(LONG, "")
     assert f"(in {folder})" in str(error.value) and f"'{LONG[:80]}'" in str(error.value)
     assert questions.places() == []

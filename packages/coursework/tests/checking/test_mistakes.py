@@ -235,7 +235,7 @@ def test_one_of_the_twenty_is_the_most_that_has_a_word():
 
 
 def test_a_frame_is_no_matrix_that_mistakes_are_made_of():
-    with pytest.raises(TypeError, match="^A reference frame is the right answer here"):
+    with pytest.raises(TypeError, match="^The right answer is a reference frame"):
         as_matrix(ReferenceFrame("A"))
 
 

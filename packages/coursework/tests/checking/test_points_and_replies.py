@@ -262,6 +262,6 @@ def test_what_is_sealed_is_fetched_from_where_the_pages_lie(status, tmp_path, mo
         why = "the server says 404" if status else "no network"
         with pytest.raises(RuntimeError) as error:
             fetched(tmp_path / "where", "one.json")
-        message = f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
+        message = f"We could not fetch your numbers from {address} ({why}). Are you online?"
         assert str(error.value) == message
     assert asked == [("GET", address, False)]

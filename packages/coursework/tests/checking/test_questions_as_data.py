@@ -69,7 +69,7 @@ def test_what_is_empty_is_left_out():
 
 @pytest.mark.parametrize("name", [*OF_QUESTION, *OF_VARIANT, *OF_SEALED])
 def test_what_a_field_cannot_be_is_said_with_its_name(name):
-    with pytest.raises(Misread, match=f"^here: '{name}' should be .* and is <class 'int'>"):
+    with pytest.raises(Misread, match=f"^here: '{name}' should be .* not <class 'int'>"):
         Sealed.from_json(WHOLE | {name: int}, "here")
     for inner in (("frames", [1]), ("unit", [[1]]), ("calls", [1]), ("shape", [1.5, 2])):
         with pytest.raises(Misread, match=f"^here: '{inner[0]}' should be"):
@@ -80,7 +80,7 @@ def test_a_question_and_what_is_known_of_it_say_where_they_stand():
     with pytest.raises(Misread, match="^a question should be an object with 'kind'"):
         Question.from_json({})
     for reader in (Question, Sealed, KnownAnswer, Locker):
-        with pytest.raises(Misread, match="^here should be an object, and is 7"):
+        with pytest.raises(Misread, match="^here should be an object, not 7"):
             reader.from_json(7, "here")
 
 
@@ -113,16 +113,16 @@ def test_what_a_locker_holds_is_read_and_written():
         ({"cases": [{"notes": []}]}, "here: 'cases' should be an object with 'outcome'"),
         ({"cases": [KNOWN | {"outcome": "wrong"}]}, "here: 'cases': 'outcome' should be one of"),
         ({"cases": [KNOWN | {"notes": [["a"]]}]}, "here: 'cases': 'notes' should be a list of two"),
-        ({"cases": [KNOWN | {"notes": [[1, {}]]}]}, "here: 'cases': 'notes' should be a text"),
+        ({"cases": [KNOWN | {"notes": [[1, {}]]}]}, "here: 'cases': 'notes' should be a string"),
         ({"cases": [KNOWN | {"notes": [["a", 1]]}]}, "here: 'cases': 'notes' should be an object"),
-        ({"cases": [KNOWN | {"hints": [1]}]}, "here: 'cases': 'hints' should be a text"),
-        ({"cases": [KNOWN | {"numbers": [1]}]}, "here: 'cases': 'numbers' should be a text"),
+        ({"cases": [KNOWN | {"hints": [1]}]}, "here: 'cases': 'hints' should be a string"),
+        ({"cases": [KNOWN | {"numbers": [1]}]}, "here: 'cases': 'numbers' should be a string"),
         ({"after": {"a/b": 1}}, "here: 'after': 'a/b' should be a list"),
-        ({"solution": 1}, "here: 'solution' should be a page with its key, and is 1"),
-        ({"solution": [1]}, "here: 'solution' should be a page with its key, and is [1]"),
+        ({"solution": 1}, "here: 'solution' should be a page with its key, not 1"),
+        ({"solution": [1]}, "here: 'solution' should be a page with its key, not [1]"),
         ({"solution": [1, "a", "b", "c"]}, "here: 'solution' should be a page with its key"),
         ({"solution": ["1", "a"]}, "here: 'solution' should be a whole number"),
-        ({"solution": [1, 2]}, "here: 'solution' should be a text, and is 2"),
+        ({"solution": [1, 2]}, "here: 'solution' should be a string, not 2"),
     ],
 )
 def test_what_a_locker_cannot_hold_is_said(about, message):

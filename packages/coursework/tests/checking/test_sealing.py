@@ -182,7 +182,7 @@ def test_a_picture_stands_in_the_text_and_its_words_in_plain_text():
     assert shown_variant.arm == shown_variant["arm"] == 2 and not hasattr(shown_variant, "_leg")
     with pytest.raises(AttributeError, match="^_leg$"):
         shown_variant.__getattr__("_leg")
-    with pytest.raises(AttributeError, match="gives `arm`, `_leg`; `force` is not among them"):
+    with pytest.raises(AttributeError, match="gives `arm`, `_leg`, but not `force`"):
         shown_variant.__getattr__("force")
 
 

@@ -77,9 +77,9 @@ def test_what_becomes_of_each_file(work, tmp_path):
     install = f"Now run this:\n\n    {sys.executable} -m pip install {work / NEW_WHEEL}\n"
     assert update(archive, work) == [
         "replaced    README.txt, which you had not changed",
-        "kept yours  kept.txt; nothing in it is new",
+        "kept yours  kept.txt, in which nothing is new",
         f"replaced    {OLD_WHEEL}",
-        "kept yours  mine.ipynb; the new one is mine-new-1.ipynb",
+        "kept yours  mine.ipynb, and put the new one in mine-new-1.ipynb",
         "added       new.ipynb",
         "replaced    old.ipynb, which you had not changed",
         "changed     requirements.txt",
@@ -88,7 +88,7 @@ def test_what_becomes_of_each_file(work, tmp_path):
         "replaced    sealed/a.json",
         "the same    sealed/b.json",
         "added       sealed/variants/a-1.json",
-        "kept yours  unknown.txt; the new one is unknown-new-1.txt",
+        "kept yours  unknown.txt, and put the new one in unknown-new-1.txt",
         install,
     ]
     now = contents(work)
@@ -113,7 +113,7 @@ def test_what_is_put_beside_takes_no_other_files_place(work, tmp_path):
         line = update(archive, work)[0]
         # What was put there before and nobody has changed gives way; what somebody changed stays.
         place = 1 if number < 3 else 2
-        assert line == f"kept yours  a.txt; the new one is a-new-{place}.txt"
+        assert line == f"kept yours  a.txt, and put the new one in a-new-{place}.txt"
         assert (work / f"a-new-{place}.txt").read_bytes() == data
         if number == 2:
             (work / "a-new-1.txt").write_bytes(b"mine, too")
@@ -140,21 +140,21 @@ def test_an_archive_without_a_folder_and_the_folder_where_one_is(work, tmp_path,
     [
         (
             lambda path: None,
-            "new.zip does not exist .the current folder is .*as you have downloaded it",
+            "new.zip does not exist .the current folder is .*Put the downloaded archive there",
         ),
-        (lambda path: path.mkdir(), "new.zip is a folder.*as you have downloaded it"),
+        (lambda path: path.mkdir(), "new.zip is a folder.*Put the downloaded archive there"),
         (
             lambda path: path.write_text("<html>"),
-            "new.zip is not a complete zip archive.*once more",
+            "new.zip is not a complete zip archive.*Download it again",
         ),
-        (lambda path: zipped(path, {"a.txt": b""}), "contains no notebook.*once more"),
+        (lambda path: zipped(path, {"a.txt": b""}), "contains no notebook.*Download it again"),
         (
             lambda path: zipped(path, {"a.ipynb": b"", "levers-1.8-py3-none-any.whl": b""}),
-            "older than this folder: it has version 1.8 of the package, and here is 1.10.",
+            "older than this folder: it has version 1.8 of the package, but the folder has 1.10.",
         ),
         (
             lambda path: zipped(path, {"a.ipynb": b"", "levers-1.9.dev7-py3-none-any.whl": b""}),
-            "it has version 1.9.dev7 .* here is 1.10.",
+            "it has version 1.9.dev7 .* the folder has 1.10.",
         ),
     ],
 )
@@ -183,13 +183,13 @@ def test_an_archive_of_before_takes_no_newer_ones_place(work, tmp_path):
     update(first, work)
     assert update(second, work)[0].startswith("replaced")
     before = contents(work)
-    with pytest.raises(ArchiveRefused, match="0.zip was in this folder before, and a newer one"):
+    with pytest.raises(ArchiveRefused, match="from .*0.zip, and from a newer archive since"):
         update(first, work)
     assert contents(work) == before
     assert [line[:8] for line in update(second, work)[:1]] == ["the same"]
     assert contents(work) == before and update(third, work)[0].startswith("replaced")
     for older in (first, second):
-        with pytest.raises(ArchiveRefused, match="was in this folder before"):
+        with pytest.raises(ArchiveRefused, match="You have already updated this folder"):
             update(older, work)
     with pytest.raises(ArchiveRefused, match="There is no folder .*elsewhere"):
         update(third, tmp_path / "elsewhere")
@@ -200,7 +200,9 @@ def test_a_manifest_that_cannot_be_read_knows_nothing_and_a_newer_one_refuses(wo
     for text in ("no JSON", "[]", '{"format": 1, "files": 7}', '{"format": "1", "files": {}}'):
         (work / "a.ipynb").write_bytes(notebook("one"))
         (work / "manifest.json").write_text(text)
-        assert update(archive, work) == ["kept yours  a.ipynb; the new one is a-new-1.ipynb"]
+        assert update(archive, work) == [
+            "kept yours  a.ipynb, and put the new one in a-new-1.ipynb"
+        ]
     (work / "manifest.json").write_text('{"format": 2, "files": {}}')
     with pytest.raises(ArchiveRefused, match="^manifest.json .* has format 2, .* reads 1[.]"):
         update(archive, work)

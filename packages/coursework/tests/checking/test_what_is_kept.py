@@ -159,14 +159,12 @@ def test_who_works_here_is_said_once(folder, capsys):
     monkey = identity._identity
     identity.student()
     assert identity.identity() == monkey
-    assert capsys.readouterr().out.startswith(
-        "You are ann ä, as you said before. The numbers below are yours.\n"
-    )
+    assert capsys.readouterr().out.startswith("You are still ann ä. The numbers below are yours.\n")
     # The same name, stored in other characters, changes nothing; another name is told.
     identity.student("Ann A\u0308\u200b")
-    assert "until now" not in capsys.readouterr().out and identity.identity() == monkey
+    assert "before" not in capsys.readouterr().out and identity.identity() == monkey
     identity.student("Anne Ä")
-    assert "You are anne ä; until now you were ann ä." in capsys.readouterr().out
+    assert "You are anne ä now, and were ann ä before, " in capsys.readouterr().out
     # Another notebook of the folder that asks nobody works with the same numbers.
     identity._identity = None
     assert identity.identity() == "anne ä"
@@ -202,7 +200,7 @@ MAKES = {
 @pytest.mark.parametrize(
     ("reader", "right", "wrong", "expected"),
     [
-        (fields.text, ["", "a"], [1, None, ["a"]], "a text"),
+        (fields.text, ["", "a"], [1, None, ["a"]], "a string"),
         (fields.number, [1, 2.5, 0], ["1", True, None], "a number"),
         (fields.whole, [1, 0], [1.0, True, "1"], "a whole number"),
         (fields.truth, [True, False], [1, 0, "true"], "true or false"),
@@ -220,7 +218,7 @@ def test_a_reader_gives_what_it_is_for_and_refuses_the_rest(reader, right, wrong
     for value in wrong:
         with pytest.raises(Misread) as error:
             reader(value, "here")
-        assert str(error.value) == f"here should be {expected}, and is {value!r}."
+        assert str(error.value) == f"here should be {expected}, not {value!r}."
 
 
 @pytest.mark.parametrize(
@@ -241,7 +239,7 @@ def test_what_is_wrong_within_is_said_where_it_stands(reader, value, where):
 
 def test_a_long_value_is_shown_in_part():
     for length, shown in ((58, repr("a" * 58)), (59, "'" + "a" * 59 + "…")):
-        assert str(Misread("here", "short", "a" * length)).endswith(f"and is {shown}.")
+        assert str(Misread("here", "short", "a" * length)).endswith(f"not {shown}.")
 
 
 def test_fields_are_there_or_may_be_missing():
@@ -249,10 +247,10 @@ def test_fields_are_there_or_may_be_missing():
     assert about.get("a", fields.whole) == 1 == about.maybe("a", fields.whole)
     assert about.maybe("b", fields.whole) is None is about.maybe("d", fields.whole)
     assert about.beside(["a", "d"]) == {"b": None, "c": "x"}
-    with pytest.raises(Misread, match="^here should be an object with 'd', and is 'a, b, c'.$"):
+    with pytest.raises(Misread, match="^here should be an object with 'd', not 'a, b, c'.$"):
         about.get("d", fields.whole)
     for read in (about.get, about.maybe):
-        with pytest.raises(Misread, match="^here: 'c' should be a whole number, and is 'x'.$"):
+        with pytest.raises(Misread, match="^here: 'c' should be a whole number, not 'x'.$"):
             read("c", fields.whole)
     with pytest.raises(Misread, match="^here should be an object"):
         Fields([], "here")

@@ -238,7 +238,7 @@ def reply_to(authored, answer):
         (
             GIMBAL.subs(theta, sm.Symbol("w")),
             "stray symbol",
-            "contains w; this question has the symbols theta, alpha, varphi",
+            "contains w, but this question has the symbols theta, alpha, varphi",
         ),
         (GIMBAL[:2, :], "shape", "a matrix of 2 × 3"),
         ([list(GIMBAL)], "shape", "one row with 9"),
@@ -253,7 +253,7 @@ def reply_to(authored, answer):
         (
             simple_dcm("x", sm.Rational(1, 3)),
             "",
-            "is asked with theta, alpha, varphi, but your answer contains only numbers",
+            "question uses theta, alpha, varphi, but your answer contains only numbers",
         ),
         (..., "", "in place of"),
         (None, "", "in place of"),
@@ -352,7 +352,7 @@ THREE, MATRIX = (
         ),
         ("a vector", "[1, 2, 0]", THREE + "a string: write it without quotation marks."),
         ("a number", "0,5", "this is a string: write it without quotation marks."),
-        ("a vector", [theta, ..., ...], THREE + "a list that is still blank in part."),
+        ("a vector", [theta, ..., ...], THREE + "a list with blanks."),
         (
             "a vector",
             [theta, 1, [1, 2]],
@@ -379,8 +379,8 @@ THREE, MATRIX = (
             (GIMBAL, GIMBAL, GIMBAL),
             "3 entries, one of which is a matrix of 3 × 3.",
         ),
-        ("words", ["first", None, "first"], "this is a list that is still blank in part."),
-        ("truth values", [True] * 7 + [None], "this is a list that is still blank in part."),
+        ("words", ["first", None, "first"], "this is a list with blanks."),
+        ("truth values", [True] * 7 + [None], "this is a list with blanks."),
         (
             "truth values",
             [True] * 7 + [3],
@@ -683,7 +683,7 @@ def test_each_different_answer_earns_one_more_hint_and_pressing_run_again_does_n
     assert shown(GIMBAL.T) == ["Hint: Look at the rows.", "Hint: Whose unit vectors are they?"]
     shown_hint = repr(check_module.hint("trial/gimbal"))
     assert (
-        "Whose" in shown_hint and "Begin" not in shown_hint and "1 more can be earned" in shown_hint
+        "Whose" in shown_hint and "Begin" not in shown_hint and "You can earn 1 more" in shown_hint
     )
     assert not shown_hint.startswith("Not attempted")
 
@@ -705,7 +705,7 @@ def test_no_hint_that_is_not_yet_earned_stands_in_clear_on_the_disk(student, tmp
 def test_who_gives_up_sees_the_worked_solution_with_the_code_of_the_instructor(student):
     authored = make(solution="Take $x$ **first**.")
     student(authored)
-    assert "opens no solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
+    assert "does not open a solution" in repr(check_module.worked_solution("trial/gimbal", "ABCD"))
     sealed = authored.sealed("PYGG-ZGV7-G94A")
     check_module.find_question = lambda name, student: sealed
     assert "first" in check_module.worked_solution("trial/gimbal", "pygg zgv7 g94a").solution
@@ -727,7 +727,7 @@ def test_progress_is_kept_beside_the_notebook_and_right_stays_right(student, tmp
     assert [path.name for path in tmp_path.rglob("*.json")] == ["progress.json"]
     shown_progress = repr(check_module.progress())
     assert (
-        "1 of the 2" in shown_progress
+        "2 questions, of which 1 is right" in shown_progress
         and "trial/s" in shown_progress
         and "Still open: trial/s" in shown_progress
     )

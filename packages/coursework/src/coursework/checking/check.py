@@ -45,7 +45,8 @@ LONGEST_SHOWN = 1_500
 # The message in place of a verdict on a value that is no longer in the notebook.
 OUTDATED = (
     "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
-    "an earlier value. We checked nothing: correct that cell, run it, then run this check again."
+    "an earlier value. We checked nothing. Correct that cell, run it, and then run this check "
+    "again."
 )
 
 watch()
@@ -148,9 +149,8 @@ def hint(name: str) -> Reply:
         lines = ["There is no hint yet."]
     if left:
         lines.append(
-            f"{left} more can be earned: hand in what you have to `check`, even if you are not "
-            "sure of it. "
-            "Each different answer counts; pressing Run again does not."
+            f"You can earn {left} more. Pass what you have to `check`, even if you are not sure "
+            "of it. Each different answer counts, but running the same one again does not."
         )
     return Reply(name, "hints", "", lines)
 
@@ -165,7 +165,10 @@ def worked_solution(name: str, code: str) -> Reply:
             name,
             "hints",
             "",
-            ["This code opens no solution. Your instructor gives the code out when it is time."],
+            [
+                "This code does not open a solution. Your instructor will give you the code when "
+                "it is time."
+            ],
         )
     entry = _note_help(name, student, "solution")
     said = ["Read it, close it, and write it out for yourself."]
@@ -194,13 +197,13 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
     if not help_had:
         reply.messages += ["Solved without help."] if order else []
     elif siblings:
-        notice = f"You had help: {HELP.get(help_had, 'it was shown')}."
+        notice = f"You had help: {HELP.get(help_had, 'we showed it')}."
         if order == len(siblings):
             reply.messages.append(f"{notice} There is no further sibling.")
             return
         reply.sibling = siblings[order]
         reply.messages.append(
-            f"{notice} For practice, solve it with other numbers and without help: "
+            f"{notice} For practice, solve it with other numbers and without help. "
             f"`variant('{reply.sibling}')` shows them, and `check('{reply.sibling}', ...)` checks "
             "your answer."
         )
@@ -258,11 +261,11 @@ def progress() -> Reply:
     others = _right_for_others(stored, student)
     if not record:
         return Reply(
-            "progress", "hints", "", others or ["Nothing has been checked in this folder yet."]
+            "progress", "hints", "", others or ["You have not checked anything in this folder yet."]
         )
     right = {name for name, entry in record.items() if entry.outcome == "correct"}
     are = "is" if len(right) == 1 else "are"
-    lines = [f"{len(right)} of the {len(record)} questions that you have tried {are} right."]
+    lines = [f"You have tried {len(record)} questions, of which {len(right)} {are} right."]
     if len(record) == 1:
         lines = [
             f"The one question that you have tried is {'right' if right else 'not right yet'}."
@@ -293,8 +296,7 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
     )
     if taken_down:
         line += (
-            " Taken down, and marked later: "
-            f"{', '.join(f'`{name}`' for name in sorted(taken_down))}."
+            f" Recorded, and marked later: {', '.join(f'`{name}`' for name in sorted(taken_down))}."
         )
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
@@ -308,7 +310,7 @@ def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
         and entry.mistake
     ]
     return (
-        [f"Worth another look, since you made a mistake there: {', '.join(reminders)}."]
+        [f"Look at these again, where you made a mistake: {', '.join(reminders)}."]
         if reminders
         else []
     )
@@ -323,7 +325,7 @@ def _right_for_others(progress: Progress, student: str) -> list[str]:
         and any(variant_entry.outcome == "correct" for variant_entry in entry.others)
     ]
     return (
-        [f"Right with other numbers, and not with yours yet: {', '.join(names)}."] if names else []
+        [f"Right with other numbers, but not yet with yours: {', '.join(names)}."] if names else []
     )
 
 

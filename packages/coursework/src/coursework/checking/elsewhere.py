@@ -18,6 +18,4 @@ def fetched(file: Traversable, name: str) -> str:
         why = f"the server says {request.status}"
     except Exception as error:  # the browser's error without a network
         why = str(error)
-    raise RuntimeError(
-        f"Your numbers could not be fetched from {address} ({why}). Is there a network?"
-    )
+    raise RuntimeError(f"We could not fetch your numbers from {address} ({why}). Are you online?")

@@ -70,7 +70,7 @@ def values(nodes: Sequence[Node], point: Mapping[str, Number]) -> list[Result]:
         try:
             work += _work(node, results)
             if work > MOST_WORK:
-                raise TooLarge("it is made of too many operations")
+                raise TooLarge("it has too many operations")
             results.append(_value(node, results, point))
         except (Undefined, TooLarge, NotSupported, UnknownSymbol) as error:
             results.append(error)
@@ -92,7 +92,7 @@ def number(result: Result) -> Number:
     if isinstance(result, Exception):
         raise result
     if isinstance(result, bool):
-        raise NotSupported("a truth value in place of a number")
+        raise NotSupported("a Boolean instead of a number")
     return result
 
 
@@ -179,9 +179,9 @@ def _bounded(result: Number) -> Number:
     if MP.isinf(result):
         raise Undefined("infinite")
     if abs(result) > LARGEST:
-        raise TooLarge("the value is beyond 10^60")
+        raise TooLarge("the value is larger than 10^60")
     if result and MP.mag(result) < SMALLEST:
-        raise NotSupported("a number below 10^-1000000")
+        raise NotSupported("a number smaller than 10^-1000000")
     return result
 
 
@@ -196,7 +196,7 @@ def _first_that_holds(pairs: Iterable[Result]) -> Number:
             raise condition
         if condition:
             return number(value)
-    raise Undefined("no case of the Piecewise holds")
+    raise Undefined("no case of the Piecewise applies")
 
 
 def _ordered(argument: Result) -> Number:
@@ -215,14 +215,14 @@ def _power(base: Number, exponent: Number) -> Number:
         raise Undefined("division by zero")
     # Check this before evaluation: a power of a power of ten would fill the memory.
     if abs(exponent) > 10_000:
-        raise TooLarge("an exponent is beyond ten thousand")
+        raise TooLarge("an exponent larger than ten thousand")
     return MP.power(base, exponent)
 
 
 def _moderate(function: Callable[[Number], Number]) -> Callable[[Number], Number]:
     def bounded(argument: Number) -> Number:
         if abs(argument) > 10**6:
-            raise TooLarge("an argument is beyond a million")
+            raise TooLarge("an argument larger than a million")
         return function(argument)
 
     return bounded

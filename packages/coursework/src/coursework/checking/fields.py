@@ -23,12 +23,12 @@ class Misread(ValueError):
         shown = repr(value)
         if len(shown) > LONGEST_SHOWN:
             shown = f"{shown[:LONGEST_SHOWN]}…"
-        super().__init__(f"{where} should be {expected}, and is {shown}.")
+        super().__init__(f"{where} should be {expected}, not {shown}.")
 
 
 def text(value: object, where: str) -> str:
     if not isinstance(value, str):
-        raise Misread(where, "a text", value)
+        raise Misread(where, "a string", value)
     return value
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 KEPT = Path(".coursework", "me.txt")
 # The message if nobody has given an ID.
 FORGOTTEN = (
-    "You have the default numbers. For credit, put your ID into student('...') and run this cell "
+    "You have the default numbers. For credit, put your ID in student('...') and run this cell "
     "again."
 )
 # The placeholder for an ID in notebooks that leave it to the student.
@@ -38,11 +38,11 @@ def student(identity: str = "") -> None:
     _identity, before = plain_identity("" if identity == PLACEHOLDER else identity), _kept()
     if not _identity and before:
         _identity = before
-        print(f"You are {before}, as you said before. The numbers below are yours.")
+        print(f"You are still {before}. The numbers below are yours.")
     elif before not in ("", _identity):
         print(
-            f"You are {_identity}; until now you were {before}. Your numbers change with that; "
-            "what you have solved before stays written down."
+            f"You are {_identity} now, and were {before} before, so your numbers have changed. We "
+            "keep the record of what you solved before."
         )
     else:
         print(f"You are {_identity}. The numbers below are yours." if _identity else FORGOTTEN)

@@ -88,7 +88,7 @@ def _describe(value: Value) -> str:
         "function": "a function",
         "frames": "a set of reference frames",
         "printed": "something printed",
-        "blank": "still blank in part",
+        "blank": "blank in part",
         "raised": "an error",
     }[kind]
 
@@ -96,7 +96,7 @@ def _describe(value: Value) -> str:
 def _holding(whole: Value, part: Value) -> str:
     """Describe a list of which one part has the wrong kind."""
     if is_blank(part):
-        return "a list that is still blank in part"
+        return "a list with blanks"
     if part[0] == "text":
         return "a list in which one entry is a string"
     return f"a list with {len(parts_of(whole))} entries, one of which is {_describe(part)}"
@@ -170,7 +170,7 @@ def _vector(question: Question, value: Value) -> list[int]:
         if frame not in by_frame(value):
             raise Fault(
                 "frame",
-                f"This vector is not connected with the frame `{frame}` that the question names.",
+                f"This vector is not connected with the question's frame `{frame}`.",
             )
         value = by_frame(value)[frame]
     return components(value, question.length or 3, expected)
@@ -246,7 +246,7 @@ def _choice(question: Question, plain: Plain) -> str:
     ]
     if not matches:
         raise Fault(
-            "shape", f"The answer is one of {listed(question.options)}; this is `{answer[:40]}`."
+            "shape", f"The answer must be one of {listed(question.options)}, not `{answer[:40]}`."
         )
     return matches[0]
 
@@ -282,8 +282,8 @@ def _words(question: Question, plain: Plain) -> str:
     if value[0] != "list" or len(parts_of(value)) != length:
         raise shape_fault(expected, value)
     if any(map(is_blank, parts_of(value))):
-        advice = ": `'none'` is a text, too" if "none" in options else ""
-        raise shape_fault(expected, f"a list that is still blank in part{advice}")
+        advice = ": `'none'` is a string too" if "none" in options else ""
+        raise shape_fault(expected, f"a list with blanks{advice}")
     return PARTS["words"].join(_choices(question, plain))
 
 
@@ -349,7 +349,7 @@ def _unit_vector_fault(question: Question, numbers: list[Number]) -> Fault | Non
         if abs(length - 1) > slack(question):
             return Fault(
                 "not unit length",
-                "The question asks for a unit vector; this one has length "
+                "The question asks for a unit vector, but this one has length "
                 f"{length_in_words(length)}.",
             )
     return None
@@ -363,9 +363,7 @@ def transposed(question: Question, numbers: list[Number]) -> list[Number] | None
     return [numbers[row * columns + column] for column in range(columns) for row in range(rows)]
 
 
-TRANSPOSED = {
-    "transposed": ("the matrix is transposed, and its transpose has another mistake.", transposed)
-}
+TRANSPOSED = {"transposed": ("the matrix is transposed, and it has another mistake.", transposed)}
 SEVERAL = "At least two of these are wrong."
 KINDS = {
     "expression": Kind(entries=_expression, mistakes=mistakes.of_expression),
@@ -382,30 +380,29 @@ KINDS = {
         slips=TRANSPOSED,
     ),
     "choice": Kind(
-        begin="Put each of the possibilities to the test on the simplest case that tells them "
-        "apart.",
+        begin="Test each possibility on the simplest case that distinguishes them.",
         text=_choice,
         needs=("options",),
     ),
     "words": Kind(
-        begin="Take them one by one, and begin with those that you are sure of. Find a test for "
-        "the others.",
+        begin="Take them one by one, starting with those that you are sure of. Find a test for the "
+        "others.",
         text=_words,
         needs=("options", "length"),
         wrong=SEVERAL,
         mistakes=mistakes.of_parts,
     ),
     "truth values": Kind(
-        begin="Look for an example that breaks a claim. Where there is none, look for the proof.",
+        begin="Look for an example that refutes a claim. If there is none, look for a proof.",
         text=_truths,
         needs=("length",),
         wrong=SEVERAL,
         mistakes=mistakes.of_parts,
     ),
     "measurement": Kind(
-        begin="Work with the units as with the numbers: what do the given ones make together?",
+        begin="Calculate with the units as with the numbers. What do the given units combine to?",
         entries=_measurement,
-        wrong="It is a number with a unit, but the number, the unit or both are wrong.",
+        wrong="This is a number with a unit, but the number, the unit or both are wrong.",
         public=scale_of,
         mistakes=mistakes.of_measurement,
         messages=mistakes.OF_MEASUREMENTS,
@@ -415,7 +412,7 @@ KINDS = {
         begin="Find the first and the last, then compare two at a time.",
         text=_order,
         needs=("options",),
-        wrong="The order is not right.",
+        wrong="The order is wrong.",
         mistakes=mistakes.of_order,
         messages=mistakes.OF_ORDERS,
     ),

@@ -52,13 +52,13 @@ def _only_the_transpose(question: Question) -> str:
 
 MESSAGES: dict[str, Callable[..., str]] = {
     "transposed": _only_the_transpose,
-    "in degrees": lambda question: "Your answer is in degrees; angles here are in radians.",
-    "in radians": lambda question: "Your answer is in radians; the question asks for degrees.",
+    "in degrees": lambda question: "Your answer is in degrees. Give angles in radians.",
+    "in radians": lambda question: "Your answer is in radians. Give it in degrees.",
     "sign of a symbol": lambda question, symbol: (
         f"The answer would be right if `{symbol}` had the other sign."
     ),
     "symbols interchanged": lambda question, first, second: (
-        f"`{first}` and `{second}` are interchanged."
+        f"You swapped `{first}` and `{second}`."
     ),
     "opposite": lambda question: "Every sign is wrong: this is minus what the question asks for.",
     "reciprocal": lambda question: "This is the reciprocal of what the question asks for.",
@@ -66,18 +66,21 @@ MESSAGES: dict[str, Callable[..., str]] = {
         f"This is {factor} times what the question asks for. The rest is right."
     ),
     "one wrong": lambda question, number: (
-        f"One of the {NUMBERS[number]} is not right; all the others are."
+        f"One of the {NUMBERS[number]} is wrong. The others are right."
     ),
     "half": lambda question: "This is half of what the question asks for.",
     "double": lambda question: "This is twice what the question asks for.",
-    "supplement": lambda question: "This angle and the one asked for add up to half a turn.",
-    "complement": lambda question: "This angle and the one asked for add up to a quarter turn.",
+    "supplement": lambda question: (
+        "You gave the supplementary angle: yours and the right one add up to half a turn."
+    ),
+    "complement": lambda question: (
+        "You gave the complementary angle: yours and the right one add up to a quarter turn."
+    ),
     "not turned": lambda question: (
-        "These are the components along the frame that you started from. "
-        "You still have to turn them."
+        "These are the components along the initial frame. Convert them to the other one."
     ),
     "turned the wrong way": lambda question: (
-        "The components were multiplied by the transpose of the matrix that turns them."
+        "You multiplied the components by the transpose of the right matrix."
     ),
     "authored": lambda question, text: text,
 }
@@ -85,15 +88,13 @@ MESSAGES: dict[str, Callable[..., str]] = {
 POWERS = (3, -3, 6, -6, 2, -2)
 OF_MEASUREMENTS = {
     "power of ten": lambda question, power: (
-        f"This is $10^{{{power}}}$ times what the question asks for. Has a prefix been lost, as in "
+        f"This is $10^{{{power}}}$ times what the question asks for. Did you lose a prefix, as in "
         "kN or mm?"
     ),
 }
 OF_ORDERS = {
-    "turned round": lambda question: "This order is back to front: the last one comes first.",
-    "two interchanged": lambda question: (
-        "Two neighbours have been swapped; all the others are in order."
-    ),
+    "turned round": lambda question: "This order is reversed: you put the last one first.",
+    "two interchanged": lambda question: "You swapped two neighbours. The others are in order.",
 }
 
 
@@ -115,9 +116,8 @@ def short_name(note: str, details: Mapping[str, Json]) -> bytes:
 def as_matrix(answer: Any) -> Any:
     if hasattr(answer, "dcm"):
         raise TypeError(
-            "A reference frame is the right answer here: bind its direction cosine matrix instead, "
-            "so that mistakes can be made of it. "
-            "A student may still answer with the frame."
+            "The right answer is a reference frame. Assign its direction cosine matrix instead, "
+            "so that we can derive mistakes from it. A student may still answer with the frame."
         )
     return sympy.Matrix(answer)
 

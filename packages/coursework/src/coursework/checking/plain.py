@@ -210,7 +210,7 @@ def to_plain(
     except NotPlain:
         raise
     except RecursionError:
-        raise NotPlain("The answer is nested too deeply to be read. Simplify it.") from None
+        raise NotPlain("The answer is nested too deeply to read. Simplify it.") from None
     except Exception as error:
         if raise_missing and isinstance(error, ModuleNotFoundError):
             raise
@@ -300,19 +300,22 @@ class _Writer:
         if len(answer) == 2 and _has_unit(answer[1]) and not _has_unit(answer[0]):
             return self.value(sympy.sympify(answer[0]) * answer[1], depth)  # (3.2, newton * meter)
         if len(answer) > MOST_PARTS:
-            raise NotPlain(f"The answer has {len(answer)} parts; no question asks for that many.")
+            raise NotPlain(
+                f"The answer has {len(answer)} parts, but no question asks for that many."
+            )
         return ["list", [self.value(part, depth + 1) for part in answer]]
 
     def array(self, answer: Array, depth: int) -> Value:
         size = math.prod(answer.shape)
         if size > MOST_PARTS:
-            raise NotPlain(f"The array has {size} entries; no question asks for that many.")
+            raise NotPlain(f"The array has {size} entries, but no question asks for that many.")
         return self.value(answer.tolist(), depth)
 
     def of_mpmath(self, answer: mpmath.matrix) -> Value:
         if answer.rows * answer.cols > MOST_PARTS:
             raise NotPlain(
-                f"The matrix is {answer.rows} × {answer.cols}; no question asks for one that large."
+                f"The matrix is {answer.rows} × {answer.cols}, but no question asks for one that "
+                "large."
             )
         entries = [self.number(entry) for row in answer.tolist() for entry in row]
         return ["matrix", answer.rows, answer.cols, entries]
@@ -322,7 +325,7 @@ class _Writer:
         names = sorted({name for edge in answer._edges for name in (edge.frame, edge.reference)})
         if len(names) > 12:
             raise NotPlain(
-                "You have given more than 12 frames: bind the matrix that the question asks for."
+                "You have given more than 12 frames. Give the matrix that the question asks for."
             )
         matrices: dict[str, dict[str, Value]] = {}
         for target in names:
@@ -337,8 +340,8 @@ class _Writer:
     def of_sympy(self, answer: object, depth: int) -> Value:
         if _module(type(answer)).startswith("scipy.spatial"):
             raise NotPlain(
-                "This is a SciPy Rotation, which contains no matrix of two named frames. "
-                "Turn it into one: `dcm_from_scipy_rotation` of the module does that."
+                "This is a SciPy Rotation, which does not name its frames. Convert it to a "
+                "matrix with the module's `dcm_from_scipy_rotation`."
             )
         # Mechanics is slow to import; if the answer has a frame or a vector, it has been imported.
         mechanics = sys.modules.get("sympy.physics.vector")
@@ -363,8 +366,8 @@ class _Writer:
                 ]
             except ValueError:
                 raise NotPlain(
-                    "The parts of this vector belong to frames that are not connected: orient one "
-                    "of them with respect to another first."
+                    "The components of this vector belong to frames that are not connected. "
+                    "First orient one of them with respect to another."
                 ) from None
         if isinstance(answer, sympy.Quaternion):
             return self.parts([answer.a, answer.b, answer.c, answer.d], depth)
@@ -386,7 +389,7 @@ class _Writer:
             if len(sides) == 1:
                 return self.value(sides[0], depth)
             raise NotPlain(
-                "An equation is not a value: give the side of it that the question asks for."
+                "An equation is not a value. Give the side of it that the question asks for."
             )
         if isinstance(answer, BooleanAtom):
             return ["truth", bool(answer)]
@@ -423,8 +426,8 @@ class _Writer:
     def node(self, *parts: str | int) -> int:
         if len(self.nodes) >= MOST_NODES:
             raise NotPlain(
-                f"The answer is made of more than {MOST_NODES} different parts, so it is not read. "
-                "Simplify it, or build it in fewer steps."
+                f"The answer has more than {MOST_NODES} different parts, which is too many to "
+                "read. Simplify it, or build it in fewer steps."
             )
         self.nodes.append(list(parts))
         return len(self.nodes) - 1
@@ -440,7 +443,7 @@ class _Writer:
         rows, columns = map(int, answer.shape)
         if rows * columns > MOST_PARTS:
             raise NotPlain(
-                f"The matrix is {rows} × {columns}; no question asks for one that large."
+                f"The matrix is {rows} × {columns}, but no question asks for one that large."
             )
         if isinstance(answer, sympy.MatrixBase):
             return rows, columns, [self.expression(entry) for entry in answer.flat()]
@@ -466,7 +469,7 @@ class _Writer:
                 explicit = answer.doit().as_explicit()
         except TooMuchWork:
             raise NotPlain(
-                "The matrix takes too long to be worked out: call `.doit()` on it first."
+                "The matrix takes too long to compute. Call `.doit()` on it first."
             ) from None
         return rows, columns, [self.expression(entry) for entry in explicit.flat()]
 
@@ -502,7 +505,7 @@ class _Writer:
         size, _, entries = matrix
         if size > 4:
             raise NotPlain(
-                "The inverse of a matrix of this size is not worked out here: call `.doit()` on it "
+                "We do not compute the inverse of a matrix of this size. Call `.doit()` on it "
                 "first."
             )
         minus = self.node("integer", "-1")
@@ -686,7 +689,7 @@ def _spelled(letter: str) -> str:
 def _text(text: str) -> str:
     text = str(text)  # a subclass, such as NumPy's, is not a string in JSON
     if len(text) > LONGEST_TEXT:
-        raise NotPlain(f"A text of {len(text)} characters is longer than any answer.")
+        raise NotPlain(f"This string of {len(text)} characters is too long for an answer.")
     return text
 
 
@@ -751,7 +754,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
                 if size is None:
                     size = units.convert_to(quantity, list(base)).xreplace(base)
                 if size.has(units.Quantity):
-                    raise NotPlain(f"`{quantity}` is made of no units of the International System.")
+                    raise NotPlain(f"`{quantity}` does not consist of SI units.")
                 plain = plain.xreplace({quantity: size})
             terms_of: dict[sympy.Expr, list[sympy.Expr]] = {}
             for term in sympy.Add.make_args(sympy.expand_mul(plain)):
@@ -759,7 +762,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
                 terms_of.setdefault(rest, []).append(number)
     except TooMuchWork:
         raise NotPlain(
-            "The unit takes too long to be worked out. Give a pair: `(number, 'N m')`."
+            "The unit takes too long to compute. Give a pair: `(number, 'N m')`."
         ) from None
     if len(terms_of) > 1:
         raise NotPlain("The terms of this sum have different units.")
@@ -783,7 +786,7 @@ def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:
     for frame in connected:
         connected.extend(neighbour for neighbour in frame._dcm_dict if neighbour not in connected)
         if len(connected) > 30:
-            raise NotPlain("More than 30 frames are connected with this one.")
+            raise NotPlain("This frame is connected with more than 30 others.")
     return connected
 
 

@@ -39,8 +39,8 @@ ELSEWHERE = "elsewhere.txt"
 # Letters and digits of a code that opens worked solutions, without those that look alike.
 CODE_LETTERS = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ"
 NOT_IN_THIS_CATALOGUE = (
-    "This is a mistake that others have made, too, and this version of coursework has no words for "
-    "it: install the package that came with the notebook."
+    "This is a known mistake, but this version of coursework has no message for it. Install the "
+    "package that came with the notebook."
 )
 # Faults of the form that no right value excuses.
 ALWAYS_WRONG = ("not unit length",)
@@ -54,8 +54,8 @@ NEARLY = 3
 # The note of an answer that is right for another variant, here and in the marks, and its message.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = (
-    "This is right for other numbers than yours: the default ones, or another student's. Yours "
-    "stand in the text of the question, as its cell shows it once it has run."
+    "This is right for other numbers than yours: the default ones, or another student's. You "
+    "find yours in the text of the question after you have run its cell."
 )
 # The distance within which this applies if the locker has opened nevertheless, because its cell is
 # wider for several numbers.
@@ -102,8 +102,8 @@ def notebook_questions(notebook: str, variant: int = 0) -> dict[str, Sealed]:
     except ValueError as error:
         cut = f"The file of sealed questions for {notebook} is incomplete."
         raise RuntimeError(
-            f"{error if isinstance(error, Misread) else cut} Unpack the exercises again; what you "
-            "have written is kept."
+            f"{error if isinstance(error, Misread) else cut} Unpack the exercises again. You will "
+            "not lose your work."
         ) from None
     return questions_by_name
 
@@ -131,9 +131,9 @@ def _file(notebook: str, variant: int = 0) -> dict[str, dict[str, Json]]:
         from .. import __version__
 
         raise RuntimeError(
-            f"The sealed questions of {notebook} are of format {format}, and this is coursework "
+            f"The sealed questions of {notebook} have format {format}, but this is coursework "
             f"{__version__}, which reads format {FORMAT}. Install the package that came with the "
-            "notebook: `python -m coursework update exercises.zip` says how."
+            "notebook. `python -m coursework update exercises.zip` tells you how."
         )
     return about.get("questions", by_name(by_name(anything)))
 
@@ -165,9 +165,8 @@ def find_question(name: str, student: str) -> Sealed:
     """
     if not isinstance(name, str):
         raise NoSuchQuestion(
-            "The name of a question is a string and comes first: `check('notebook/question', "
-            "answer)`. "
-            f"This is of type `{type(name).__name__[:40]}`."
+            "Give the name of the question first, as a string: `check('notebook/question', "
+            f"answer)`. Yours is of type `{type(name).__name__[:40]}`."
         )
     notebook, _, _ = name.partition("/")
     questions = notebook_questions(notebook)
@@ -185,22 +184,22 @@ def find_question(name: str, student: str) -> Sealed:
         of_variant = notebook_questions(notebook, number)
         if asked not in of_variant:
             raise NoSuchQuestion(
-                f"Your numbers for '{asked}' are missing. They should be in `sealed/variants/"
-                f"{notebook}-{number}.json`. Unpack the exercises again; you will not lose your "
-                "work."
+                f"Your numbers for '{asked}' are missing. They should be in "
+                f"`sealed/variants/{notebook}-{number}.json`. Unpack the exercises again. You "
+                "will not lose your work."
             )
         of_question = of_variant[asked].question
         if unknown := {of_question.kind, of_question.kind_of_values} - set(kinds()):
             raise RuntimeError(
-                f"'{asked}' is of a kind that is not known here, {unknown.pop()!r}: install the "
-                "package that came with the notebook."
+                f"'{asked}' is of an unknown kind, {unknown.pop()!r}. Install the package that "
+                "came with the notebook."
             )
         return of_variant[asked]
     files = [file.name for folder in places() for file in folder.iterdir()]
     if not files:
         raise NoSuchQuestion(
-            f"There is no question '{name[:80]}', and no other: the folder `sealed` that came with "
-            f"this notebook is not beside it (in {Path.cwd()}), and no package with sealed "
+            f"We cannot find '{name[:80]}' or any other question: the folder `sealed` that came "
+            f"with this notebook is not beside it (in {Path.cwd()}), and no package with sealed "
             "questions is installed."
         )
     notebooks = sorted(file.removesuffix(".json") for file in files if file.endswith(".json"))
@@ -378,8 +377,8 @@ def compare(
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
             message_text = (
-                f"A person will read this text of {words} {'word' if words == 1 else 'words'} and "
-                "decide."
+                f"Somebody will read this answer of {words} {'word' if words == 1 else 'words'} "
+                "and mark it."
             )
             return Reply(name, "undecided", "for a person", [message_text])
         text = fingerprint(question, reading)
@@ -416,8 +415,8 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
         "recorded",
         "",
         [
-            "Your answer can be read, and has the right form. "
-            "It is marked later: nothing that you have tells whether it is right."
+            "We can read your answer, and it has the right form. It will be marked later, and "
+            "nothing in your files tells whether it is right."
         ],
     )
 
@@ -585,7 +584,7 @@ def other_readings(question: Question, reading: Reading) -> Iterator[tuple[str, 
         # Without a quantity the question may ask for degrees: then only the right answer counts.
         angles = question.quantity in (None, "angle")
         if angles and question.kind_of_values in ("expression", "vector", "matrix"):
-            message_text = "it is in degrees, and in radians it has another mistake."
+            message_text = "it is in degrees, and it has another mistake."
             radians = [[number * MP.pi / 180 for number in numbers] for numbers in reading.numbers]
             yield IN_DEGREES, message_text, Reading(radians)
 
@@ -640,7 +639,7 @@ def _coarse(question: Question, reading: Reading) -> str:
     """Return a message on numbers that are inconsistent, but would fit with fewer digits."""
     if question.tolerance is None or fault(replace(question, tolerance=COARSE), reading):
         return ""
-    return "The numbers nearly fit together. If you rounded, keep all digits until the end."
+    return "The numbers nearly agree. If you rounded, keep all digits until the end."
 
 
 def _precision(plain: Plain) -> tuple[bool, bool]:
@@ -673,7 +672,7 @@ def what_can_be_said(question: Question, plain: Plain) -> str:
     missing = [symbol for symbol in question.symbols if not {symbol, *spellings(symbol)} & named]
     symbols = ", ".join(f"`{symbol}`" for symbol in question.symbols)
     if symbols and not named:
-        return f"The question is asked with {symbols}, but your answer contains only numbers."
+        return f"The question uses {symbols}, but your answer contains only numbers."
     message_text = kind_of_values(question).wrong
     if question.every_symbol and missing:
         message_text += (

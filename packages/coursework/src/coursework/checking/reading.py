@@ -247,7 +247,7 @@ def _number(question: Question, result: Any) -> Number:
             if known_symbols
             else "this question has no symbols"
         )
-        raise Fault("stray symbol", f"The answer contains `{name}`; {expected}.") from None
+        raise Fault("stray symbol", f"The answer contains `{name}`, but {expected}.") from None
     except Undefined as error:
         somewhere = " for some values of its symbols" if question.symbols else ""
         raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
@@ -257,7 +257,8 @@ def _number(question: Question, result: Any) -> Number:
         raise Undecidable(f"The answer contains {error}, which we cannot evaluate.") from None
     except ValueError:
         raise Fault(
-            "not real", "The answer has an imaginary part; the question asks for something real."
+            "not real",
+            "The answer has an imaginary part, but the question asks for something real.",
         ) from None
 
 
@@ -274,9 +275,8 @@ def _with_units(
     except UnknownUnit as error:
         raise Fault(
             "unknown unit",
-            f"`{error}` is not a unit that we know. Write products with a space and quotients "
-            "with a stroke: "
-            "`kN m`, `m/s^2`, `J/(kg K)`.",
+            f"We do not know the unit `{error}`. Write products with a space and quotients with a "
+            "slash: `kN m`, `m/s^2`, `J/(kg K)`.",
         ) from None
     absolute, _ = tolerances(question)
     far = [exponent * FAR * max(absolute, NEAR) for exponent in unit_given.exponents]
@@ -287,7 +287,7 @@ def _with_units(
 def _read_function(question: Question, plain: Plain) -> Reading:
     value = plain["value"]
     if value[0] != "function":
-        raise Fault("shape", "The question asks for a function: give its name, without calling it.")
+        raise Fault("shape", "The question asks for a function. Give its name, without calling it.")
     inner = replace(question, kind=question.kind_of_values, symbols={})
     returned = parts_of(value)
     if all(map(is_blank, returned)):
@@ -295,14 +295,14 @@ def _read_function(question: Question, plain: Plain) -> Reading:
             raise Blank  # the body of the function is still empty
         raise Fault(
             "returned nothing",
-            "The function works something out and returns nothing. End it with a line that begins "
+            "The function computes something but returns nothing. End it with a line that begins "
             "with `return`.",
         )
     if any(result[0] == "printed" for result in returned):
         raise Fault(
             "printed",
-            "The function prints its result and returns nothing, so nothing else can work with it. "
-            "Write `return` in place of `print`.",
+            "The function prints its result but returns nothing, so nothing else can use it. "
+            "Write `return` instead of `print`.",
         )
     results = values(plain["nodes"], {})
     numbers = []

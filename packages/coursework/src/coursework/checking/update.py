@@ -98,8 +98,8 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     digest = _digest_of_all(now)
     if digest in archives[:-1]:
         raise ArchiveRefused(
-            f"The archive {archive_file} was in this folder before, and a newer one since. Has the "
-            "newest another name? Nothing was changed."
+            f"You have already updated this folder from {archive_file}, and from a newer archive "
+            "since. Does the newest have another name? We changed nothing."
         )
     if digest not in archives:
         archives.append(digest)
@@ -129,11 +129,11 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
             report.append(f"changed     {name}")
         elif before.get(name) == now[name]:
-            report.append(f"kept yours  {name}; nothing in it is new")
+            report.append(f"kept yours  {name}, in which nothing is new")
         else:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
-            report.append(f"kept yours  {name}; the new one is {beside}")
+            report.append(f"kept yours  {name}, and put the new one in {beside}")
     (folder / MANIFEST).write_text(_as_text(files={**before, **now}, archives=archives), "utf8")
     if to_install:
         command = [
@@ -150,11 +150,11 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
 
 def _files_in(archive_file: str | Path) -> dict[str, bytes]:
     """Return the files of an archive of exercises, by their places in a student's folder."""
-    once_more = "Nothing was changed: download it once more."
+    once_more = "We changed nothing. Download it again."
     if not (place := Path(archive_file)).is_file():
         raise ArchiveRefused(
             f"{place} {'is a folder' if place.is_dir() else 'does not exist'} (the current folder "
-            f"is {Path.cwd()}). Put the archive there as you have downloaded it, or give its path."
+            f"is {Path.cwd()}). Put the downloaded archive there, or give its path."
         )
     others = [
         file
@@ -235,7 +235,7 @@ def _older(folder: Path, name: str) -> list[Path]:
             if _order(present) > _order(new):
                 raise ArchiveRefused(
                     f"The archive is older than this folder: it has version {new} of the package, "
-                    f"and here is {present}. Nothing was changed."
+                    f"but the folder has {present}. We changed nothing."
                 )
             outdated.append(path)
     return outdated
@@ -278,6 +278,6 @@ def _handed_out(folder: Path) -> tuple[dict[str, str], list[str]]:
     if format != FORMAT:
         raise ArchiveRefused(
             f"{MANIFEST} in this folder has format {format}, but the installed coursework reads "
-            f"{FORMAT}. Install the package in this folder and try again. Nothing was changed."
+            f"{FORMAT}. Install the package in this folder and try again. We changed nothing."
         )
     return files, list(archives)

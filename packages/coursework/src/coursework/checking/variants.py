@@ -190,7 +190,7 @@ class Given:
             raise AttributeError(name)
         if name not in self._parameters:
             names = ", ".join(f"`{name}`" for name in self._parameters) or "no numbers of its own"
-            raise AttributeError(f"This question gives {names}; `{name}` is not among them.")
+            raise AttributeError(f"This question gives {names}, but not `{name}`.")
         return self._parameters[name]
 
     def __repr__(self) -> str:
