@@ -344,7 +344,7 @@ def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
     }  # fmt: skip
     assert code_in(work) == there
     assert (
-        "kept yours  a.ipynb; the new one is a-new-1.ipynb" in report
+        "kept yours  a.ipynb, and put the new one in a-new-1.ipynb" in report
         and "replaced    c.ipynb" in report
     )
     update(two, work)
@@ -378,7 +378,7 @@ def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
     work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path)
     (work / MANIFEST).write_text('{"format": 2, "files": {}}')
     before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(ArchiveRefused, match="has format 2.*reads 1.*Nothing was changed"):
+    with pytest.raises(ArchiveRefused, match="has format 2.*reads 1.*We changed nothing"):
         update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
     assert {path: path.read_bytes() for path in work.iterdir()} == before
 
