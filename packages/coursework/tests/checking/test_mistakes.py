@@ -248,7 +248,7 @@ def test_the_names_in_the_lockers_are_what_they_were():
 def test_a_plug_in_is_given_the_turns_and_the_question(monkeypatch):
     question = Question("rotation matrix", frames=("B", "A"))
     named = mistakes(question, sm.eye(3), iter([("x", 30)]))
-    assert [mistake.note for mistake in named] == ["transposed", "sine for cosine"]
+    assert [mistake.note for mistake in named] == ["transposed", "sine and cosine exchanged"]
     monkeypatch.setitem(catalogue.MESSAGES, "half", lambda question: f"Of {question.kind}.")
     assert message(question, "half", {}) == "Of rotation matrix."
 

@@ -56,7 +56,8 @@ def test_weighted_directions_as_its_davenport(seed):
     judge = Davenport(magnetic_dip=60.0, weights=weights, gravity=9.8)
     known = np.array([judge.g_q, judge.m_q])
     seen = noisy(TURNS[seed], known, seed, 0.05)
-    theirs = judge.estimate(*seen)
+    # NumPy returns complex eigenvectors since 2.5, also where all are real.
+    theirs = np.real(judge.estimate(*seen))
     theirs = dcm_from_quaternion(theirs / np.linalg.norm(theirs))
     # It takes the lengths as they are, here they are taken off: so they count as weights.
     lengths = np.linalg.norm(known, axis=1) * np.linalg.norm(seen, axis=1)
@@ -97,7 +98,7 @@ def test_distances_means_and_ways_between():
         dcm_from_rotation_vector(np.random.default_rng(5).normal(scale=0.4, size=(20, 3)))
         @ TURNS[0]
     )
-    mean = ahrs.QuaternionArray(quaternion_from_dcm(scattered)).average()
+    mean = np.real(ahrs.QuaternionArray(quaternion_from_dcm(scattered)).average())
     assert angle_between(dcm_from_quaternion(mean), mean_orientation(scattered)) < 1e-12
     shares = np.linspace(0, 1, 11)
     theirs = slerp(q[0], p[0], shares)

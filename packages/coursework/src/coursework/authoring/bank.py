@@ -10,7 +10,7 @@ import io
 import re
 from collections.abc import Collection, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from ..checking.catalogue import message
 from ..checking.evaluate import MP
@@ -19,9 +19,11 @@ from ..checking.plain import Plain, Value, parts_of, size_of
 from ..checking.plugins import kinds
 from ..checking.reading import read, tolerances
 from ..checking.variants import text_of
+from . import exporting
 from .asking import PICTURE
 from .author import AuthoredQuestion, AuthorError
 from .course import Course
+from .exporting import Item, Wrong
 from .source import (
     CHAPTERS,
     answered_in,
@@ -47,68 +49,6 @@ ONE_WRONG = "one wrong"
 
 class NotExported(ValueError):
     """No other system can judge the answers of a question; the message says why."""
-
-
-class Wrong(NamedTuple):
-    """The answer that a mistake leads to, its note and share of the points, and the reply to it."""
-
-    values: tuple[str, ...]
-    note: str
-    share: float
-    reply: str
-
-
-class Item(NamedTuple):
-    """One variant of a question.
-
-    Attributes
-    ----------
-    name : str
-    number : int
-        That of the variant.
-    worth : float
-    text, solution : str
-        As Markdown, with pictures inside.
-    columns : int
-        How many places stand in a row.
-    options : tuple of str
-        The words to choose from, if the answer is some of them.
-    tolerances : tuple of float
-        One for each number of the answer; none if it consists of words.
-    right : tuple of tuples of str
-        The right answer; and its opposite, where a question accepts both.
-    wrong : list of Wrong
-    """
-
-    name: str
-    number: int
-    worth: float
-    text: str
-    solution: str
-    columns: int
-    options: tuple[str, ...]
-    tolerances: tuple[float, ...]
-    right: tuple[tuple[str, ...], ...]
-    wrong: list[Wrong]
-
-    @property
-    def identifier(self) -> str:
-        """A name that XML takes as an identifier."""
-        return re.sub(r"[^A-Za-z0-9_-]", ".", f"Q-{self.name}") + f".{self.number}"
-
-    @property
-    def heading(self) -> str:
-        return f"{self.name}, variant {self.number}"
-
-    @property
-    def places(self) -> int:
-        return len(self.right[0])
-
-    def same(self, place: int, first: str, second: str) -> bool:
-        """Whether two values are one answer in a place."""
-        if not self.tolerances:
-            return first == second
-        return abs(float(first) - float(second)) <= self.tolerances[place]
 
 
 def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> Item:
@@ -267,8 +207,6 @@ def bank(
     AuthorError
         The file would reach students, or there is no such question.
     """
-    from . import exporting
-
     path = Path(out).resolve()
     for folder in (course.exercises, course.sealed, course.archive.parent):
         if path.is_relative_to(folder.resolve()):

@@ -23,7 +23,6 @@ from markupsafe import Markup
 from ..checking.mistakes import GENERAL
 from ..checking.reply import mathml, to_html
 from .author import to_page
-from .bank import Item
 
 #: A picture within a page, as authors' figures are held.
 EMBEDDED = re.compile(r'(?<=src=")data:image/(svg|png|jpe?g|gif)[^,"]*?(;base64)?,([^"]+)')
@@ -48,6 +47,68 @@ ENVIRONMENT.filters |= {
     "base64": lambda data: base64.b64encode(data).decode("ascii"),
     "message": lambda reply: Markup(to_html(reply, mathml)),
 }
+
+
+class Wrong(NamedTuple):
+    """The answer that a mistake leads to, its note and share of the points, and the reply to it."""
+
+    values: tuple[str, ...]
+    note: str
+    share: float
+    reply: str
+
+
+class Item(NamedTuple):
+    """One variant of a question.
+
+    Attributes
+    ----------
+    name : str
+    number : int
+        That of the variant.
+    worth : float
+    text, solution : str
+        As Markdown, with pictures inside.
+    columns : int
+        How many places stand in a row.
+    options : tuple of str
+        The words to choose from, if the answer is some of them.
+    tolerances : tuple of float
+        One for each number of the answer; none if it consists of words.
+    right : tuple of tuples of str
+        The right answer; and its opposite, where a question accepts both.
+    wrong : list of Wrong
+    """
+
+    name: str
+    number: int
+    worth: float
+    text: str
+    solution: str
+    columns: int
+    options: tuple[str, ...]
+    tolerances: tuple[float, ...]
+    right: tuple[tuple[str, ...], ...]
+    wrong: list[Wrong]
+
+    @property
+    def identifier(self) -> str:
+        """A name that XML takes as an identifier."""
+        return re.sub(r"[^A-Za-z0-9_-]", ".", f"Q-{self.name}") + f".{self.number}"
+
+    @property
+    def heading(self) -> str:
+        return f"{self.name}, variant {self.number}"
+
+    @property
+    def places(self) -> int:
+        return len(self.right[0])
+
+    def same(self, place: int, first: str, second: str) -> bool:
+        """Whether two values are one answer in a place."""
+        if not self.tolerances:
+            return first == second
+        return abs(float(first) - float(second)) <= self.tolerances[place]
 
 
 class Page(Markup):

@@ -26,7 +26,9 @@ def mistakes(question, answer, turns, turned):
     yield Mistake("transposed", {}, answer.T)
     if turns and len(turns) == 1:
         ((axis, angle),) = turns
-        yield Mistake("sine for cosine", {"axis": axis}, rotation_matrix([(axis, 90 - angle)]))
+        yield Mistake(
+            "sine and cosine exchanged", {"axis": axis}, rotation_matrix([(axis, 90 - angle)])
+        )
 
 
 def fault(question, numbers):
@@ -58,7 +60,7 @@ KINDS = {
         needs=("frames",),
         mistakes=mistakes,
         messages={
-            "sine for cosine": lambda question, axis: (
+            "sine and cosine exchanged": lambda question, axis: (
                 f"Sine and cosine are interchanged in the turn about {axis}."
             )
         },
@@ -68,4 +70,4 @@ KINDS = {
         another=another,
     )
 }
-DEEDS = {"sine for cosine": "interchanged sine and cosine in the turn about {axis}"}
+DEEDS = {"sine and cosine exchanged": "interchanged sine and cosine in the turn about {axis}"}
