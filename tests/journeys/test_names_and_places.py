@@ -86,3 +86,15 @@ def test_nothing_is_empty_above_the_caption_of_the_workbench(page, site, width):
       return caption.getBoundingClientRect().top - Math.max(...lowest);
     }""")
     assert 0 <= empty < 60
+
+
+@pytest.mark.parametrize("answered", ["with the keyboard", "by a touch"])
+def test_a_turned_telephone_shows_what_was_in_hand(page, site, answered):
+    page.set_viewport_size({"width": 380, "height": 760})
+    page.goto(site + CHAPTER)
+    page.wait_for_function(SETTLED)
+    choice = page.locator(".question label", has=page.get_by_role("radio")).last
+    choice.get_by_role("radio").press("Space") if "keyboard" in answered else choice.click()
+    page.wait_for_timeout(500)
+    page.set_viewport_size({"width": 760, "height": 380})
+    expect(choice).to_be_in_viewport()

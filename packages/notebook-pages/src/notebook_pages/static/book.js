@@ -51,6 +51,35 @@
   });
 }
 
+// When a telephone is turned or a window made narrower, the page is laid out anew. What the reader has in hand, or else
+// the first line that is seen, stays where it was.
+{
+  const LINE = ".bd-article :is(h1, h2, h3, p, li, tr, pre, .cm-line, .math):not(figure *)";
+  let kept, place, timer;
+  let width = innerWidth;
+  const seen = (line) => {
+    const { left, top, height } = line.getBoundingClientRect();
+    return height && top > 0 && top < innerHeight && line.contains(document.elementFromPoint(left + 9, top + 9));
+  };
+  const remember = () => {
+    if (innerWidth !== width) return;
+    kept = scrollY && [...document.querySelectorAll(".bd-article :focus:not(figure *)"), ...document.querySelectorAll(LINE)].find(seen);
+    place = kept && kept.getBoundingClientRect().top;
+  };
+  const soon = () => {
+    clearTimeout(timer);
+    timer = setTimeout(remember, 100);
+  };
+  for (const name of ["scroll", "focusin"]) addEventListener(name, soon, { passive: true });
+  addEventListener("resize", () => {
+    if (innerWidth === width) return; // only the keyboard or the bar of addresses has come
+    width = innerWidth;
+    if (kept?.isConnected && !document.documentElement.classList.contains("lecture"))
+      scrollBy({ top: kept.getBoundingClientRect().top - Math.min(place, innerHeight / 2), behavior: "instant" });
+    soon();
+  });
+}
+
 // Boxes that scroll can be reached by keyboard, but only while they overflow. They are looked at when they have been
 // laid out, never before: to measure a box that nobody sees yet would lay out the page.
 const watch = new ResizeObserver((entries) => {
