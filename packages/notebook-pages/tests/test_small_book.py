@@ -96,8 +96,7 @@ def test_a_number_is_read_as_one_writes_it(built, browser, typed, read):
     page = browser.new_page()
     page.goto((built / "triangles.html").as_uri())
     box = page.locator("#predict-halves")
-    box.locator(".number input").fill(typed)
-    box.get_by_role("button", name="That is my prediction").click()
+    box.locator(".number input").press_sequentially(f"{typed}\n")
     assert ("number first" in box.get_by_role("status").inner_text()) != read
     page.close()
 

@@ -163,6 +163,7 @@
         answers[box.id] = { first, last: answer, right, rightAtFirst };
       });
     });
+    way.element.addEventListener("keydown", ({ key, isComposing }) => key === "Enter" && !isComposing && commit.click());
     skip.addEventListener("click", () => {
       fold.hidden = false;
       fold.open = true;
