@@ -223,7 +223,7 @@ export class Cell {
 
   // What the book's code gives, beside a note: folded where the code above it is another one.
   get bookResult() {
-    if (!this.built.length) return [];
+    if (this.built.every((output) => output.hidden)) return [];
     if (!this.edited) return [element("p", "live-built", "The book’s result:"), ...this.built];
     return [element("details", "live-built", element("summary", "", "The result of the book’s code"), ...this.built)];
   }
