@@ -66,6 +66,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         runs[command](**options)
     except BrokenPipeError:
         raise
+    except KeyboardInterrupt:
+        sys.exit("\nStopped. Run the same command again to resume.")
     except ModuleNotFoundError as error:
         needs = (
             "means of Linux that this system has not, to judge what strangers wrote apart from all "

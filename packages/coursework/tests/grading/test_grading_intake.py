@@ -311,12 +311,15 @@ def test_what_lies_beside_a_notebook_has_the_name_that_its_author_gave_it(box, t
     assert set(found.files) == {"helper.py", "data/numbers.csv"} and refused == []
 
 
-def test_everything_from_one_student_is_a_question(tmp_path, course):
+@pytest.mark.parametrize("place", ["all", "lone/turns.ipynb"])
+def test_everything_from_one_student_is_a_question(tmp_path, course, place):
     for name in ("a", "b", "c"):
         put(tmp_path / "all", "homework", handed_in(), f"{name}.ipynb")
-    with pytest.raises(NothingToGrade, match="would all be of one student, 'homework'"):
+    # A notebook that lies by itself was graded as the work of a student of its own name.
+    put(tmp_path, "lone", handed_in(), "turns.ipynb")
+    with pytest.raises(NothingToGrade, match="would be of one student, '(homework|turns)'"):
         grade(
-            tmp_path / "all", tmp_path / "out", solutions=tmp_path / "solutions", show=io.StringIO()
+            tmp_path / place, tmp_path / "out", solutions=tmp_path / "solutions", show=io.StringIO()
         )
 
 

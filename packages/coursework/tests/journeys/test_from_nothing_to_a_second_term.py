@@ -6,6 +6,7 @@ import contextlib
 import csv
 import io
 import json
+from unittest.mock import Mock
 
 import pytest
 
@@ -66,16 +67,23 @@ def edited(path, before, after):
     path.write_text(text.replace(before, after), "utf8")
 
 
-def test_from_nothing_to_a_second_term(run, tmp_path):
+def test_from_nothing_to_a_second_term(run, tmp_path, monkeypatch):
     folder = tmp_path / "my-course"
     (folder / "roster.csv").write_text(
         "student,name\nada,Ada Lee\nben,Ben Moe\ncem,C Oz\ndan,D Ek\n"
     )
     (folder / "book.csv").write_text(BOOK)
     assert "Every question passed." in run("selftest")
+    monkeypatch.setattr(
+        "coursework.authoring.selftest.selftest", Mock(side_effect=KeyboardInterrupt)
+    )
+    assert "Stopped. Run the same command again" in run("selftest", fails=True)
+    assert run("new ../kurs-für-Anfänger") and "Kurs für Anfänger" in (
+        tmp_path / "kurs-für-Anfänger" / "course.toml"
+    ).read_text("utf8")
     # Before anything is graded, each command says so.
     assert "There are no records" in run("regrade marks", fails=True)
-    assert "There are marks of nobody yet." in run("why ada first-steps", fails=True)
+    assert "nobody yet. If your marks are elsewhere" in run("why ada first-steps", fails=True)
     assert "read it, and choose" in run("term new marks --roster roster.csv")
     term = folder / "marks" / "term.toml"
     begun = "[assignments.first-steps]\n"
@@ -86,8 +94,7 @@ def test_from_nothing_to_a_second_term(run, tmp_path):
     assert "Give the folder with the submissions" in run("grade . --out marks", fails=True)
     assert "handed in nothing: dan" in run("grade handed-in --out marks")
     assert "ada, first-steps: 6 of 6 points." in run("why ada first-steps")
-    said = run("why ada first", fails=True)
-    assert "There are marks for first-steps." in said
+    assert "There are marks for first-steps." in run("why ada first", fails=True)
     said = run("export marks --lms book.csv --feedback feedback.zip")
     assert "4 filled in" in said and "3 pages of feedback" in said
     # A mended question moves marks once somebody agrees, and the next export says what changed.
@@ -153,11 +160,16 @@ def test_a_sitting_of_a_class(run, tmp_path, monkeypatch):
     assert "print the pages from your browser" in run("sitting marks quiz --paper letter")
     sheets, markers = ((place / f"{name}.html").read_text() for name in ("sheets", "markers"))
     assert "size: letter" in sheets and sheets.count("<section") == markers.count("<section") == 30
-    assert "check(" not in sheets and "rectangle" not in sheets and "rectangle" in markers
+    assert (
+        "check(" not in sheets
+        and "rectangle" not in sheets
+        and "Run the cell" not in sheets
+        and "rectangle" in markers
+    )
     # A letter that no box has enters nothing. Each box is worth what it says.
     merge = "merge marks marks/sittings/quiz/ticks.csv --grader Ann"
     ticked(place / "ticks.csv", area=lambda student: "Q", slope=lambda student: "A")
-    assert "a number from 0 to 1, and this is 'Q'" in run(merge, fails=True)
+    assert "the letter of a box, and this is 'Q'" in run(merge, fails=True)
     ticked(
         place / "ticks.csv", area=lambda name: "b" if name < "s-10" else "A", slope=lambda _: "A"
     )

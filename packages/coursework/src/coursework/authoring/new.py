@@ -149,11 +149,12 @@ def new(folder: str | Path) -> list[str]:
     folder = Path(folder)
     if folder.exists() and any(folder.iterdir() if folder.is_dir() else [folder]):
         raise AuthorError(f"{folder} already exists; we changed nothing.")
-    title = re.sub(r"[-_\s]+", " ", folder.resolve().name).strip().capitalize()
+    words = re.sub(r"[-_\s]+", " ", folder.resolve().name).strip().replace('"', "'")
     for name, text in FILES.items():
         place = folder / name
         place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(text.format(title=title.replace('"', "'")), "utf8")
+        # Only the first letter changes: names and German nouns keep their capitals.
+        place.write_text(text.format(title=words[:1].upper() + words[1:]), "utf8")
     cells = [
         nbformat.v4.new_markdown_cell(text)
         if text.startswith(("# ", "## "))

@@ -467,7 +467,10 @@ def texts_of_questions(
             above.append(cell.source)
         elif cell.cell_type == "code":
             found = checked_in([cell.source])
-            texts |= dict.fromkeys(found, "\n\n".join(above))
+            # The notebook's title, with what it says of all questions, is no part of the first.
+            texts |= dict.fromkeys(
+                found, "\n\n".join(above[len(above) > 1 and above[0].startswith("# ") :])
+            )
             above = [] if found else above
     return texts
 

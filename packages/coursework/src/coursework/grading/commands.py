@@ -314,8 +314,6 @@ def grade(
         )
     except (WeakIsolation, WorkerDied) as error:
         sys.exit(f"coursework grade: {error}")
-    except KeyboardInterrupt:
-        sys.exit("\nStopped. Run the same command again to resume.")
     if not dry_run:
         print(f"The report: {out}/report.html")
     if done["held"]:

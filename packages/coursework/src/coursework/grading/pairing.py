@@ -179,7 +179,7 @@ def _attempts(
             reasons = (
                 "it answers nothing" if answers_most and not answers else "",
                 "it came late, and another in time" if in_time_most and not in_time else "",
-                "another is newer",
+                "another is newer" + ("" if notebook.order[0] else ", by the times of the files"),
             )
             superseded.append(notebook)
             why.append(next(filter(None, reasons)))
@@ -201,7 +201,15 @@ def say(
     """
     for name, number in sorted(handed_in.left_alone.items()):
         are = ("notebook is", "is") if number == 1 else ("notebooks are", "are")
-        print(f"{number} {are[0]} of {name}, and {are[1]} left alone.", file=show)
+        print(
+            f"{number} {are[0]} of {name}, and {are[1]} left alone"
+            + (
+                f": to grade this, add [assignments.{name}] to term.toml."
+                if term.assignments and name not in term.assignments
+                else "."
+            ),
+            file=show,
+        )
     _say_whose(handed_in, folder, show)
     if term.roster:
         _say_absent(handed_in, term, graded, intake.refused_of(Store(folder)), show)
@@ -371,15 +379,21 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
     doubtful = [
         notebook
         for one in work
-        for notebook in (*one.superseded, *(one.notebooks if one.attempts > 1 else ()))
+        for notebook in (*one.superseded, *one.notebooks)
         if not notebook.claim.given_by_system
+        and (
+            one.attempts > 1
+            or notebook in one.superseded
+            # A notebook that lies by itself has only its own name, which is nobody's.
+            or any(name.startswith(f"{one.student}/") for name in notebook.named)
+        )
     ]
     if len(students) == 1 and doubtful and roster is None and student is None:
         (only,) = students
         raise NothingToGrade(
-            f"The notebooks would all be of one student, {only!r}, and all but the newest would "
-            "not count. "
-            f"If that is so, add --student {only!r}; if not, give the folder in which each student "
+            f"All that was handed in would be of one student, {only!r}, and only one notebook "
+            "would count. If it is all one student's, add --student and the student's ID; if not, "
+            "give the folder in which each student "
             "has one of their own, or set a roster in term.toml."
         )
 

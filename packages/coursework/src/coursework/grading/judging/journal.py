@@ -929,5 +929,6 @@ def _credit(text: str, where: str) -> float | None:
         return share
     except ValueError:
         raise ValueError(
-            f"{where}: credit is a number from 0 to 1, and this is {text!r}."
+            f"{where}: credit is a number from 0 to 1, or a tick is the letter of a box, and this "
+            f"is {text!r}."
         ) from None

@@ -30,6 +30,7 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
             f"marks {'for' if own else 'of'} "
             f"{', '.join(own or sorted({owner for owner, _ in all_given})[:40]) or 'nobody yet'}"
             f"{', but its record is gone: grade again' if given else ''}."
+            f"{'' if all_given else ' If your marks are elsewhere, add --marks and their folder.'}"
         )
     named = f"{student} (in {whose})" if whose != student else student
     comes_to = _of(given) if given else "nothing that can be graded was handed in"
