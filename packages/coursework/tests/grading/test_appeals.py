@@ -117,7 +117,7 @@ def test_an_appeal_goes_from_step_to_step_and_only_a_decision_accepts_it(out):
     journal.appeal(record, SUM, "", state=UNDER_REVIEW, of=first, after=first.last, who="Ben")
     with pytest.raises(Collision, match="has changed this appeal"):  # upon what was seen before
         journal.appeal(record, SUM, "No.", state=REJECTED, of=first, after=first.last, who="Ann")
-    with pytest.raises(ValueError, match="why it is rejected"):
+    with pytest.raises(ValueError, match="the reason for rejecting it"):
         journal.appeal(record, SUM, " ", state=REJECTED, of=first, after=state().last, who="Ann")
     journal.appeal(
         record, SUM, "6 is not 5.", state=REJECTED, of=first, after=state().last, who="Ann"
@@ -171,7 +171,7 @@ def test_an_accepted_appeal_changes_mark_page_and_gradebook(begun, out, capsys):
         capsys.readouterr()
         main(command)
         assert (
-            "An appeal is open: what is filled in may change (1):\n  ben: essays/sum"
+            "Filled in, but may change because of an open appeal (1):\n  ben: essays/sum"
             in capsys.readouterr().out
         )
         _, page = served.ask(f"/{served.secret}/answer/{cluster.id}")
@@ -296,14 +296,15 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
     grade(tmp_path / "in", out.folder, show=said, **options)
     assert out.read("ben", "essays").points == 0
     assert (
-        "1 decision is on an answer or a question that has changed since (ben)" in said.getvalue()
+        "1 decision is about an answer or a question that has changed since (ben)"
+        in said.getvalue()
     )
     # The question itself is mended: the decision counts, and somebody is to look.
     mended, said = write_essays(tmp_path / "mended", right="6"), io.StringIO()
     regrade(out.folder, solutions=mended, show=said)
     assert (
         points_of(out)["cem"] == 1
-        and "2 decisions are on answers or questions that have" in said.getvalue()
+        and "2 decisions are about answers or questions that have" in said.getvalue()
     )
     with Served(out.folder, grader="Ann") as served:
         _, text = served.ask(f"/{served.secret}/?show=earlier")

@@ -264,7 +264,7 @@ def test_a_class_that_says_to_be_of_others_is_not_graded_by_wrong_numbers(begun,
     with pytest.raises(NothingToGrade, match="Of 6 notebooks .* 6 carry .*roster in term.toml"):
         grade(tmp_path / "in", tmp_path / "out", show=said, **options)
     assert (
-        "says that it is of 'student-00', and is graded as that of 'folder of student-00'"
+        "says that it belongs to 'student-00', but we grade it as 'folder of student-00'"
         in said.getvalue()
     )
     assert "student-00" in (tmp_path / "out" / "whose.csv").read_text()
@@ -289,7 +289,7 @@ RECORD = Record("ann", "turns")
 
 
 def test_a_credit_is_a_share_of_the_points(tmp_path):
-    with pytest.raises(ValueError, match="from 0 to 1, and this is 2"):
+    with pytest.raises(ValueError, match="from 0 to 1, not 2"):
         Journal(tmp_path).add(RECORD, "turns/sum", 2)
 
 
@@ -440,7 +440,7 @@ def test_a_picture_that_would_fill_the_memory_is_none():
     "submissions, out, said",
     [
         ("damaged.zip", "out", "not a zip archive, or it is damaged"),
-        ("nothing", "out", "There is nothing in"),
+        ("nothing", "out", "is empty: it has no notebook"),
         ("class", "a-file", "File exists"),
     ],
 )
@@ -550,7 +550,7 @@ def test_only_what_cannot_be_judged_is_run_again(begun, out, tmp_path):
     assert {one.student for one in found.again} == {
         *STUDENTS,
         "wrong",
-    } and "runs just these" in "\n".join(found.lines())
+    } and "again for just these" in "\n".join(found.lines())
     few = shutil.copytree(begun.place / "in" / STUDENTS[0], tmp_path / "few" / STUDENTS[0]).parent
     assert grade(few, out.folder, solutions=calls, **options)["graded"] == 1
     assert out.read(STUDENTS[0], "beams").marks["beams/twice"].points == 3

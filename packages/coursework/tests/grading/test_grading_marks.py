@@ -306,13 +306,13 @@ def test_the_verdict_is_that_of_the_students_own_check(solutions, questions):
         ({"outcome": "missing"}, False, "undecided", "not reached"),
         ({"outcome": "missing", "limited": True}, True, "undecided", "lost to a limit"),
         (
-            {"outcome": "timeout", "error": "It took longer than it may."},
+            {"outcome": "timeout", "error": "It exceeded the time limit."},
             True,
             "undecided",
             "stopped while it was read",
         ),
         (
-            {"outcome": "killed", "error": "The process was ended by SIGKILL."},
+            {"outcome": "killed", "error": "The process was killed by SIGKILL."},
             False,
             "undecided",
             "stopped while it was read",

@@ -299,10 +299,10 @@ def test_equal_code_is_a_hint_only_where_few_have_it(out):
 
     one, other = map(in_cell_2, records[:2])
     found = hints_of([one, other, *records[2:]], lambda digest: same)
-    assert any("sign by sign" in said for said in found[one.student, "turns/sum"])
+    assert any("character by character" in said for said in found[one.student, "turns/sum"])
     everybody = list(map(in_cell_2, records))
     assert not any(
-        "sign by sign" in said
+        "character by character" in said
         for said in sum(hints_of(everybody, lambda digest: same).values(), [])
     )
 
@@ -352,7 +352,7 @@ def test_the_commands(out, capsys, tmp_path, graded):
     Journal(other).add(found, "turns/sum", 0, who="Bea")
     main(["merge", str(out), str(other / "journal.jsonl")])
     assert ": 1 decision." in capsys.readouterr().out.splitlines()[0]
-    with pytest.raises(SystemExit, match="there is no .*without decisions"):
+    with pytest.raises(SystemExit, match="does not exist.*without decisions"):
         main(["merge", str(out), str(tmp_path / "none")])
 
 
@@ -616,4 +616,4 @@ def test_on_windows_a_file_is_one_process_s_own(tmp_path):
         "    except InUse as error:\n        print(error)\n"
     )
     done = on_windows(program, tmp_path)
-    assert "Another run is at work" in done.stdout and "twice" not in done.stdout, done.stderr
+    assert "Another run is using" in done.stdout and "twice" not in done.stdout, done.stderr

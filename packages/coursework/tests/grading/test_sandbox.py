@@ -181,7 +181,7 @@ def test_a_function_that_never_ends_costs_only_its_own_question(sandbox):
     )
     assert (
         result["answers"]["q"]["outcome"] == "unreadable"
-        and "longer" in result["answers"]["q"]["why"]
+        and "exceeded" in result["answers"]["q"]["why"]
     )
     assert result["answers"]["r"]["plain"] == integer(5)
 
@@ -196,7 +196,7 @@ def test_a_function_that_ends_the_process_costs_only_its_own_question(sandbox):
     )
     assert result["answers"]["q"] == {
         "outcome": "exited",
-        "error": "The process was left with code 3.",
+        "error": "The process ended with exit code 3.",
     }
     assert result["answers"]["r"]["plain"] == integer(5)
     assert outcomes(result) == ["done", "done"] and result["runs"] == 2
@@ -243,7 +243,7 @@ def test_cells_that_end_the_process_are_left_out(sandbox):
     )
     assert outcomes(result) == ["done", "exited", "done", "killed", "done", "killed", "done"]
     assert [result["answers"][name]["plain"] for name in "bcd"] == [integer(n) for n in (2, 3, 4)]
-    assert result["cells"][4]["error"] == "The process was ended by SIGABRT."
+    assert result["cells"][4]["error"] == "The process was killed by SIGABRT."
     assert result["finished"] is True and result["runs"] == 4
 
 

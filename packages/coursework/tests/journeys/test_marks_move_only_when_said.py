@@ -36,7 +36,7 @@ def test_a_late_notebook_comes_after_the_source_changed(tmp_path):
     course.grade("--yes")
     assert course.points() == {**dict.fromkeys(before, 0), "fay": 8}
     log = (course.marks / "run.log").read_text()
-    assert "not moved, nobody agreed: 'ada', hw2: 8 -> 0" in log and "  moved: 'ada'" in log
+    assert "not changed, nobody agreed: 'ada', hw2: 8 -> 0" in log and "  moved: 'ada'" in log
 
 
 def test_the_worth_of_a_question_changes(tmp_path):
@@ -50,7 +50,7 @@ def test_the_worth_of_a_question_changes(tmp_path):
         assert (
             "1 student would gain: hw2/load." in said and "'ada', hw2: 8 of 16 -> 24 of 32" in said
         )
-        assert "1 student would keep the same share of the points." in said
+        assert "1 student would keep the same fraction of the points." in said
     book = course.canvas_book("HW 2 (7)")
     course.export(book)
     assert course.column(book, "HW 2 (7)") == {"ada": "8", "ben": "16"}
@@ -62,7 +62,7 @@ def test_the_worth_of_a_question_changes(tmp_path):
     "policy, points, says",
     [
         ("never-lower", {"ada": 16, "ben": 8}, ""),
-        ("full-credit", {"ada": 16, "ben": 16}, "There was a fault in this question"),
+        ("full-credit", {"ada": 16, "ben": 16}, "This question was faulty"),
         ("void", {"ada": 8, "ben": 8}, "This question does not count."),
     ],
 )
@@ -101,7 +101,9 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
         one["student"] for one in course.table("undecided.csv")
     ] == ["ada"]
     said = course.run("merge", "marks", path, "--grader", "Ann")
-    assert "line 2, ada: this answer is not here; perhaps it was handed in anew" in said
+    assert (
+        "line 2, ada: we do not have this answer. Perhaps the student has handed in again" in said
+    )
     assert course.points()["ada"] == 8
     # A table that is bound to no answers is none of decisions.
     unbound = course.write_table(
@@ -215,7 +217,7 @@ def test_a_line_of_the_journal_that_was_edited_is_noticed(course):
     whole = path.read_text()
     path.write_text(whole.replace('"points": 4', '"points": 3'))
     said = course.regrade(fails=True)
-    assert "journal.jsonl, line 1: this is not what was written there" in said
+    assert "journal.jsonl, line 1: this is not what coursework wrote" in said
     # A last line that was torn is named, and what was whole counts.
     path.write_text(whole + whole[:40])
     said = course.regrade()
@@ -231,7 +233,7 @@ def test_a_record_that_was_deleted_costs_nobody_a_mark(tmp_path):
     book = course.canvas_book("HW 2 (7)")
     (course.marks / "records" / "ada" / "hw2.json").unlink()
     said = course.export(book, fails=True)
-    assert "The record of 'ada', hw2 is gone from" in said and "grade again first" in said
+    assert "The record of 'ada', hw2 is missing from" in said and "Grade again first" in said
     assert "its record is gone: grade again" in course.run("why", "ada", "hw2", fails=True)
     course.grade()
     course.export(book)

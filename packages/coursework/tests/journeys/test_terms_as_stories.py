@@ -560,7 +560,7 @@ class Story:
                 )  # fmt: skip
 
     def column(self, student, name):
-        """What is written for a student; nothing where a person has still to decide."""
+        """What is written for a student; nothing where a decision is pending."""
         key = (TEAM if student in MEMBERS else student), name
         if self.extended.get((student, name)) == "excused":
             return None

@@ -25,7 +25,7 @@ def _moment(text: str) -> datetime.datetime:
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
-OUT = _argument("out", metavar="MARKS", help="the folder that `coursework grade --out` made")
+OUT = _argument("out", metavar="MARKS", help="the folder that `coursework grade --out` created")
 SOLUTIONS = _argument(
     "--solutions",
     help="folder of the notebooks with solutions (default: the one in course.toml)",
@@ -93,7 +93,7 @@ ARGUMENTS = {
         ],
     ),
     "regrade": (
-        "judge the stored answers again after a question or a decision has changed",
+        "judge the stored answers again after you have changed a question or a decision",
         [
             OUT,
             SOLUTIONS,
@@ -102,7 +102,7 @@ ARGUMENTS = {
         ],
     ),
     "review": (
-        "judge answers on a page that only this machine can open",
+        "decide answers on a page that only this machine can open",
         [
             OUT,
             GRADER,
@@ -160,7 +160,7 @@ ARGUMENTS = {
                 "new",
                 nargs="?",
                 choices=["new"],
-                help="write term.toml instead, with every choice explained",
+                help="create term.toml instead, with an explanation of every choice",
             ),
             OUT,
             SOLUTIONS,
@@ -172,7 +172,7 @@ ARGUMENTS = {
                 nargs="+",
                 default=[],
                 metavar="counts.json",
-                help="counts of earlier years, to compare",
+                help="counts of an earlier year, to compare with",
             ),
         ],
     ),
@@ -248,7 +248,7 @@ ARGUMENTS = {
                 "--keys",
                 required=True,
                 metavar="FOLDER",
-                help="folder of the keys; an empty one gets new keys",
+                help="folder of the keys (we create keys in an empty one)",
             ),
             _argument(
                 "--host",
@@ -349,7 +349,8 @@ def _bring_in_decisions(out: str, yes: bool) -> None:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
     except ValueError as error:
         sys.exit(
-            f"The decisions are saved but not yet applied. Run coursework regrade {out} ({error})"
+            f"Your decisions are saved but not applied yet. Run `coursework regrade {out}` "
+            f"({error})"
         )
 
 
@@ -422,7 +423,7 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
     missing = [path for path in files if not Path(path).is_file()]
     if missing:
         sys.exit(
-            f"coursework merge: there is no {missing[0]}. A grader without decisions has no "
+            f"coursework merge: {missing[0]} does not exist. A grader without decisions has no "
             "journal, so leave it out."
         )
     journal, store = Journal(Path(out), dry_run), Store(out)
@@ -463,8 +464,8 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         students = dict.fromkeys(decision.student for decision in foreign)
         whose = ", ".join(in_a_line(name, 60) for name in students)
         print(
-            f"  {len(foreign)} of them are about answers missing from this folder: {whose}. They "
-            "change no mark."
+            f"  {len(foreign)} of them are about answers missing from this folder: {whose}. We "
+            "ignored them."
         )
     for first, second in differing:
         print(

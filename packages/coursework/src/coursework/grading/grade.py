@@ -308,7 +308,7 @@ def grade(
 def _read_and_pair(desk: Desk, course: Course, place: Path, student: str | None) -> HandedIn:
     people = desk.term.roster
     if student is not None and people and student not in people.people:
-        raise BadRoster(f"There is no student {student!r} in the roster.")
+        raise BadRoster(f"The roster has no student {student!r}.")
     notebooks, refused = read(place, course, desk.term, student, desk.store.folder)
     return pair(notebooks, refused, course, desk.term)
 
@@ -416,8 +416,8 @@ def said_of_people(store: Store, standing: Standing, contracts: Contracts) -> It
         (appeals, "appeal is open", "appeals are open", "with an open appeal"),
         (
             changed,
-            "decision is on an answer or a question that has changed since",
-            "decisions are on answers or questions that have changed since",
+            "decision is about an answer or a question that has changed since",
+            "decisions are about answers or questions that have changed since",
             "decided, and changed since",
         ),
     ):

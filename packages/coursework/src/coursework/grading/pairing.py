@@ -114,7 +114,7 @@ def read(
     except intake.Unfit as error:
         raise NothingToGrade(str(error)) from None
     if not notebooks and not refused:
-        raise NothingToGrade(f"There is nothing in {submissions}: no notebook, and no other file.")
+        raise NothingToGrade(f"{submissions} is empty: it has no notebook and no other file.")
     return notebooks, refused
 
 
@@ -134,7 +134,7 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            why = "No question of any assignment is named in it."
+            why = "It contains no question of any assignment."
             refused.append(Refused(notebook.file, notebook.student, why))
         elif not graded:
             left_alone[answered[0]] += 1
@@ -178,7 +178,7 @@ def _attempts(
         else:
             reasons = (
                 "it answers nothing" if answers_most and not answers else "",
-                "it came late, and another in time" if in_time_most and not in_time else "",
+                "it was late, and another was on time" if in_time_most and not in_time else "",
                 "another is newer" + ("" if notebook.order[0] else ", by the times of the files"),
             )
             superseded.append(notebook)
@@ -235,8 +235,8 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
     if len(around) == 1:
         (enclosing,) = around
         print(
-            f"The folder {in_a_line(enclosing, 120)!r} encloses everything, and is taken for "
-            "nobody's name.",
+            f"The folder {in_a_line(enclosing, 120)!r} contains everything, so we did not take it "
+            "as a student's name.",
             file=show,
         )
     for student, assignment, file, matched, _, why in itertools.islice(rows, MOST_SHOWN):
@@ -264,7 +264,7 @@ def _say_absent(
     missing = sorted(people - present - damaged)
     for names, what in (
         (missing, "handed in nothing"),
-        (sorted(damaged), "handed in what cannot be graded"),
+        (sorted(damaged), "handed in files that cannot be graded"),
     ):
         if names:
             shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
@@ -280,9 +280,8 @@ def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:
     ]
     for one, notebook in foreign[:MOST_SHOWN]:
         print(
-            f"  ! {in_a_line(notebook.file, 120)} says that it is of "
-            f"{in_a_line(notebook.says, 60)!r}, and is graded as that of "
-            f"{in_a_line(one.student, 60)!r}",
+            f"  ! {in_a_line(notebook.file, 120)} says that it belongs to "
+            f"{in_a_line(notebook.says, 60)!r}, but we grade it as {in_a_line(one.student, 60)!r}",
             file=show,
         )
     if len(foreign) > MOST_SHOWN:
@@ -323,18 +322,17 @@ def demand_own_numbers(
         return
     (one, notebook), *_ = wrong
     why = (
-        "The roster has other IDs for them: their numbers are derived from the first of its "
-        "columns `student`, `email` and `name`."
+        "The roster has different IDs for them. Their numbers depend on the first of its columns "
+        "`student`, `email` and `name`."
         if roster
-        else "Set a roster in term.toml that has the IDs they wrote, or give their folders these "
-        "names."
+        else "Set a roster in term.toml with the IDs that they wrote, or rename their folders to "
+        "these IDs."
     )
     raise NothingToGrade(
         f"Of {saying} notebooks with an ID, {len(wrong)} carry another student's: for example, "
-        f"{notebook.says!r} would be graded as {one.student!r}. "
-        "Each student's numbers are derived from the ID, so we would judge their answers by "
-        "numbers that they were not given. "
-        f"{why} If the list is right nevertheless, add --as-listed."
+        f"{notebook.says!r} would be graded as {one.student!r}. A student's numbers depend on the "
+        f"ID, so we would judge their answers by the wrong numbers. {why} If the list is right "
+        "anyway, add --as-listed."
     )
 
 
@@ -364,9 +362,9 @@ def say_other_numbers(
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
                 f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
-                "numbers other than the student's own, and earn nothing. "
-                "Are the students' IDs here those that they wrote into their notebooks? "
-                "If not, grade again with the right roster in term.toml. Nothing is lost.",
+                "numbers other than the student's own, so they earn nothing. Are these the IDs "
+                "that the students wrote in their notebooks? If not, grade again with the right "
+                "roster in term.toml. Nothing is lost.",
                 file=show,
             )
 
@@ -391,10 +389,9 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
     if len(students) == 1 and doubtful and roster is None and student is None:
         (only,) = students
         raise NothingToGrade(
-            f"All that was handed in would be of one student, {only!r}, and only one notebook "
-            "would count. If it is all one student's, add --student and the student's ID; if not, "
-            "give the folder in which each student "
-            "has one of their own, or set a roster in term.toml."
+            f"All notebooks would belong to one student, {only!r}, and only one of them would "
+            "count. If that is right, add --student and the student's ID. If not, give the folder "
+            "in which each student has a folder, or set a roster in term.toml."
         )
 
 
@@ -432,16 +429,16 @@ def put_renamed_aside(
         if names:
             said = f"{student!r} is now {' or '.join(map(repr, names))}: "
             if dry_run:
-                yield f"{said}the record of {assignment} would be moved."
+                yield f"{said}we would move the record of {assignment}."
                 continue
             place = store.put_aside(student, assignment)
-            said += f"the record of {assignment} was moved to {place}."
+            said += f"we moved the record of {assignment} to {place}."
             decisions = [
                 key for key in journal.standing().decisions if key[:2] == (student, assignment)
             ]
             if decisions and len(names) == 1:
                 journal.hand_on(student, assignment, names[0])
-                said += f" So were {len(decisions)} of the decisions, to the new name."
+                said += f" We also moved {len(decisions)} decisions to the new name."
             elif decisions:
-                said += f" Whose are the {len(decisions)} decisions? They count for nobody now."
+                said += f" Whose are the {len(decisions)} decisions? They no longer count."
             yield said

@@ -70,7 +70,7 @@ SHOWN = {
     "waiting": "waiting for a person",
     "wrong": "wrong",
     "correct": "correct",
-    "invalid": "not in the form asked for",
+    "invalid": "not in the required form",
     "not attempted": "not attempted",
     "decided": "decided by a person",
     "appeals": "with an open appeal",
@@ -363,7 +363,7 @@ class Class:
 
 
 #: What two may have in common, that is worth a look.
-ANSWER, CODE = "unusual wrong answer", "code, sign by sign,"
+ANSWER, CODE = "unusual wrong answer", "code, character by character,"
 TRIED = "unusual wrong answers were tried on the way that one other tried, too"
 
 
@@ -593,12 +593,12 @@ class _Answer(_Page):
         order = [one.id for one in graded.chosen(filters, self.settings["hide_names"])]
         try:
             if max(map(len, typed)) > LONGEST_WORDS:
-                raise Collision(f"This is longer than {LONGEST_WORDS} signs.")
+                raise Collision(f"This is longer than {LONGEST_WORDS} characters.")
             stays = deed_of_form[self.get_argument("form", "decision")](cluster, comment, why)
         except (Collision, OSError) as error:
             self.set_status(507 if isinstance(error, OSError) else 409)
             if isinstance(error, OSError):
-                error = Collision(f"It could not be written: {error.strerror or error}.")
+                error = Collision(f"We could not save it: {error.strerror or error}.")
             self.show_cluster(cluster, filters, collision=error)
             return
         # On to the one that came next, though the list may be shorter now.
@@ -813,7 +813,7 @@ def review(
     """Serve the page until it is stopped; ``say`` hears its address."""
     graded = Class(folder)
     if not graded.records:
-        raise ValueError(f"There are no records in {folder}: grade first.")
+        raise ValueError(f"There are no records in {folder}. Grade first.")
     sockets = netutil.bind_sockets(port, ALONE)
     made = application(graded, grader, sockets[0].getsockname()[1], hide_names)
     server = httpserver.HTTPServer(made, max_body_size=1 << 20)

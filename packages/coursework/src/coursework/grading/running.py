@@ -72,9 +72,7 @@ class Running:
         ValueError
         """
         if self.workers < 1:
-            raise ValueError(
-                f"At least one notebook is run at a time; the number of workers is {self.workers}."
-            )
+            raise ValueError(f"The number of workers must be at least one, not {self.workers}.")
         if self.scheduler and importlib.util.find_spec("distributed") is None:
             raise ValueError(
                 "To use a cluster, first install Dask: python -m pip install distributed"
@@ -132,7 +130,7 @@ class Jobs:
                 del found[order]
 
 
-MARKING_ENDED = "The process that ran and judged it ended again and again."
+MARKING_ENDED = "The process that ran and judged it died repeatedly."
 
 
 def run(jobs: Jobs, finish: Finish, running: Running) -> Iterator[Finished]:

@@ -94,12 +94,14 @@ def sitting(
     with at_desk(out, show, agree) as (desk, closing):
         people = Roster(roster) if roster else desk.term.roster
         if people is None:
-            raise ValueError("who is in the course? Name a roster in term.toml, or use --roster.")
+            raise ValueError("who is in the course? Set a roster in term.toml, or use --roster.")
         is_new = _has_entered(desk, name, tuple(questions))
         desk.ask(course := Course(solutions, desk.term, [name]), [name], closing)
         for question, (contract, *_) in desk.questions[name].items():
             if contract.plain is None:
-                raise ValueError(f"nobody can answer {question} on paper: it asks for a function.")
+                raise ValueError(
+                    f"{question} asks for a function, which nobody can answer on paper."
+                )
         if is_new:
             path = desk.store.folder / FILE
             with path.open("a", encoding="utf8") as file:
@@ -116,10 +118,10 @@ def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
     """Enter a new sitting into the term, and say so; one that the file has is left as it is."""
     path, about = desk.store.folder / FILE, desk.term.assignments.get(name)
     if not path.exists():
-        raise BadTerm(f"there is no {path}: `coursework term new` writes it.")
+        raise BadTerm(f"{path} does not exist. Create it with `coursework term new`.")
     if about and (not about.questions or questions not in ((), about.questions)):
         asks = f"asks {', '.join(about.questions)}" if about.questions else "is not a sitting"
-        raise BadTerm(f"{name} {asks} in {path}: change it there, or use another name.")
+        raise BadTerm(f"{name} {asks} in {path}. Change it there, or use another name.")
     if about is None:
         desk.term = replace(
             desk.term,
@@ -129,7 +131,7 @@ def _has_entered(desk: Desk, name: str, questions: tuple[str, ...]) -> bool:
             },
         )
         if not questions:
-            raise BadTerm(f"{name} is not in {path} yet: give its questions with --questions.")
+            raise BadTerm(f"{name} is not in {path} yet. Give its questions with --questions.")
     return about is None
 
 
@@ -219,7 +221,9 @@ def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> li
         made.append(_as_pdf(path))
     write(folder / TICKS, _table_of_ticks(folder / TICKS, people), private=True)
     if made[0].suffix == ".html":
-        desk.tell("No Chromium or Chrome is installed here: print the pages from your browser.")
+        desk.tell(
+            "Neither Chromium nor Chrome is installed here. Print the pages from your browser."
+        )
     return [*made, folder / TICKS]
 
 

@@ -46,7 +46,7 @@ class Store:
             try:
                 lock(self.lock, wait=False)
             except BlockingIOError:
-                raise InUse(f"Another run is at work in {self.folder}.") from None
+                raise InUse(f"Another run is using {self.folder}.") from None
             for path in self.folder.rglob(".half-*"):
                 path.unlink()
             yield

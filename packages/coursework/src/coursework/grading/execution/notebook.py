@@ -465,9 +465,9 @@ class _Notebook:
                 sys.setrecursionlimit(self.recursion_limit)
                 self.stop_timers()
         except OutOfTime:
-            end |= {"outcome": "timeout", "error": "It took longer than it may."}
+            end |= {"outcome": "timeout", "error": "It exceeded the time limit."}
         except MemoryError:
-            end |= {"outcome": "memory", "error": "It took more memory than it may."}
+            end |= {"outcome": "memory", "error": "It exceeded the memory limit."}
         except BaseException as error:
             end["outcome"] = "error"
             end |= self.described(error)
@@ -556,7 +556,7 @@ class _Notebook:
             finally:
                 self.stop_timers()
         except BaseException:
-            return {"error": "An error whose message cannot be read."}
+            return {"error": "An error with an unreadable message."}
         # The same text on every run: no addresses, no name of this folder.
         text = re.sub(r"0x[0-9a-fA-F]{6,}", "0x...", text[: 4 * LONGEST_ERROR])
         text = text.replace(self.folder, "scratch")[:LONGEST_ERROR]

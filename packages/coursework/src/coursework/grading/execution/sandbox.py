@@ -163,11 +163,11 @@ class Sandbox:
         unknown = set(without) - set(LAYERS)
         if unknown:
             raise ValueError(
-                f"there are no layers {sorted(unknown)}; the layers are {', '.join(LAYERS)}"
+                f"unknown layers {sorted(unknown)}: the layers are {', '.join(LAYERS)}"
             )
         if not sys.platform.startswith("linux"):
             raise WeakIsolation(
-                "Student code is isolated with means of Linux. Elsewhere, use WSL or a container."
+                "Isolating student code needs Linux. Elsewhere, use WSL or a container."
             )
         self.limits = limits or Limits()
         self.allow_weak_isolation = allow_weak_isolation
@@ -228,7 +228,7 @@ class Sandbox:
                 "This machine cannot isolate student code well enough, so we did not run any:\n"
                 + "\n".join(f"- {line}" for line in lacking)
                 + "\nTo run it anyway, on a machine that you can afford to lose, add "
-                "--allow-weak-isolation; every result will record it."
+                "--allow-weak-isolation. Every result will record this."
             )
 
     def copied(self, target: Target) -> bool:
@@ -787,22 +787,22 @@ class _Once:
         how = ended["ended"]
         if how.get("code") == NOT_CONFINED and not self.records.received:
             raise WeakIsolation(
-                "A notebook's process could not be confined, so it did not run: "
+                "We could not isolate a notebook's process, so we did not run it: "
                 + self.sandbox.last_error()
             )
         if self.finished:
             return
-        outcome, error = "exited", f"The process was left with code {how.get('code')}."
+        outcome, error = "exited", f"The process ended with exit code {how.get('code')}."
         if ended["scratch full"]:
             outcome, error = "disk", "It filled its scratch folder."
         elif self.killed_for == "output":
-            outcome, error = "output", "It wrote more than may be handed in."
+            outcome, error = "output", "It wrote more than the limit for a hand-in."
         elif self.killed_for == "timeout" or how.get("signal") == signal.SIGXCPU:
-            outcome, error = "timeout", "It took longer than it may."
+            outcome, error = "timeout", "It exceeded the time limit."
         elif "signal" in how:
             outcome, error = (
                 "killed",
-                f"The process was ended by {signal.Signals(how['signal']).name}.",
+                f"The process was killed by {signal.Signals(how['signal']).name}.",
             )
         self.ending = outcome, error
 

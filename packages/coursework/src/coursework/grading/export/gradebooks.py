@@ -113,8 +113,8 @@ class Marks:
             and not (aside / place.relative_to(store.records)).exists()
         ]:
             raise CannotExport(
-                f"The record of {lost[0][0]!r}, {lost[0][1]} is gone from {store.records}, and its "
-                "marks were given: grade again first."
+                f"The record of {lost[0][0]!r}, {lost[0][1]} is missing from {store.records}, "
+                "although its marks were given. Grade again first."
             )
         self.assignments = sorted({record.assignment for record in self.records})
         self.students: dict[str, list[Record]] = {}
@@ -149,7 +149,7 @@ class Marks:
         """
         if len(self.assignments) > 1:
             raise CannotExport(
-                f"There are marks of {', '.join(self.assignments)}: choose one with --assignment."
+                f"There are marks for {', '.join(self.assignments)}. Choose one with --assignment."
             )
         return self.assignments[0]
 
@@ -227,7 +227,8 @@ class Gradebook:
         unknown = [theirs for theirs in (names or {}).values() if theirs.casefold() not in there]
         if unknown:
             raise CannotExport(
-                f"There is no column {unknown[0]!r}; there are {', '.join(map(repr, self.header))}."
+                f"There is no column {unknown[0]!r}. The columns are "
+                f"{', '.join(map(repr, self.header))}."
             )
 
     def column(self, *names: str) -> int | None:
@@ -394,7 +395,9 @@ def columns(
     used = [column for _, column in there]
     if len(set(used)) < len(used):
         several = ", ".join(name for name, column in there)
-        raise CannotExport(f"{several} have a column of one name: choose one with --assignment.")
+        raise CannotExport(
+            f"{several} have columns of the same name. Choose one with --assignment."
+        )
     return [*there] or [(None, None)]
 
 
@@ -402,22 +405,22 @@ def _read(path: str | Path, names: Mapping[str, str]) -> Gradebook:
     try:
         return Gradebook(Path(path).read_bytes(), names)
     except (OSError, UnicodeDecodeError) as error:
-        raise CannotExport(f"{path} cannot be read: {error}.") from None
+        raise CannotExport(f"We cannot read {path}: {error}.") from None
 
 
 #: What a person is told about students, in this order.
 HEADINGS = {
-    "changed": "Changed since it was written from here last",
-    "nothing": "In the gradebook, and nothing was handed in",
-    "damaged": "In the gradebook, and what they handed in cannot be graded",
-    "strangers": "Handed in, and not in the gradebook",
-    "missing": "Nothing was handed in, and it was due: 0",
-    "several": "Of a name that is there more than once, or that two go by, so not filled in",
-    "waiting": "Not filled in, because a person has still to decide",
-    "appeals": "An appeal is open: what is filled in may change",
+    "changed": "Changed since our last export",
+    "nothing": "In the gradebook, but handed in nothing",
+    "damaged": "In the gradebook, but handed in only files that cannot be graded",
+    "strangers": "Handed in, but not in the gradebook",
+    "missing": "Handed in nothing by the due date: 0",
+    "several": "Not filled in, because the name is ambiguous",
+    "waiting": "Not filled in, because a decision is pending",
+    "appeals": "Filled in, but may change because of an open appeal",
     "closed": "Not filled in, because the system allows no change",
-    "excused": "Excused by the term, so not filled in",
-    "replaced": "A mark by hand, written over as you said",
+    "excused": "Not filled in, because excused in term.toml",
+    "replaced": "A manually entered mark, overridden as you asked",
     "by hand": "Not filled in, because the mark there is not one that we exported",
 }
 
@@ -466,18 +469,18 @@ def fill(
     worths = sorted({marks.mark(student).worth for student in marks.students})
     if out_of and worths != [out_of]:
         said.append(
-            f"The column is out of {number(out_of)} and the questions are worth "
-            f"{', '.join(map(number, worths))}: points are scaled."
+            f"The column is out of {number(out_of)} but the questions are worth "
+            f"{', '.join(map(number, worths))}, so we scale the points."
         )
     said += marks.unknown
     if marks.behind:
         said.append(
-            f"Of {marks.behind} students something was decided that is not in the marks yet: "
-            f"coursework regrade {marks.store.folder}."
+            f"Decisions about {marks.behind} students are not in the marks yet. Run `coursework "
+            f"regrade {marks.store.folder}`."
         )
     if strangers := sorted(set(overwrite) - set(students.values())):
         raise CannotExport(
-            f"To be written over is the mark of {strangers[0]!r}, who is not in this gradebook."
+            f"You asked to override the mark of {strangers[0]!r}, who is not in this gradebook."
         )
     ours = _written_before(marks, assignment, header)
     listed = {name: list[str]() for name in HEADINGS}
@@ -501,7 +504,7 @@ def fill(
         now_written[student] = points
         book.put(line, place, points.replace(".", ",") if comma else points)
     if dry_run:
-        said.append(f"{len(now_written)} would be filled in: nothing was written.")
+        said.append(f"{len(now_written)} would be filled in. We wrote nothing.")
     else:
         # First what is ours: of a crash in between, the next run knows more than it
         # wrote, and nothing is overlooked.
@@ -719,8 +722,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     """
     if marks.behind:
         raise CannotExport(
-            f"Decisions on {marks.behind} records are not in the pages yet: coursework regrade "
-            f"{store.folder}."
+            f"Decisions about {marks.behind} records are not in the pages yet. Run `coursework "
+            f"regrade {store.folder}`."
         )
     pages: dict[str, Path] = {}
     for record in marks.records:
@@ -731,11 +734,11 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
             / f"{file_name(record.assignment)}.html"
         )
         if not page.exists() or record.reply is None:
-            raise CannotExport(f"There is no feedback for {record.student!r}: grade again.")
+            raise CannotExport(f"There is no feedback for {record.student!r}. Grade again.")
         name = f"{record.reply}feedback-{file_name(record.assignment).replace('_', '-')}.html"
         if name in pages:
             raise CannotExport(
-                f"Two pages of feedback would be called {name!r}: grade again, with a roster in "
+                f"Two feedback pages would have the name {name!r}. Grade again with a roster in "
                 "term.toml."
             )
         pages[name] = page

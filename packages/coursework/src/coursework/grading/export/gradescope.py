@@ -197,7 +197,7 @@ def run(home: Path = HOME) -> None:
         )
         if found is None:
             return _say(
-                results, f"You are not in the list of this course ({why}) Ask your instructor."
+                results, f"You are not on the list of this course ({why}) Ask your instructor."
             )
         student = found
     with tempfile.TemporaryDirectory() as out:
@@ -217,7 +217,7 @@ def run(home: Path = HOME) -> None:
         if store.read(student, assignment) is None:
             refused = [f"{Path(one.file).name}: {one.why}" for one in refused_of(store)]
             return _say(
-                results, "\n".join(["There was no notebook that could be graded.", *refused])
+                results, "\n".join(["There was no notebook that we could grade.", *refused])
             )
         write_gradescope(results, Marks(store), student)
 

@@ -420,9 +420,9 @@ class Journal:
         if not last or not _is_cut(last):
             return ""
         return (
-            f"{self.path} ends within a line: the machine stopped while a decision was written, "
-            "which does not count. "
-            f"With the next decision its beginning is moved to {CUT}."
+            f"{self.path} ends within a line, because the machine stopped while saving a "
+            "decision. That decision does not count, and the next one will move its fragment to "
+            f"{CUT}."
         )
 
     # -- what they come to
@@ -493,7 +493,7 @@ class Journal:
         fields.
         """
         if credit is not None and not 0 <= credit <= 1:
-            raise ValueError(f"A credit is a number from 0 to 1, and this is {credit}.")
+            raise ValueError(f"A credit must be a number from 0 to 1, not {credit}.")
         for name in ("rubric", "points"):
             if more.get(name) is not None:
                 more[name] = tuple(more[name])
@@ -525,14 +525,12 @@ class Journal:
                 "not truncate it."
             )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
-            raise ValueError(
-                f"An appeal is raised, then under review or rejected, and this is {state!r}."
-            )
+            raise ValueError(f"An appeal is raised, under review or rejected, not {state!r}.")
         if not words and state != UNDER_REVIEW:
             raise ValueError(
-                "What the student says is missing."
+                "The student's words are missing."
                 if state == RAISED
-                else "Say why it is rejected."
+                else "Give the reason for rejecting it."
             )
         first = of.id if of else ""
         one = Appeal(**_on(record, question) | more, state=state, words=words, appeal=first)
@@ -587,7 +585,7 @@ class Journal:
             own = [(record, [one for one in several if one.who == who]) for record, several in mine]
             if not any(several for _, several in own):
                 others = [several[-1] for _, several in mine if several]
-                raise Collision("There is no decision of yours to take back.", others)
+                raise Collision("You have no decision to take back.", others)
             self._write(
                 file,
                 [
@@ -624,7 +622,7 @@ class Journal:
             if one.key in standing.decisions and standing.decisions[one.key].id != one.after
         ]
         if others or any(one.after and one.key not in standing.decisions for one in decided):
-            raise Collision("Somebody else decided in the meantime.", others)
+            raise Collision("Somebody else has decided in the meantime.", others)
         appeals = {one.id: one for several in standing.appeals.values() for one in several}
         for one in events:
             if isinstance(one, Decision) and one.appeal and not appeals[one.appeal].is_open:
@@ -641,7 +639,7 @@ class Journal:
                 before = standing.worths.get((one.question, one.line))
                 if (before.id if before else "") != one.after:
                     raise Collision(
-                        f"Somebody else changed what “{one.line}” is worth in the meantime."
+                        f"Somebody else has changed the points of “{one.line}” in the meantime."
                     )
 
     @contextlib.contextmanager
@@ -761,7 +759,9 @@ class Journal:
                 continue
             where = f"line {number}, {as_written(row.get('student', '')) or row['id']}"
             if row["id"] not in cases:
-                unused.append(f"{where}: this answer is not here; perhaps it was handed in anew")
+                unused.append(
+                    f"{where}: we do not have this answer. Perhaps the student has handed in again"
+                )
                 continue
             record, question = cases[row["id"]]
             there = standing.get((record.student, record.assignment, question))
@@ -873,9 +873,9 @@ def events_in(path: Path) -> Iterator[Event]:
                     return
                 why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
-                    f"{path}, line {number}: this is not what was written there: {line[:80]!r}"
-                    f"{why}. Somebody changed the file: put back what it said, or move the line "
-                    "into a file of its own and look at that answer again."
+                    f"{path}, line {number}: this is not what coursework wrote: "
+                    f"{line[:80]!r}{why}. Somebody has edited the file. Restore the line, or move "
+                    "it to a separate file and decide about that answer again."
                 ) from None
 
 
@@ -929,6 +929,6 @@ def _credit(text: str, where: str) -> float | None:
         return share
     except ValueError:
         raise ValueError(
-            f"{where}: credit is a number from 0 to 1, or a tick is the letter of a box, and this "
-            f"is {text!r}."
+            f"{where}: credit must be a number from 0 to 1, or a tick the letter of a box, not "
+            f"{text!r}."
         ) from None

@@ -60,7 +60,7 @@ class Policies:
         for one in (*self.never_lower, *self.full_credit, *self.void):
             if one.partition("@")[0] not in there:
                 raise BadPolicy(
-                    f"There is no question {one.partition('@')[0]!r}; there are "
+                    f"There is no question {one.partition('@')[0]!r}. The questions are "
                     f"{', '.join(sorted(there))}."
                 )
 
@@ -89,7 +89,7 @@ class Policies:
             *([f"{name}@{TAKEN_OUT}"] if taken_out else []),
         }
         if wanted & set(self.full_credit):
-            said = "There was a fault in this question: all who were asked it have its points."
+            said = "This question was faulty, so everyone who was asked it gets its points."
             return replace(
                 mark,
                 outcome="correct",
@@ -245,12 +245,12 @@ class Laboratory:
                 said.append(f"{_students(moves)} would {what}: {_about(moves)}.")
         if self.again:
             said.append(
-                f"{_students(self.again)} would wait: the stored answers are not enough to judge "
-                f"{_about(self.again)}. The same `coursework grade` as before runs just these "
-                "again."
+                f"{_students(self.again)} would become undecided, because the stored answers are "
+                f"not enough to judge {_about(self.again)}. Run the same `coursework grade` "
+                "command again for just these."
             )
         if self.even:
-            said.append(f"{_students(self.even)} would keep the same share of the points.")
+            said.append(f"{_students(self.even)} would keep the same fraction of the points.")
         said += [f"  {move}" for move in self.moves[:MOST_SHOWN]]
         if len(self.moves) > MOST_SHOWN:
             said.append(f"  ... and {len(self.moves) - MOST_SHOWN} more.")
@@ -327,7 +327,7 @@ def settle(
     for key in pending:
         store.promote(*key)
     for move in laboratory.moves:
-        store.log(f"{'moved' if laboratory.agreed else 'not moved, nobody agreed'}: {move}")
+        store.log(f"{'moved' if laboratory.agreed else 'not changed, nobody agreed'}: {move}")
     return laboratory
 
 

@@ -55,7 +55,9 @@ MOST_KEPT = 4096
 UNJUDGED = Mark(
     "undecided",
     "too much work",
-    messages=("Working this answer out takes more time or memory than it may: a person decides.",),
+    messages=(
+        "Evaluating this answer exceeds the limits of time or memory, so your instructor decides.",
+    ),
 )
 #: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
 PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
@@ -63,7 +65,7 @@ PICTURE = re.compile(r'<p><img alt="[^"]*" width="[^"]*" src="[^"]*"></p>')
 BY_A_LIMIT = ("timeout", "memory", "disk", "output")
 #: How the sandbox says that reading an answer was cut short, by a
 #: limit and not by the answer's form.
-CUT_SHORT = ("It took longer than it may.", "It took more memory than it may.")
+CUT_SHORT = ("It exceeded the time limit.", "It exceeded the memory limit.")
 
 
 # --- what is known of each question -------------------------------------------------------------
@@ -356,8 +358,8 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
     )
     if short and any(_is_right(name, other, answer) for other in question.others):
         said = (
-            "This is right for the numbers of another edition of this question. Which edition did "
-            "this student have?"
+            "This is right for the numbers of another edition of this question. Which edition "
+            "did this student have?"
         )
         reply = _undecided(name, "numbers of another edition", said)
     # Variants share answers: a mistake with these very numbers may be right for other ones, and
@@ -462,8 +464,8 @@ def mark_with_siblings(
     if found.outcome == "correct" and had and (question.siblings or question.second_chances):
         share = question.contract.credit.get("help", 1)
         said = (
-            f"Right, with help: {HELP.get(had, 'it was shown')}. A sibling that is solved without "
-            "help earns the rest."
+            f"Right, with help: {HELP.get(had, 'we showed it')}. Solve a sibling without help to "
+            "earn the rest."
         )
         points = round(question.contract.worth * share, 4)
         return replace(
@@ -480,11 +482,11 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
     person looks.
     """
     if found.outcome == "correct":
-        said = f"`{sibling}` was solved without help, and counts for this question."
+        said = f"You solved `{sibling}` without help, so it counts for this question."
         return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
     said = (
-        f"`{sibling}` was solved without help, and the question itself was not answered right: a "
-        "person decides."
+        f"You solved `{sibling}` without help, but not the question itself, so your instructor "
+        "decides."
     )
     messages = (*found.messages, said)
     return replace(
@@ -504,13 +506,13 @@ def judge(
             return _undecided(
                 name,
                 "not reached",
-                "The notebook did not come to its end, and this answer was not reached.",
+                "The notebook stopped before it reached this answer.",
             ), ""
         if limited:
             return _undecided(
                 name,
                 "lost to a limit",
-                "A cell was stopped by a limit of time or memory, and this answer is missing.",
+                "A time or memory limit stopped a cell, and this answer is missing.",
             ), ""
         variable = (
             f" under the name `{question.contract.variable}`" if question.contract.variable else ""
@@ -524,7 +526,7 @@ def judge(
         return _undecided(
             name,
             "stopped while it was read",
-            f"Reading this answer was stopped. {answer.why or answer.error or ''}".strip(),
+            f"We had to stop reading this answer. {answer.why or answer.error or ''}".strip(),
         ), ""
     found: list[str] = []
 
@@ -537,8 +539,8 @@ def judge(
         plain = in_calls_of(question, read_plain(answer.plain))
         if plain is None:
             said = (
-                "The function was not called with the arguments that this question has now. Grade "
-                "again: it is run."
+                "We have not called the function with this question's present arguments. Grade "
+                "again to run it."
             )
             return _undecided(name, "not called", said), ""
         reply = compare(name, contract.question, plain, look_up)
@@ -547,8 +549,8 @@ def judge(
             reply = _undecided(
                 name,
                 "nearly right",
-                "The value agrees with the right one to about three digits: it may have been "
-                "rounded where an exact answer is asked for.",
+                "The value agrees with the right one to about three digits. The student may have "
+                "rounded, although the question asks for an exact answer.",
             )
         if reply.outcome == "not attempted":
             reply.messages = ["Nothing was answered."]  # there is no "yet" any more
@@ -561,7 +563,7 @@ def judge(
         raise
     except Exception as error:  # a fault of ours costs no student a mark
         reply = _undecided(
-            name, "not worked out", f"This answer could not be worked out ({type(error).__name__})."
+            name, "not worked out", f"We could not evaluate this answer ({type(error).__name__})."
         )
     return reply, "".join(found)
 
@@ -609,7 +611,7 @@ def _in_secret(
             return _undecided(
                 name,
                 "not called",
-                "The function could not be called with other arguments than those of the check.",
+                "We could not call the function with arguments other than those of the check.",
             )
         plain = read_plain(said["plain"])
     try:
@@ -626,7 +628,7 @@ def _elsewhere_wrong(name: str) -> Reply:
         name,
         "wrong",
         "right only where it is checked",
-        ["This agrees with the right answer where the check looks, and not everywhere."],
+        ["This agrees with the right answer only where the check looks."],
     )
 
 

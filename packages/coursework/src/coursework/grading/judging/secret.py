@@ -57,9 +57,8 @@ def secret_beside(folder: str | Path) -> bytes:
         return bytes.fromhex(path.read_text("ascii").strip())
     except (OSError, ValueError) as error:
         raise ValueError(
-            f"The secret of this course cannot be kept in {path} ({error}). "
-            "Keep it with the solutions, because some of the test points for marks are derived "
-            "from it."
+            f"We cannot save the secret of this course in {path} ({error}). Keep it with the "
+            "solutions, because some of the test points for marks are derived from it."
         ) from None
 
 

@@ -276,7 +276,7 @@ class Term:
         named += [("groups", one, one) for members in self.groups.values() for one in members]
         for where, place, student in named:
             if student not in students:
-                said = f"{where} name {student!r}, and nobody in the course is called so."
+                said = f"{where} name {student!r}, but nobody in the course has that ID."
                 raise _File(path).bad(place, said)
 
 
@@ -307,7 +307,7 @@ class _File:
     def leaf(self, kind: object, where: str, value: object, most: float) -> object:
         """A value of the term that is no table and no list."""
         if kind in (str, Roster):
-            return self.of(str, "a text", where, value)
+            return self.of(str, "a string", where, value)
         if kind is float:
             return self.number(where, value, most)
         if kind is datetime.datetime:
@@ -315,7 +315,7 @@ class _File:
         if kind is datetime.tzinfo:
             return self.zone
         return (
-            _times(self.path.parent / self.of(str, "a text", where, value), self.zone)
+            _times(self.path.parent / self.of(str, "a string", where, value), self.zone)
             if kind is Times
             else value
         )
@@ -324,18 +324,18 @@ class _File:
         there = f" in {where}" if where else ""
         listed = ", ".join(sorted(known))
         return self.bad(
-            f"{where}.{name}".strip("."), f"what is {name!r}{there}? There are {listed}."
+            f"{where}.{name}".strip("."), f"unknown key {name!r}{there}. The keys are {listed}."
         )
 
     def of(self, kind: type[Some], what: str, where: str, value: object) -> Some:
         if not isinstance(value, kind) or isinstance(value, bool):
-            raise self.bad(where, f"{where} is {what}, and this is {value!r}.")
+            raise self.bad(where, f"{where} must be {what}, not {value!r}.")
         return value
 
     def number(self, where: str, value: object, most: float = math.inf) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 <= value <= most:
             upper = f" to {most}" if most < math.inf else " upwards"
-            raise self.bad(where, f"{where} is a number from 0{upper}, and this is {value!r}.")
+            raise self.bad(where, f"{where} must be a number from 0{upper}, not {value!r}.")
         return value
 
     def moment(self, where: str, value: object) -> datetime.datetime:
@@ -343,7 +343,7 @@ class _File:
             shown = value.isoformat() if isinstance(value, datetime.date) else repr(value)
             raise self.bad(
                 where,
-                f"{where} is a date with a time, such as 2026-10-05T23:59:00, and this is {shown}.",
+                f"{where} must be a date with a time, such as 2026-10-05T23:59:00, not {shown}.",
             )
         return in_zone(value, self.zone)
 
@@ -461,7 +461,7 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.write_text(text, "utf8")
     read_term(path)
-    return f"{path}: read it, and choose."
+    return f"{path}: read it, and make your choices."
 
 
 def read_term(path: str | Path) -> Term:
@@ -552,7 +552,7 @@ def _demand_droppable(file: _File, term: Term) -> None:
             )
         dropped += of
     if len(set(dropped)) < len(dropped):
-        raise file.bad("drop", "an assignment is in two rules of what is dropped.")
+        raise file.bad("drop", "an assignment occurs in two [[drop]] rules.")
 
 
 def _demand_members(file: _File, term: Term) -> None:
@@ -631,7 +631,7 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
         column = next((name for name in TIMES if name in row), None)
         if column is None:
             raise BadTerm(
-                f"{path}: no column says when something was handed in; it may be called "
+                f"{path}: no column gives the time of a hand-in. Such a column may be called "
                 f"{', '.join(TIMES)}."
             )
         if row[column] in ("", "-"):
@@ -639,9 +639,9 @@ def _times(path: Path, zone: datetime.tzinfo) -> Times:
         when = as_time(row[column])
         if when is None:
             raise BadTerm(
-                f"{path}: {student!r}: {row[column]!r} is not a time that we can read. "
-                "Write such as 2026-10-06 20:01, or download the table with your system in "
-                "English."
+                f"{path}: {student!r}: {row[column]!r} is not a time that we can read. Write it "
+                "like 2026-10-06 20:01, or set your system to English and download the table "
+                "again."
             )
         found[student] = in_zone(datetime.datetime.fromisoformat(when), zone, later=False)
     return Times(roster, found)
@@ -798,13 +798,13 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
     marked = [one.assignment for one in graded if one.late and not one.handed_in]
     if marked and term.late.marked is None and term.late.costs:
         raise BadTerm(
-            f"Of {', '.join(sorted(set(marked)))}, {len(marked)} are marked as late by the system, "
-            "which does not say when they came. "
-            "Say what that costs: marked = 0.1 in [late], or 0; or name a table of times."
+            f"Of {', '.join(sorted(set(marked)))}, {len(marked)} are marked as late by the "
+            "system, which does not say when they came. Set the cost, as marked = 0.1 (or 0) in "
+            "[late], or give a table of times."
         )
     return [
-        f"{name}: of {unknown.count(name)} nobody knows when they were handed in, and lateness "
-        f'cost nothing. A table of your system says it: times = "worksheet.csv" in '
+        f"{name}: {unknown.count(name)} notebooks came at an unknown time, so lateness cost them "
+        f'nothing. Give a table of times from your system: times = "worksheet.csv" in '
         f"[assignments.{name}]."
         for name in sorted(set(unknown))
     ]

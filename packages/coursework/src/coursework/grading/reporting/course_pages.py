@@ -28,7 +28,7 @@ STATES = {
 OUTCOMES = {
     "correct": "right",
     "wrong": "wrong",
-    "invalid": "not in the form asked for",
+    "invalid": "not in the required form",
     "undecided": "undecided",
     "decided": "decided by a person",
     "not attempted": "not attempted",
@@ -125,8 +125,8 @@ def write_course(
 def _misspelt(term: Term, worth: Mapping[str, float]) -> list[str]:
     missing = [name for name in term.assignments if name not in worth]
     others = sorted(set(worth) - set(term.assignments))
-    return [f"{name}: nothing of it was graded, so it does not count yet." for name in missing] + [
-        f"{name} was graded and is not in the term: it counts nowhere." for name in others
+    return [f"{name} has not been graded, so it does not count yet." for name in missing] + [
+        f"{name} was graded but is not in term.toml, so it does not count." for name in others
     ]
 
 

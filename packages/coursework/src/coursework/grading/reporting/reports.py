@@ -45,8 +45,8 @@ DEEDS = {
     "factor": "gave {factor} times the answer",
     "one wrong": "has one of the {number} wrong",
     "rounded too far": "rounded too far",
-    "half": "gave half of it",
-    "double": "gave twice of it",
+    "half": "gave half the answer",
+    "double": "gave twice the answer",
     "supplement": "gave the supplementary angle",
     "complement": "gave the complementary angle",
     "not turned": "left the components as they were, along the first frame",
@@ -54,14 +54,14 @@ DEEDS = {
     "other numbers": "answered with other numbers than those given to them",
     "stray symbol": "used a symbol that the question does not have",
     "undefined": "gave something without a finite value",
-    "too large": "gave something too large to be worked out",
+    "too large": "gave something too large to evaluate",
     "not real": "gave complex numbers",
-    "shape": "gave something of another shape or kind",
-    "frame": "gave another frame than the one asked for",
+    "shape": "gave something of the wrong shape or kind",
+    "frame": "gave the wrong frame",
     "raised an error": "gave a function that stops with an error",
     "returned nothing": "gave a function that returns nothing",
     "printed": "gave a function that prints and returns nothing",
-    "not unit length": "gave something that has not unit length",
+    "not unit length": "gave something not of unit length",
     "degrees": "gave angles in degrees",
     "unreadable": "gave something that cannot be read as an answer",
     "right only where it is checked": "gave something that is right only where the check looks",
@@ -70,13 +70,12 @@ MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the t
 MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 NOTES = {
-    "works only out of order": "It works only if its cells are run in another order than they "
-    "stand in. "
-    "The answers count; before you hand in, choose *Restart the kernel "
-    "and run all cells*.",
+    "works only out of order": "It works only if its cells run in a different order. "
+    "The answers count, but next time choose *Restart the kernel "
+    "and run all cells* before you hand in.",
     "wrote into the records": "Its code wrote where answers are recorded. "
-    "What it wrote was not taken for more than an answer.",
-    "could not be run": "It could not be run here. Your instructor will look at it.",
+    "We treated what it wrote as nothing more than an answer.",
+    "could not be run": "We could not run it. Your instructor will look at it.",
 }
 
 
@@ -177,7 +176,7 @@ def write_moves(laboratory: Laboratory, folder: Path) -> None:
     groups = (
         ("Who would gain", laboratory.gain),
         ("Who would lose", laboratory.lose),
-        ("What cannot be judged from what is stored, and is to be run again", laboratory.again),
+        ("What we must run again, because the stored answers are not enough", laboratory.again),
         ("Whose share of the points would stay the same", laboratory.even),
     )
     write(folder / PAGE, page("laboratory.html", groups=groups, lines=laboratory.lines()))
@@ -398,7 +397,7 @@ def _histogram(points: Mapping[float, int], worth: float) -> list[dict[str, floa
 PARTS = (
     ("correct", "right"),
     ("wrong", "wrong"),
-    ("invalid", "not in the form asked for"),
+    ("invalid", "not in the required form"),
     ("undecided", "undecided"),
     ("none", "not attempted"),
 )
@@ -468,7 +467,7 @@ def _oddities(record: Record) -> dict[str, None]:
         found.update(dict.fromkeys(notebook.notes))
         found.update(dict.fromkeys(f"its code {said}" for said in notebook.tried))
         if notebook.unknown_questions:
-            found["it checks an answer to a question that the assignment does not have"] = None
+            found["it checks an answer to a question that is not in the assignment"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
         found.update(
             dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)

@@ -214,7 +214,7 @@ class Notebook(NamedTuple):
 def _unchanged(one: Beside | Notebook) -> bytes:
     data = one.read()
     if hashlib.sha256(data).hexdigest() != one.digest:
-        raise Unfit("It was changed while the class was graded.")
+        raise Unfit("It changed while we were grading the class.")
     return data
 
 
@@ -258,7 +258,9 @@ def take_in(
         if len(files) >= MOST_FILES:
             refused.append(
                 Refused(
-                    name, "", f"There are more than {MOST_FILES} files; the rest was not looked at."
+                    name,
+                    "",
+                    f"There are more than {MOST_FILES} files. We did not look at the rest.",
                 )
             )
             break
@@ -375,7 +377,7 @@ def _take(
         return
     if claim is None:
         refused.append(
-            Refused(name, "", "Its name does not say whose it is, as those of the others do.")
+            Refused(name, "", "Its name does not say whose it is, as the other names do.")
         )
         return
     try:
@@ -455,10 +457,10 @@ def _with_student(
 
 
 NO_GROUP = (
-    "Several students handed this in together, and they are no group in term.toml: whose is it? "
-    "Write them under [groups], such as team-1 = ['ada', 'ben']."
+    "Several students handed this in together, but they are not a group in term.toml. Add them "
+    "under [groups], such as team-1 = ['ada', 'ben']."
 )
-NOT_MATCHED = "Write its folder's or file's name into a column `handed in as` of the roster."
+NOT_MATCHED = "Write the name of its folder or file in a column `handed in as` of the roster."
 
 
 def _without_conflicts(
@@ -485,7 +487,7 @@ def _without_conflicts(
         if one.student in unsure:
             those = ", ".join(sorted(unsure[one.student]))
             why = (
-                f"Two submissions claim to be this student's: {those}. Neither was graded: whose "
+                f"Two submissions claim to be this student's: {those}. We graded neither. Whose "
                 "are they?"
             )
             refused.append(Refused(one.file, one.student, why))
@@ -581,7 +583,7 @@ def _files(
         held = _Folder(folder)
         yield name, os.stat(path).st_mtime_ns, lambda: _read_file(name, held.handle)
     else:
-        raise Unfit(f"There is nothing at {path}.")
+        raise Unfit(f"{path} does not exist.")
 
 
 def _files_of_folder(
@@ -604,14 +606,10 @@ def _files_of_folder(
             try:
                 about = os.stat(name, dir_fd=handle, follow_symlinks=False)
             except OSError as error:
-                refused.append(Refused(_text(full), "", f"It cannot be read: {error.strerror}."))
+                refused.append(Refused(_text(full), "", f"We cannot read it: {error.strerror}."))
                 continue
             if stat.S_ISLNK(about.st_mode):
-                refused.append(
-                    Refused(
-                        _text(full), "", "This is a link to another place. It was not followed."
-                    )
-                )
+                refused.append(Refused(_text(full), "", "This is a link, which we did not follow."))
             elif stat.S_ISREG(about.st_mode):
                 yield _text(full), about.st_mtime_ns, functools.partial(_read_below, top, full)
             elif results and os.path.samestat(results, about):
@@ -620,9 +618,7 @@ def _files_of_folder(
                 refused.append(Refused(_text(full), "", "This is a device or a pipe, not a file."))
         folders[:] = [name for name in folders if not _is_litter(name)]
         if folders and inside.count("/") >= DEEPEST:
-            refused.append(
-                Refused(_text(inside), "", "Its folders are nested too deeply to be looked at.")
-            )
+            refused.append(Refused(_text(inside), "", "Its folders are nested too deeply."))
             folders.clear()
 
 
@@ -648,7 +644,7 @@ def _read_below(top: _Folder, name: str) -> bytes:
                     dir_fd=handle,
                 )
             except OSError as error:
-                raise Unfit(f"It cannot be read: {error.strerror}.") from None
+                raise Unfit(f"We cannot read it: {error.strerror}.") from None
             stack.callback(os.close, handle)
         return _read_file(last, handle)
 
@@ -660,7 +656,7 @@ def _read_file(name: str, folder: int) -> bytes:
             name, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC, dir_fd=folder
         )
     except OSError as error:
-        raise Unfit(f"It cannot be read: {error.strerror}.") from None
+        raise Unfit(f"We cannot read it: {error.strerror}.") from None
     with open(handle, "rb") as file:
         if not stat.S_ISREG(os.fstat(handle).st_mode):
             raise Unfit("This is not a regular file.")
@@ -735,8 +731,8 @@ def _files_of_archive(path: str, refused: list[Refused], repositories: set[str])
         unpacked += min(entry.file_size, MOST_BYTES)
         if not why and unpacked > MOST_UNPACKED:
             why = (
-                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB; this was not read any "
-                "more."
+                f"The archive unpacks to more than {MOST_UNPACKED >> 30} GB. We did not read this "
+                "file."
             )
         if why:
             refused.append(Refused(shown, "", why))
@@ -781,11 +777,11 @@ def _why_not_unpacked(entry: zipfile.ZipInfo, name: str) -> str:
         or re.match(r"[A-Za-z]:", name)
         or "\\" in name
     ):
-        return "Its name leads out of the archive."
+        return "Its path leads out of the archive."
     if stat.S_ISLNK(entry.external_attr >> 16):
-        return "This is a link to another place. It was not followed."
+        return "This is a link, which we did not follow."
     if entry.flag_bits & 1:
-        return "It is locked with a password."
+        return "It is encrypted with a password."
     if entry.file_size > MOST_BYTES:
         return f"It is larger than {MOST_BYTES >> 20} MB."
     return ""
@@ -805,10 +801,10 @@ def _read_entry(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         ValueError,
         MemoryError,
     ) as error:
-        raise Unfit(f"It cannot be unpacked: {str(error)[:100]}") from None
+        raise Unfit(f"We cannot unpack it: {str(error)[:100]}") from None
     except Exception as error:
         if type(error).__module__ in ("zlib", "lzma", "_lzma", "bz2"):
-            raise Unfit(f"It cannot be unpacked: {str(error)[:100]}") from None
+            raise Unfit(f"We cannot unpack it: {str(error)[:100]}") from None
         raise
 
 
@@ -819,10 +815,10 @@ def _inside_archive(name: str, read: Read, refused: list[Refused]) -> Iterator[t
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             entries = sorted(archive.infolist(), key=lambda entry: entry.filename)
     except (Unfit, zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
-        refused.append(Refused(name, "", f"This archive cannot be read: {str(error)[:100]}"))
+        refused.append(Refused(name, "", f"We cannot read this archive: {str(error)[:100]}"))
         return
     if len(entries) > MOST_BESIDE or sum(entry.file_size for entry in entries) > MOST_BYTES:
-        refused.append(Refused(name, "", "This archive contains too much to be a student's work."))
+        refused.append(Refused(name, "", "This archive is too large for a student's work."))
         return
     names = Counter(entry.filename for entry in entries)
     for entry in entries:
@@ -892,7 +888,7 @@ def read_notebook(data: bytes) -> tuple[list[CodeCell], list[str]]:
         )
     cells = _list(notebook.get("cells"))
     if len(cells) > MOST_CELLS:
-        raise Unfit(f"It has {len(cells)} cells; at most {MOST_CELLS} are read.")
+        raise Unfit(f"It has {len(cells)} cells, but we read at most {MOST_CELLS}.")
     code: list[CodeCell] = []
     grade_ids: list[str] = []
     for cell in cells:
@@ -995,7 +991,7 @@ def _json(data: bytes) -> dict[str, object]:
     if not data.strip():
         raise Unfit("The file is empty.")
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        raise Unfit("It is written in UTF-16; notebooks are written in UTF-8.")
+        raise Unfit("It is encoded in UTF-16, but notebooks must be in UTF-8.")
     if sum(map(data.count, (b",", b"[", b"{"))) > MOST_VALUES:
         # Strings are removed first, since signs in them, such as in a long output, are not values.
         without_texts = TEXT.sub(b"", data)
@@ -1006,7 +1002,7 @@ def _json(data: bytes) -> dict[str, object]:
     except Unfit:
         raise
     except UnicodeDecodeError:
-        raise Unfit("It is not written in UTF-8, as notebooks are.") from None
+        raise Unfit("It is not encoded in UTF-8, as notebooks must be.") from None
     except RecursionError:
         raise Unfit("It is nested too deeply.") from None
     except ValueError as error:

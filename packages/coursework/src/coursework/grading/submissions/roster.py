@@ -132,7 +132,7 @@ class Roster:
             self.people[person.student] = person
         if not self.people:
             raise BadRoster(
-                f"{path} names no student. Its columns may be called {', '.join(sorted(COLUMNS))}."
+                f"{path} lists no students. Its columns may be called {', '.join(sorted(COLUMNS))}."
             )
         addresses = {
             name: one.called["email"][0]
@@ -169,8 +169,8 @@ class Roster:
                 return self.group_of[min(found)], WORDS[kind]
             if found:
                 return None, (
-                    f"Several students of the roster fit: {', '.join(sorted(found))}. If they work "
-                    "together, write them under [groups] in term.toml."
+                    f"Several students in the roster match: {', '.join(sorted(found))}. If they "
+                    "work together, list them under [groups] in term.toml."
                 )
             if kind in self.kinds and kind in (
                 "canvas",
@@ -180,8 +180,8 @@ class Roster:
             ):
                 surest = kind
             if kind == "github" and kind not in self.kinds:
-                return None, "The roster has no column `github`, and that name anybody may choose."
-        return None, "Nobody in the roster fits."
+                return None, "The roster has no column `github`, and anybody may choose that name."
+        return None, "Nobody in the roster matches."
 
     def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
         """Whether all whom these keys mean work in one group."""
@@ -217,7 +217,7 @@ def _rows(path: Path) -> Iterator[tuple[int, dict[str, str]]]:
     try:
         header, lines = cells_in(path)
     except OSError as error:
-        raise BadRoster(f"The roster {path} cannot be read: {error.strerror}.") from None
+        raise BadRoster(f"We cannot read the roster {path}: {error.strerror}.") from None
     repeated = [name for name, times in Counter(header).items() if times > 1 and name]
     if repeated:
         raise BadRoster(f"{path}: two columns are called {repeated[0]!r}.")
