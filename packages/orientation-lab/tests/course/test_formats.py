@@ -89,7 +89,7 @@ def test_a_format_that_is_not_known_is_refused_in_words(tmp_path, monkeypatch, n
     monkeypatch.chdir(tmp_path)
     questions.notebook_questions.cache_clear()
     with pytest.raises(
-        RuntimeError, match=f"of moored are of format {number}.*reads format 4.*update"
+        RuntimeError, match=f"of moored have format {number}.*reads format 4.*update"
     ):
         questions.find_question("moored/docking", "")
 
