@@ -78,7 +78,7 @@ def test_nothing_is_empty_above_the_caption_of_the_workbench(page, site, width):
     page.set_viewport_size({"width": width, "height": 900})
     page.goto(f"{site}workbench.html")
     page.wait_for_function(SETTLED)
-    page.locator(".moving[data-figure=workbench][data-ready]").wait_for()
+    page.locator(".moving[data-figure=workbench] .answer[aria-busy=false]").wait_for()
     empty = page.locator("figure > figcaption").first.evaluate("""(caption) => {
       const parts = [...caption.parentElement.querySelectorAll('.live *')];
       const lowest = parts.filter((part) => !part.children.length && part.checkVisibility())

@@ -151,7 +151,8 @@ class Visit:
     def weights(self):
         """Return the bytes over the wire, by address."""
         return {
-            url: len(gzip.compress(response.body(), 6)) for url, response in self.responses.items()
+            url: len(gzip.compress(response.body(), 6))
+            for url, response in list(self.responses.items())
         }
 
     def __enter__(self):

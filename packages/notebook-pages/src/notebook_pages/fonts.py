@@ -152,7 +152,8 @@ def name_of(source):
 def face_rule(folder, family, weight, style, source, reach):
     signs = f";unicode-range:{reach}" if reach else ""
     return (
-        f'@font-face{{font-family:"{family}";font-weight:{weight};font-style:{style};'
+        f'@font-face{{font-family:"{family}";font-weight:{weight};'
+        f"{f'font-style:{style};' * (style != 'normal')}"
         f'font-display:swap;src:url({folder}/{name_of(source)}) format("woff2"){signs}}}'
     )
 

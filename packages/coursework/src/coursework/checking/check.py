@@ -45,7 +45,7 @@ LONGEST_SHOWN = 1_500
 # The message in place of a verdict on a value that is no longer in the notebook.
 OUTDATED = (
     "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
-    "an earlier value. We checked nothing. Correct that cell, run it, and then run this check "
+    "an earlier value. We checked nothing. Fix that cell, run it, and then run this check "
     "again."
 )
 

@@ -110,7 +110,7 @@ class Fields:
     >>> about.maybe("title", text)
     >>> about.get("worth", number)
     Traceback (most recent call last):
-    coursework.checking.fields.Misread: levers/see-saw: 'worth' should be a number, and is 'two'.
+    coursework.checking.fields.Misread: levers/see-saw: 'worth' should be a number, not 'two'.
     """
 
     def __init__(self, value: object, where: str) -> None:
