@@ -122,8 +122,14 @@ def test_what_holds_answers_is_not_written_where_students_look(odd, tmp_path, mo
     for folder in (odd.exercises, odd.sealed, odd.archive.parent):
         with pytest.raises(AuthorError, match="would hold all answers"):
             bank(odd, folder / "deep" / "bank.xml", "moodle")
-    with pytest.raises(AuthorError, match="no question and no notebook 'trial/even'"):
-        bank(odd, tmp_path / "bank.xml", "moodle", ["trial/even"])
     monkeypatch.chdir(PROJECT / "examples" / "plane-statics")
-    main(["bank", str(tmp_path / "a.xml"), "--format", "moodle", "--questions", "units/which"])
+    to_moodle = ["bank", str(tmp_path / "a.xml"), "--format", "moodle", "--questions"]
+    for name, why in (
+        ("units/even", "no question and no notebook 'units/even'"),
+        ("units/torque", r"(?s)no file was written.*units/torque: its answer"),
+    ):
+        with pytest.raises(SystemExit, match=why):
+            main([*to_moodle, name])
+    assert not [*tmp_path.glob("a*")]
+    main([*to_moodle, "units/which"])
     assert "HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only" in capsys.readouterr().out

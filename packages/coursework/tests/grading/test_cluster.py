@@ -15,7 +15,7 @@ import threading
 
 import psutil
 import pytest
-from grading_class import LIMITS, handed_in, put, write_sources
+from grading_class import LIMITS, contents, grade_quietly, handed_in, put, write_sources
 
 from coursework.grading import commands
 from coursework.grading.execution import cluster_keys
@@ -83,29 +83,10 @@ def solutions(tmp_path):
     return write_sources(tmp_path / "solutions")
 
 
-def graded(submissions, solutions, out, scheduler=None):
-    return grade(
-        submissions,
-        out,
-        solutions=solutions,
-        running=Running(limits=LIMITS, scheduler=scheduler),
-        show=io.StringIO(),
-    )
-
-
-def contents(folder):
-    """Every file that depends on nothing but what was handed in."""
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name not in ("run.log", "lock", "journal.jsonl")
-    }
-
-
 @pytest.mark.long
 def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, tmp_path):
     here, there = tmp_path / "here", tmp_path / "there"
-    graded(submissions, solutions, here)
+    grade_quietly(submissions, here, solutions)
     lost, over = [], threading.Event()
 
     def lose_a_worker():
@@ -123,7 +104,7 @@ def test_a_cluster_that_loses_a_worker_changes_no_byte(submissions, solutions, t
         killer = threading.Thread(target=lose_a_worker)
         killer.start()
         try:
-            said = graded(submissions, solutions, there, address)
+            said = grade_quietly(submissions, there, solutions, address)
         finally:
             over.set()
             killer.join()
@@ -200,7 +181,7 @@ def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, d
     preload.write_text(HOSTILE.format(folder=str(touched), deed=deed))
     with cluster(tmp_path, preload=preload) as (address, _):
         with pytest.raises(ValueError, match="sent something else than a result"):
-            graded(submissions, solutions, tmp_path / "out", address)
+            grade_quietly(submissions, tmp_path / "out", solutions, address)
     assert str(os.getpid()) not in os.listdir(touched)
     assert not list((tmp_path / "out" / "records").glob("*/*"))
 
@@ -233,14 +214,14 @@ def test_a_lost_scheduler_is_said_and_nothing_is_lost(
         killer.start()
         try:
             with pytest.raises(ValueError, match="scheduler at .* was lost"):
-                graded(submissions, solutions, out, address)
+                grade_quietly(submissions, out, solutions, address)
         finally:
             over.set()
             killer.join()
     kept = len(list((out / "waiting").glob("*/*.json")))
     assert kept >= 2
     put(submissions, "takes-long", handed_in())
-    done = graded(submissions, solutions, out)
+    done = grade_quietly(submissions, out, solutions)
     assert (done["graded"], done["kept"], done["refused"]) == (8 - kept, kept, 0)
 
 
@@ -264,7 +245,7 @@ def test_a_cluster_that_is_not_there_is_said(submissions, solutions, tmp_path, m
 
     monkeypatch.setattr(cluster, "CONNECT_WITHIN", "0.5s")
     with pytest.raises(ValueError, match="cannot reach a Dask scheduler at tcp://127.0.0.1:1"):
-        graded(submissions, solutions, tmp_path / "out", "tcp://127.0.0.1:1")
+        grade_quietly(submissions, tmp_path / "out", solutions, "tcp://127.0.0.1:1")
 
 
 @pytest.mark.long

@@ -25,6 +25,7 @@ from grading_class import (
     LIMITS,
     RIGHT,
     SETUP,
+    contents,
     give,
     grade_quietly,
     handed_in,
@@ -158,15 +159,6 @@ def rows_of(path):
 
 def outcomes(course, student):
     return [mark.outcome for mark in record(course, student).marks.values()]
-
-
-def contents(folder):
-    """Every file that depends on nothing but what was handed in."""
-    return {
-        str(path.relative_to(folder)): path.read_bytes()
-        for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.name not in ("run.log", "lock", "journal.jsonl")
-    }
 
 
 # ---- what each notebook gets

@@ -205,7 +205,7 @@ def bank(
     Raises
     ------
     AuthorError
-        The file would reach students, or there is no such question.
+        The file would reach students, there is no such question, or none can be exported.
     """
     path = Path(out).resolve()
     for folder in (course.exercises, course.sealed, course.archive.parent):
@@ -225,6 +225,10 @@ def bank(
         questions = {name: items for name, items in questions.items() if name not in left}
     write = exporting.moodle if format == "moodle" else exporting.qti
     lines = [f"{name}: {reason}." for name, reason in left.items()]
+    if not questions:
+        raise AuthorError(
+            "\n".join(["None of these questions can be exported, so no file was written.", *lines])
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
     for place, content in (
         (path, write(course.title, questions)),

@@ -187,14 +187,8 @@ def ask(notebook: Path, answers: Path | None, to: Path | None) -> None:
     if answers is None or to is None:
         print(as_text(notebook))
         return
-    try:
-        reply = answers.read_text("utf8")
-    except OSError as error:
-        raise AuthorError(f"cannot read {answers}: {error.strerror}") from None
-    print(
-        f"{to} answers {', '.join(with_answers(notebook, reply, to))}. Mark it with "
-        "`coursework grade`."
-    )
+    answered = with_answers(notebook, answers.read_text("utf8"), to)
+    print(f"{to} answers {', '.join(answered)}. Mark it with `coursework grade`.")
 
 
 def bank(out: Path, format: str, questions: Sequence[str]) -> None:

@@ -590,16 +590,12 @@ class _Uses(ast.NodeVisitor):
             self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.generic_visit(node)
 
-    def visit_Attribute(self, node: ast.Attribute) -> None:
-        self._change(node)
-
-    def visit_Subscript(self, node: ast.Subscript) -> None:
-        self._change(node)
-
-    def _change(self, node: ast.Attribute | ast.Subscript) -> None:
+    def visit_Attribute(self, node: ast.Attribute | ast.Subscript) -> None:
         if not isinstance(node.ctx, ast.Load):
             self.bound |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
         self.generic_visit(node)
+
+    visit_Subscript = visit_Attribute
 
 
 def checked_names(notebook: NotebookNode) -> dict[str, str]:
