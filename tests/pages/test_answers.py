@@ -867,7 +867,7 @@ class Life:
 
 @pytest.mark.long
 def test_nothing_is_ever_lost(context, site):
-    life, steps = Life(context, site, seed=2), 100
+    life, steps = Life(context, site, seed=2), 50
     history = []
     for number in range(steps):
         history.append(life.step())

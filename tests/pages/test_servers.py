@@ -278,12 +278,6 @@ def nginx(folder, added=""):
 
 
 @pytest.mark.long
-def test_nginx_as_debian_has_it(page, tmp_path):
-    with nginx(tmp_path) as address:
-        run_and_stop(page, address)
-
-
-@pytest.mark.long
 def test_policy_as_a_header_lets_python_run(page, tmp_path):
     """Unlike a policy in the page, a header also applies to threads; Python must start under it."""
     text = (HTML / QUIET).read_text("utf8")

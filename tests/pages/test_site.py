@@ -118,7 +118,7 @@ class Visit:
         self.site = site
         self.page.on("console", lambda m: m.type == "error" and self.faults.append(m.text))
         self.page.on("pageerror", lambda error: self.faults.append(str(error)))
-        self.page.on("requestfailed", lambda r: self.faults.append(f"failed: {r.url}"))
+        self.page.on("requestfailed", self.note_failure)
         self.page.on("request", self.note_request)
         self.page.on("requestfinished", self.note_response)
         self.page.goto(site + name)
@@ -131,6 +131,11 @@ class Visit:
             self.page.reload()
             self.page.wait_for_selector("html:not(.settling, .in-parts)")
             self.page.evaluate("document.fonts.ready.then(() => true)")
+
+    def note_failure(self, request):
+        # Leaving a page cuts off what it still fetches, which is no fault of the page or its server.
+        if request.failure != "net::ERR_ABORTED":
+            self.faults.append(f"failed: {request.url}: {request.failure}")
 
     def shift(self):
         """Return how far lines moved, without the change of typefaces that came late again."""

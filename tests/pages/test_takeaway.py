@@ -241,7 +241,7 @@ def installed_python(tmp_path_factory):
 
 
 @pytest.mark.long
-@pytest.mark.sampled(4)
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", SOURCES)
 def test_everything_runs_where_pip_installed_the_wheels(
     name, tmp_path, installed_python, readers_variables
