@@ -101,7 +101,7 @@ new-question: setup
 check: $(VENV)/ready-test setup
 	@$(RUN) -m pytest -q tests/test_style.py tests/test_pins.py tests/test_budget.py tests/chapters/test_chapters.py
 
-# Tests that are slow and rarely fail are left to `make test-rest`. `.ci/run test-rest` runs them on a fresh machine.
+# Tests that are slow and rarely fail are left to `make test-rest`. `.ci/run` runs both.
 test: $(VENV)/ready-test book
 	@$(RUN) -m notebook_pages.browser || true
 	@$(RUN) -m pytest -n auto -m "not long"
