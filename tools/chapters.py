@@ -94,8 +94,8 @@ def faults():
         exercises = lines_matching(text, r"^:label: (exercise-\S+)")
         if not exercises:
             yield (
-                f"{text[-1] if text else path}: the chapter asks nothing; here belongs an "
-                f"`{{exercise}}` with a label"
+                f"{text[-1] if text else path}: the chapter has no exercise; add an "
+                f"`{{exercise}}` with a label here"
             )
         for label, line in exercises.items():
             if label not in solved:
@@ -105,7 +105,7 @@ def faults():
                 )
         for question, line in lines_matching(text, r"check\(['\"](chapters/[^'\"]+)").items():
             if question not in sealed:
-                yield f"{line}: {question} is no question of {CHAPTERS_SOURCE}"
+                yield f"{line}: {question} is not a question of {CHAPTERS_SOURCE}"
         if not source_of(name).is_file():
             yield f"{path}:1 (cell 1): its exercises are missing, {source_of(name)}"
         if f"exercises/{name}" not in listed:

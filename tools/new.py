@@ -69,7 +69,7 @@ EXAMPLES = {
         "a pair of the unit vector's components and the angle in radians",
         "",
     ),
-    "sequence": Example("order", "order = 'zxy'", "the sequence as a text such as `'xyz'`", ""),
+    "sequence": Example("order", "order = 'zxy'", "the sequence as a string such as `'xyz'`", ""),
     "choice": Example(
         "side",
         "side = 'left'",
@@ -79,7 +79,7 @@ EXAMPLES = {
     "words": Example(
         "sides",
         "sides = ['left', 'right']",
-        "a list of two texts, each `'left'` or `'right'`",
+        "a list of two strings, each `'left'` or `'right'`",
         "length=2, options=['left', 'right']",
     ),
     "measurement": Example(
@@ -88,18 +88,16 @@ EXAMPLES = {
     "order": Example(
         "steps",
         "steps = ['first', 'then', 'last']",
-        "a list of the three texts in their order",
+        "a list of the three strings in their order",
         "options=['first', 'last', 'then']",
     ),
     "free text": Example(
         "why",
         "why = 'Since the axis is shared.'",
-        "one or two sentences, as a text",
+        "one or two sentences, as a string",
         "rubric=['names the shared axis']",
     ),
-    "truth values": Example(
-        "holds", "holds = [True, False]", "a list of two truth values", "length=2"
-    ),
+    "truth values": Example("holds", "holds = [True, False]", "a list of two Booleans", "length=2"),
     "function": Example(
         "doubled",
         "def doubled(number):\n    return 2*number",
@@ -127,7 +125,7 @@ def question_cells(name, kind):
         code(
             f"check('{name}', {example.variable})\n### BEGIN HIDDEN TESTS\n"
             f"question('{name}', {arguments}, worth=2,\n"
-            f"         solution='{TO_BE_WRITTEN}: how one gets there.')\n"
+            f"         solution='{TO_BE_WRITTEN}: how to get there.')\n"
             "### END HIDDEN TESTS"
         ),
     ]
@@ -180,10 +178,11 @@ def chapter_cells(name, title):
             f"check('chapters/{name}', {EXAMPLES['expression'].variable})"
         ),
         markdown(
-            f"Worked solution: {{ref}}`in the appendix <solution-{name}>`. More to answer: "
-            f"{{doc}}`the exercises of this chapter <../exercises/{name}>`.",
+            f"Worked solution: {{ref}}`in the appendix <solution-{name}>`. More questions: "
+            f"{{doc}}`/exercises/{name}`.",
             "## Summary",
-            f":::{{admonition}} Summary\n:class: summary\n- {TO_BE_WRITTEN}: what to keep.\n:::",
+            f":::{{admonition}} Summary\n:class: summary\n- {TO_BE_WRITTEN}: what to "
+            "remember.\n:::",
         ),
     ]
 
@@ -224,8 +223,8 @@ def add_line(path, after, line):
 
 #: One of the questions to ask aloud, by its number.
 ASKED_ALOUD = (
-    f"\n### {{number}}. {TO_BE_WRITTEN}\n\n{TO_BE_WRITTEN}: a question for a minute, without a "
-    f"formula.\n\n**A good answer**: {TO_BE_WRITTEN}: what it contains.\n\n"
+    f"\n### {{number}}. {TO_BE_WRITTEN}\n\n{TO_BE_WRITTEN}: a question that takes a minute, "
+    f"without a formula.\n\n**A good answer**: {TO_BE_WRITTEN}: what it contains.\n\n"
     + f'- **"{TO_BE_WRITTEN}: a usual wrong answer."** The idea that is missing.\n'
     * 3
 )
@@ -262,7 +261,7 @@ def new_chapter(name, title, after):
     exercises.cells = [
         markdown(
             f"# Exercises: {title}",
-            f"After the chapter *{title}*. {TO_BE_WRITTEN}: what holds for all of them.",
+            f"After the chapter *{title}*. {TO_BE_WRITTEN}: what applies to all of them.",
         ),
         code("import sympy as sm\n\nfrom coursework import check"),
     ]
@@ -291,7 +290,7 @@ def new_chapter(name, title, after):
         f"added to _toc.yml and {INDEX}: both pages, after those of {after}",
         f"added to {CHAPTERS_SOURCE}: the question chapters/{name}, which the chapter asks",
         f"added to {SOLUTIONS[-1]}: its worked solution",
-        f"added to {SPOKEN}: a place for three questions to ask aloud",
+        f"added to {SPOKEN}: room for three questions to ask aloud",
     ]
 
 

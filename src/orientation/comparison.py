@@ -165,7 +165,7 @@ class Diagnosis(NamedTuple):
         if self.same:
             return "The same orientation."
         if not self.causes:
-            return "Not the same orientation, and none of the usual mix-ups."
+            return "Not the same orientation, and it is none of the usual mix-ups."
         if len(self.causes) == 1:
             return f"Not the same orientation: {self.causes[0]}."
         return (
@@ -303,7 +303,7 @@ def _substitutions(
             with_changes(lambda p: {name: math.degrees(p[name]) for name in group}),
         )
         yield (
-            f"{those} turned from degrees to radians once too often",
+            f"{those} converted from degrees to radians once too often",
             with_changes(lambda p: {name: math.radians(p[name]) for name in group}),
         )
 
@@ -326,7 +326,7 @@ def _turns(
         )
     values = [[entry.real for entry in put_in(angles, names, point)] for point in points]
     if not all(map(match, truths, _body_fixed(values, sequence))):
-        raise ValueError(f"expected is not the body fixed {sequence} orientation of these angles")
+        raise ValueError(f"`expected` is not the body fixed {sequence} orientation of these angles")
     return values, sequence
 
 
@@ -369,7 +369,7 @@ def _sequence_mixups(
             _body_fixed([list(map(math.degrees, angles)) for angles in values], sequence),
         )
         yield (
-            "the angles were turned from degrees to radians once too often",
+            "the angles were converted from degrees to radians once too often",
             _body_fixed([list(map(math.radians, angles)) for angles in values], sequence),
         )
 

@@ -562,7 +562,7 @@ def symbol_components(value: Values, item: tuple[int, ...], name: str) -> list[E
 
     if hasattr(value, "to_matrix"):
         raise TypeError(
-            f"{name} is the vector {value}; give its components along one frame, from its method "
+            f"{name} is the vector {value}; give its components along one frame, using its method "
             "to_matrix"
         )
     nested = _listed(value)

@@ -62,7 +62,7 @@ FORGOTTEN = {
         "tests/solutions/chapters.ipynb",
         "question('chapters/scalar-last'",
         "question('chapters/scalar'",
-        r"chapters/unit-quaternions.ipynb:\d+ \(cell \d+\): chapters/scalar-last is no question of",
+        r"chapters/unit-quaternions.ipynb:\d+ \(cell \d+\): chapters/scalar-last is not a question",
     ),
     "place among the chapters": (
         "_toc.yml",

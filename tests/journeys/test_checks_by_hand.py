@@ -89,7 +89,7 @@ def test_an_orientation_is_shown_as_a_triad(kernel):
     kernel("matrix = sm.Matrix([[0, 1, 0], [0, 0, 1], [1, 0, 0]])")
     reply = kernel("check('simple-orientations/crank', matrix)")
     # Its x axis lies along the y axis of N: to the right.
-    assert 'aria-label="The triad of A, as it was read, in the triad of N."' in reply
+    assert 'aria-label="The triad of A, as we read your answer, drawn in the triad of N."' in reply
     assert "We read: [[0, 1, 0], [0, 0, 1], [1, 0, 0]]" in kernel(
         "print(repr(check('simple-orientations/crank', matrix)))"
     )

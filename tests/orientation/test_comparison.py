@@ -273,7 +273,7 @@ def rebuilt(cause, angles, sequence):
     ):
         return composed(scaled(angles, factors(match[1], DEGREES)), sequence)
     if match := re.fullmatch(
-        r"(.+) (?:was|were) turned from degrees to radians once too often", cause
+        r"(.+) (?:was|were) converted from degrees to radians once too often", cause
     ):
         return composed(scaled(angles, factors(match[1], TOO_OFTEN)), sequence)
     raise AssertionError(f"nobody knows what this means: {cause}")
@@ -288,8 +288,8 @@ SENTENCES = {
     "theta for varphi": "theta and varphi have changed places",
     "degrees": "psi, theta, varphi were given in degrees where radians are expected",
     "degrees of theta": "theta was given in degrees where radians are expected",
-    "too often": "psi, theta, varphi were turned from degrees to radians once too often",
-    "too often varphi": "varphi was turned from degrees to radians once too often",
+    "too often": "psi, theta, varphi were converted from degrees to radians once too often",
+    "too often varphi": "varphi was converted from degrees to radians once too often",
 }
 
 
@@ -352,7 +352,7 @@ def test_numerical_mixups_are_named(sequence):
     ]
     sentences += [
         "the angles were given in degrees where radians are expected",
-        "the angles were turned from degrees to radians once too often",
+        "the angles were converted from degrees to radians once too often",
     ]
     for sentence in sentences:
         answer = rebuilt(sentence, NUMBERS, sequence)
@@ -378,7 +378,7 @@ def test_nothing_is_named_for_other_answers(sequence):
     ):
         diagnosis = diagnose(answer, symbols)
         assert diagnosis == (False, ())
-        assert str(diagnosis) == "Not the same orientation, and none of the usual mix-ups."
+        assert str(diagnosis) == "Not the same orientation, and it is none of the usual mix-ups."
 
 
 @all_sequences
@@ -622,7 +622,7 @@ def test_bad_input():
     with pytest.raises(ValueError, match="'zzx' is not a sequence"):
         diagnose(dcm.T, dcm, NUMBERS, "zzx")
     with pytest.raises(
-        ValueError, match="expected is not the body fixed yxz orientation of these angles"
+        ValueError, match="`expected` is not the body fixed yxz orientation of these angles"
     ):
         diagnose(dcm.T, dcm, NUMBERS, "yxz")
 

@@ -248,7 +248,7 @@ def test_notebook_that_is_taken_away_says_whose_it_is(context, site, tmp_path):
     assert codes[ANSWER - 1] == "mine = 1" and "1 cell of this page" in tab.words()
     tab.bring(tmp_path / "mine.ipynb")
     tab.wait(1, before)  # its ID is in the notebook alone
-    assert tab.words() == "Nothing is different." and tab.errors == []
+    assert tab.words() == "Nothing differs." and tab.errors == []
 
 
 def test_notebook_is_loaded_back(context, site, tmp_path):

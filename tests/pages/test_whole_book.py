@@ -361,7 +361,7 @@ def test_a_still_tells_its_numbers():
 
 def test_without_a_browser_it_says_so(monkeypatch):
     monkeypatch.setattr(browser_module.shutil, "which", lambda name: None)
-    with pytest.raises(SystemExit, match="Neither Chromium nor Chrome is on this machine"):
+    with pytest.raises(SystemExit, match="This machine has neither Chromium nor Chrome"):
         with browser_module.open_browser():
             pass
 

@@ -25,8 +25,8 @@ FLAGS = (
 
 
 MISSING = (
-    "Neither Chromium nor Chrome is on this machine. "
-    "Without one the book is not printed, and the tests that open its pages are skipped. "
+    "This machine has neither Chromium nor Chrome. "
+    "Without one of them there is no PDF, and the tests that open the pages are skipped. "
     "On Debian: sudo apt install chromium; on Ubuntu: sudo snap install chromium; on a Mac and "
     "elsewhere: https://www.google.com/chrome/."
 )

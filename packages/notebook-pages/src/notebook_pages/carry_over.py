@@ -43,7 +43,7 @@ def reader(previous: str) -> Callable[[str], bytes | None]:
         except urllib.error.URLError as error:
             sys.exit(
                 f"{previous} cannot be reached: {error.reason}. If nothing is published there yet, "
-                "leave this command out."
+                "skip this command."
             )
 
     return read
@@ -82,7 +82,7 @@ def main() -> None:
     if not 2 <= len(sys.argv) <= 3:
         sys.exit(
             "usage: python -m notebook_pages.carry_over PREVIOUS [SITE], with the address of the "
-            "last edition and the folder of the new one"
+            "previous edition and the folder of the new one"
         )
     previous, site = sys.argv[1], Path(*sys.argv[2:]) if sys.argv[2:] else HTML
     carried = carry_over(previous, site)
@@ -94,8 +94,8 @@ def main() -> None:
     else:
         size = sum((site / path).stat().st_size for path in carried)
         print(
-            f"{len(carried)} files ({size / 1e6:.1f} MB) of the last edition stay, for readers "
-            "who still have it open."
+            f"{len(carried)} files ({size / 1e6:.1f} MB) of the previous edition are kept, for "
+            "readers who still have it open."
         )
 
 

@@ -24,7 +24,7 @@ INDEX = """# {title}
 
 {links}
 
-Each page checks your answers: replace the dots by your answer and run the cell. Your answers stay
+Each page checks your answers: replace the dots with your answer and run the cell. Your answers stay
 in your browser. To work on your own machine, download
 <a href="take-away/exercises.zip">all exercises</a>; their `README.txt` explains how to begin.
 

@@ -15,7 +15,7 @@ AHEAD = re.compile(rb'\s*<link rel="preload"[^>]*>')
 README = """{title}
 {line}
 
-This is the whole book, to be read without a network.
+This is the whole book, for reading without a network.
 
 Unpack the zip, then open index.html in a browser. Everything that you read
 works from there: the pages, the mathematics, the moving figures, the search
@@ -27,7 +27,7 @@ computer, start one in this folder with
 
     python serve.py
 
-and open the address that it prints. It answers to your computer alone, and
+and open the address that it prints. It answers only your computer, and
 needs no network either. (Cells that use NumPy or Matplotlib may fetch these
 two from the network the first time, and say so.)
 

@@ -99,7 +99,7 @@ class QuestionDirective(SphinxDirective):
         rights = [self.is_right(box, name) for name in names]
         if sum(rights) != 1:
             return self.fault(
-                f"the right answer is {box['answer']}, and the replies are to {', '.join(names)}"
+                f"the right answer is {box['answer']}, but there are replies for {', '.join(names)}"
             )
         if box["kind"] == "answer":
             choices = choice_list()

@@ -126,12 +126,12 @@ def _dcm_fault(question: Question, numbers: Sequence[Number]) -> Fault | None:
         if i == j:
             length = MP.sqrt(MP.fdot(rows[i], rows[i]))
             said = (
-                f"the {names[i]} row should be a unit vector and has length "
+                f"the {names[i]} row should be a unit vector but has length "
                 f"{length_in_words(length)}{where}"
             )
         else:
             said = (
-                f"the {names[i]} and the {names[j]} row should be perpendicular, and their dot "
+                f"the {names[i]} and the {names[j]} row should be perpendicular, but their dot "
                 f"product is {short(MP.fdot(rows[i], rows[j]))}{where}"
             )
         return Fault("not orthogonal", f"This is not a direction cosine matrix: {said}.")
@@ -186,7 +186,9 @@ def _triads(question: Question, entries: Sequence[Number]) -> str:
 
     rows = [[float(entry) for entry in entries[start : start + 3]] for start in (0, 3, 6)]
     target, source = question.frames or ("A", "N")
-    drawing = Drawing(f"The triad of {target}, as it was read, in the triad of {source}.", scale=70)
+    drawing = Drawing(
+        f"The triad of {target}, as we read your answer, drawn in the triad of {source}.", scale=70
+    )
     # The longer one shows where the two coincide.
     drawing.triad("N", IDENTITY, length=1.7, labels=hatted(source.lower()))
     drawing.triad("A", rows, labels=hatted(target.lower()))

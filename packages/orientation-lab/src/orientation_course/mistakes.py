@@ -197,7 +197,7 @@ DEEDS = {
     "axis reversed": "rotated the wrong way round",
     "sequence reversed": "gave the sequence in reverse",
     "cosine for sine": "interchanged sine and cosine",
-    "impossible sequence": "gave a sequence that is none",
+    "impossible sequence": "gave a sequence that is not one of the twelve",
     "zero axis": "gave an axis of length zero",
     "not orthogonal": "gave a matrix that is not orthogonal",
     "left-handed": "gave a left-handed matrix",

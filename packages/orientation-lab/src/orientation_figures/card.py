@@ -38,13 +38,13 @@ ON_THE_FRONT = 12
 FRONT = (
     "Orientation of Reference Frames. "
     "“As here” is the matrix whose rows are the unit vectors of A in N;",
-    "a program with the transposed one gives its columns. Quaternions are Hamilton's, q0 the "
-    "scalar; angles z-x-y.",
+    "a program with the transposed matrix has them as columns. Quaternions are Hamilton's, with "
+    "the scalar q0; angles z-x-y.",
 )
 BACK = (
-    "Of “inverse” numbers the orientation is the inverse. In sequences other than z-x-y the angles "
-    "phi, theta, psi are",
-    "about x, y, z. Where two programs name their axes otherwise, exchange them on both sides of "
+    "Numbers called “inverse” describe the inverse orientation. In sequences other than z-x-y, the "
+    "angles phi, theta, psi are",
+    "about x, y, z. Where two programs name their axes differently, exchange them on both sides of "
     "the matrix.",
 )
 QUESTIONS = (
@@ -54,9 +54,9 @@ QUESTIONS = (
     ),
     (
         "2  Body or space fixed?",
-        "90 degrees about z, then 90 about x: x ends along y body fixed, along z space fixed.",
+        "90 degrees about z, then 90 about x: body fixed, x ends up along y; space fixed, along z.",
     ),
-    ("3  Where is the scalar?", "The quaternion of no turn: the 1 is the scalar."),
+    ("3  Where is the scalar?", "The quaternion of no rotation: the 1 is the scalar."),
     (
         "4  Conjugate?",
         "The quaternion of +30 degrees about z: 0.259 beside 0.966 as here, -0.259 the conjugate.",

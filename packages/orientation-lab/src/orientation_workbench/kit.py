@@ -116,7 +116,7 @@ def convention_of(
     found = explain(np.array(asked), result, first_declared=known[0], second_declared=known[1])
     if not found.chains:
         raise ValueError(
-            f"by no convention known here does the answer follow from the arguments: of "
+            f"no convention known here leads from the arguments to the answer: from "
             f"{np.round(asked[0], 4).tolist()} it made {np.round(result[0], 4).tolist()}"
         )
     best = found.chains[0]
@@ -182,7 +182,7 @@ def assert_convention(
     """
     if unknown := set(expected) - set(EXPECTED):
         raise ValueError(
-            f"{', '.join(sorted(unknown))} is not known; there is {', '.join(EXPECTED)}"
+            f"{', '.join(sorted(unknown))} is not known; choose from {', '.join(EXPECTED)}"
         )
     found = convention_of(function, takes, gives=gives, sequence=sequence)
     wrong = []
@@ -206,4 +206,4 @@ def assert_convention(
     for name, axes, wanted in (("body", found.body, body), ("world", found.world, world)):
         if " ".join(axes) != wanted:
             wrong.append(f"the {name}'s axes: {' '.join(axes)}, not {wanted}")
-    assert not wrong, f"another convention than expected: {'; '.join(wrong)}"
+    assert not wrong, f"a different convention from the one expected: {'; '.join(wrong)}"

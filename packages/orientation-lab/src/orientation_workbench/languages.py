@@ -272,4 +272,4 @@ def _demand(language, name, choice, convention):
         *((which, value, CONVENTIONS.get(which, ())) for which, value in convention.items()),
     ):
         if value not in known:
-            raise ValueError(f"{value!r} is not a {noun}: the choice is {', '.join(known)}")
+            raise ValueError(f"{value!r} is not a {noun}: choose from {', '.join(known)}")

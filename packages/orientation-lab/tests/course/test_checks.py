@@ -228,7 +228,7 @@ def reply_to(authored, answer):
             "sign of every turn",
             "wrong sign",
         ),
-        (2 * GIMBAL, "not orthogonal", "row should be a unit vector and has length 2 at"),
+        (2 * GIMBAL, "not orthogonal", "row should be a unit vector but has length 2 at"),
         (
             GIMBAL + sm.Matrix(3, 3, lambda i, j: sm.Rational(i == j == 2, 10)),
             "not orthogonal",

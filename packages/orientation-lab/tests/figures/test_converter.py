@@ -192,7 +192,7 @@ def test_the_example_of_a_manual_that_cannot_be_run():
 @pytest.mark.parametrize(
     "form, text, message",
     [
-        ("quaternion", "1 0 0", "3 numbers are there, and 4 were expected"),
+        ("quaternion", "1 0 0", "There are 3 numbers here, but quaternion needs 4"),
         ("quaternion", "2, 0, 0, 0", "length 2.0000, not 1"),
         ("matrix", "1 0 0 0 1 0 0 0 -1", "left-handed"),
         ("matrix", "nothing", "0 numbers"),
@@ -218,7 +218,7 @@ def test_rounded_numbers_are_taken_and_said_to_be():
         ]
     )
     assert (
-        "is made 1" in quaternion["said"]
+        "set to 1" in quaternion["said"]
         and "rounded" in matrix["said"]
         and "degrees?" in degrees["said"]
     )
@@ -233,12 +233,12 @@ def test_the_table_names_the_version_that_is_here():
 
 def test_a_side_that_does_not_exist_is_refused():
     for side, message in (
-        ({"program": "SciPi"}, "there is this book, SymPy"),
+        ({"program": "SciPi"}, "choose from this book, SymPy"),
         (
             {"program": "OpenCV", "form": "quaternion"},
-            "OpenCV takes no quaternion; it takes matrix",
+            "OpenCV does not take quaternion; it takes matrix",
         ),
-        ({"programme": "SciPy"}, "what can be chosen is program"),
+        ({"programme": "SciPy"}, "choose from program"),
     ):
         with pytest.raises(Exception, match=message):
             ConverterFigure(source=side)

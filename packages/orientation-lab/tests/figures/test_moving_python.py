@@ -241,7 +241,7 @@ def test_a_misspelt_attribute_is_an_error(figure):
     name = next(iter(figure().state()))
     misspelt = name[:-2] + name[-1] + name[-2] + "e"
     message = (
-        rf"{figure.__name__} has no {misspelt} \(did you mean {name}\?\); what can be set is "
+        rf"{figure.__name__} has no {misspelt} \(did you mean {name}\?\); you can set "
         rf".*{name}"
     )
     with pytest.raises(TypeError, match=message):
@@ -294,15 +294,15 @@ def test_angel_is_not_angle():
         (TriadFigure, "angle", math.nan, "angle is nan"),
         (TriadFigure, "angle", (1, 2), "one number was expected"),
         (TriadFigure, "angle", "0.3", "real numbers"),
-        (TriadFigure, "axis", (0, 0, 0), "points nowhere"),
+        (TriadFigure, "axis", (0, 0, 0), "has no direction"),
         (TriadFigure, "axis", (1, 0), r"\(3,\)"),
         (TriadFigure, "axis", [[1, 0, 0]], "expected"),
         (TriadFigure, "axis", (1, math.inf, 0), "inf"),
-        (TriadFigure, "sequence", "zzx", "zzx.*the twelve are"),
-        (TriadFigure, "sequence", "ZXY", "the twelve are"),
+        (TriadFigure, "sequence", "zzx", "zzx.*the twelve sequences are"),
+        (TriadFigure, "sequence", "ZXY", "the twelve sequences are"),
         (GimbalFigure, "angles", (0, 90, 0), "radians, not degrees"),
         (GimbalFigure, "angles", (0, 1), r"\(3,\)"),
-        (GimbalFigure, "sequence", 313, "the twelve are"),
+        (GimbalFigure, "sequence", 313, "the twelve sequences are"),
         (NineNumbersFigure, "matrix", np.eye(2), r"\(3, 3\)"),
         (NineNumbersFigure, "matrix", [[1, 0, 0], [0, 1, 0], [0, 0, None]], "real numbers"),
         (NineNumbersFigure, "matrix", 100 * np.eye(3), "from -10 to 10"),

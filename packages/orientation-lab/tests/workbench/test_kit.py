@@ -132,7 +132,7 @@ def test_every_flipped_copy_is_caught(name, flip):
     function, takes, expected = LIBRARIES[name]
     if (flipped := FLIPS[flip](function, takes)) is None:
         return  # nothing of that kind goes in
-    with pytest.raises(AssertionError, match="another convention than expected"):
+    with pytest.raises(AssertionError, match="a different convention from the one expected"):
         assert_convention(flipped, takes, **expected)
 
 
@@ -147,7 +147,7 @@ def test_what_is_found_is_said_in_words():
 
 def test_no_convention_is_told():
     fixed = np.eye(3)[[1, 2, 0]]
-    with pytest.raises(ValueError, match="by no convention"):
+    with pytest.raises(ValueError, match="no convention known here"):
         convention_of(lambda q: fixed, "quaternion")
     with pytest.raises(ValueError, match="no rotation"):
         convention_of(lambda q: 2 * np.eye(3), "quaternion")

@@ -22,7 +22,7 @@
       older += [...Object.keys(answers), ...done].filter((name) => !asked.includes(name)).length;
     }
     gone.hidden = !older;
-    gone.textContent = `Your record also holds what you answered in an earlier edition and this one no longer asks: ${older} in all. It is kept, and Export saves it.`;
+    gone.textContent = `Your record also holds answers to questions of an earlier edition that this one no longer asks: ${older} in all. It is kept, and Export saves it.`;
   };
 
   const make = (tag, attributes) => Object.assign(document.createElement(tag), attributes);

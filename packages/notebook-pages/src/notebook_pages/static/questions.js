@@ -53,7 +53,7 @@
       answer: () => (Number.isFinite(value()) ? String(value()) : undefined),
       show: (answer) => (input.value = answer),
       reply: (answer) => nearest(box, answer, 0),
-      hint: "Type a number first, in the unit that the question names: 0.5, 1/2 and 45° can be read.",
+      hint: "First type a number in the unit that the question gives, such as 0.5, 1/2 or 45°.",
     };
   };
   // An arrow to be dragged round a circle, from the x axis on the right towards the y axis, or turned by arrow keys.

@@ -57,7 +57,7 @@ def fragment_of(place: str, content: Mapping[str, Plain]) -> str:
     data = base64.urlsafe_b64encode(text.encode("utf8")).decode("ascii")
     if len(data) > LARGEST:
         raise BadAddress(
-            "This is too much for an address, which some programs would cut. Send it as a file."
+            "This is too long for an address, which some programs would cut off. Send it as a file."
         )
     return f"#{place}={VERSION}.{data.rstrip('=')}"
 
@@ -78,7 +78,8 @@ def carried_by(fragment: str) -> tuple[str, dict[str, Plain]] | None:
     place, version, text = match.groups()
     if int(version) > VERSION:
         raise BadAddress(
-            f"This address is of format {version}, and this edition of the book reads {VERSION}."
+            f"This address has format {version}, but this edition of the book reads only format "
+            f"{VERSION}."
         )
     try:
         data = base64.b64decode(text + "=" * (-len(text) % 4), altchars="-_", validate=True)
@@ -86,7 +87,5 @@ def carried_by(fragment: str) -> tuple[str, dict[str, Plain]] | None:
     except ValueError:
         content = None
     if len(text) > LARGEST or not isinstance(content, dict):
-        raise BadAddress(
-            "This address is not whole: a part of it got lost. Copy it again, to its last letter."
-        )
+        raise BadAddress("This address is incomplete. Copy it again, to its last character.")
     return place, content

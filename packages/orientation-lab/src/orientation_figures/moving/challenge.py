@@ -73,7 +73,8 @@ class ChallengeFigure(MovingFigure):
     def goal(self, dcm):
         if self.task != "match":
             raise ValueError(
-                f"the goal of the task {self.task!r} follows from given; it can be set in 'match'"
+                f"the goal of the task {self.task!r} follows from `given`; only in the task "
+                "'match' can you set it"
             )
         check_dcm(dcm)
         self.given = tuple(zip("zxy", body_fixed_from_dcm(dcm, "zxy")))

@@ -62,23 +62,23 @@ class Side(traitlets.TraitType):
     def validate(self, obj, value):
         if not isinstance(value, dict):
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: a dictionary was expected, as {{'program': 'SciPy'}}"
+                f"{self.name} is {value!r}: expected a dictionary such as {{'program': 'SciPy'}}"
             )
         side = FIRST | {"program": "this book"} | value
         for name, chosen in side.items():
             if name not in CHOICES:
                 raise traitlets.TraitError(
-                    f"{self.name} has {name!r}; what can be chosen is {', '.join(CHOICES)}"
+                    f"{self.name} has {name!r}; choose from {', '.join(CHOICES)}"
                 )
             allowed = CHOICES[name]
             if chosen not in allowed:
                 raise traitlets.TraitError(
-                    f"{self.name} has {name} {chosen!r}; there is {', '.join(allowed)}"
+                    f"{self.name} has {name} {chosen!r}; choose from {', '.join(allowed)}"
                 )
         lines = PROGRAMS.get(side["program"], {}).get("lines", FORMS)
         if side["form"] not in lines:
             raise traitlets.TraitError(
-                f"{side['program']} takes no {side['form']}; it takes {', '.join(lines)}"
+                f"{side['program']} does not take {side['form']}; it takes {', '.join(lines)}"
             )
         return side
 

@@ -158,7 +158,7 @@ class SequenceExplorer(anywidget.AnyWidget):
         """Return a sentence on where the sequence locks, and how far from there the angles are."""
         proper = self.sequence in PROPER_EULER
         where = "θ = 0 and θ = π" if proper else "θ = π/2 and θ = −π/2"
-        axes = "the first and the third turn are about one line"
+        axes = "the first and third rotations are about the same line"
         sentence = f"{'-'.join(self.sequence)} locks at {where}: there {axes}."
         theta = self.values[1]
         if not theta.is_number:
@@ -229,15 +229,15 @@ def angle_from_text(text, name="angle"):
         )
     except (SyntaxError, TypeError, AttributeError, NameError, ValueError, RecursionError):
         raise ValueError(
-            f"{name} is {text!r}: a symbol, a number of radians or an expression such as pi/6 was "
-            "expected"
+            f"{name} is {text!r}: expected a symbol, a number of radians or an expression such "
+            "as pi/6"
         ) from None
     if (
         not isinstance(angle, sm.Expr)
         or angle.is_number
         and not (angle.is_real and angle.is_finite)
     ):
-        raise ValueError(f"{name} is {text!r}: one real angle was expected")
+        raise ValueError(f"{name} is {text!r}: expected one real angle")
     return angle
 
 

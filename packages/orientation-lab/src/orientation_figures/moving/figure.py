@@ -63,7 +63,7 @@ class MovingFigure(anywidget.AnyWidget):
         """Return the message for a name that cannot be set, with the name probably meant."""
         names = sorted({*self.trait_names(state=True), *self._settable()})
         near = "".join(f" (did you mean {close}?)" for close in get_close_matches(name, names, 1))
-        return f"{type(self).__name__} has no {name}{near}; what can be set is {', '.join(names)}"
+        return f"{type(self).__name__} has no {name}{near}; you can set {', '.join(names)}"
 
     @classmethod
     def _settable(cls):

@@ -21,21 +21,21 @@ class Edges(traitlets.TraitType):
             isinstance(edge, (list, tuple)) and len(edge) == 4 for edge in value
         ):
             raise traitlets.TraitError(
-                f"edges is {value!r}: one to five were expected, each a frame, the frame it is "
-                "turned in, an axis and an angle in radians, as (('A', 'N', 'z', 0.7), ('B', 'A', "
-                "'x', 0.5))"
+                f"edges is {value!r}: expected one to five, each with a frame, the frame it is "
+                "turned in, an axis and an angle in radians, such as (('A', 'N', 'z', 0.7), "
+                "('B', 'A', 'x', 0.5))"
             )
         known = ["N"]
         for frame, reference, *_ in value:
             if reference not in known:
                 raise traitlets.TraitError(
-                    f"edges turns {frame} in {reference}, which is not there: the frames are "
-                    f"{known}"
+                    f"edges turns {frame} in {reference}, but there is no frame {reference}; "
+                    f"the frames are {known}"
                 )
             if frame in known or frame not in LETTERS:
                 raise traitlets.TraitError(
-                    f"edges makes the frame {frame!r}: a new one of {', '.join(LETTERS[1:])} was "
-                    "expected"
+                    f"edges makes the frame {frame!r}: expected a new one of "
+                    f"{', '.join(LETTERS[1:])}"
                 )
             known.append(frame)
         turns = Turns((), most=5)
@@ -90,7 +90,7 @@ class GraphFigure(MovingFigure):
         for name in ("target", "source"):
             if now[name] not in known:
                 raise traitlets.TraitError(
-                    f"{name} is {now[name]}, and the frames are {', '.join(known)}"
+                    f"{name} is {now[name]}, but the frames are {', '.join(known)}"
                 )
         return proposal["value"]
 

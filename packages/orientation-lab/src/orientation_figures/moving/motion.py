@@ -21,8 +21,8 @@ class Between(Numbers):
         number = super().validate(obj, value)
         if not self.least <= number <= self.most:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}; from {self.least:g} to {self.most:g} {self.unit} can "
-                "be had"
+                f"{self.name} is {value!r}; it must be from {self.least:g} to {self.most:g} "
+                f"{self.unit}"
             )
         return number
 
@@ -33,7 +33,9 @@ class Moments(Numbers):
     def validate(self, obj, value):
         moments = super().validate(obj, value)
         if not all(0.1 <= moment <= 20 for moment in moments):
-            raise traitlets.TraitError(f"{self.name} is {value!r}; from 0.1 to 20 g m^2 can be had")
+            raise traitlets.TraitError(
+                f"{self.name} is {value!r}; each must be from 0.1 to 20 g m^2"
+            )
         largest = max(moments)
         others = sum(moments) - largest
         if largest > others + 1e-9:

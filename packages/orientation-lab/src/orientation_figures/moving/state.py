@@ -43,8 +43,8 @@ class Numbers(traitlets.TraitType):
                 else ""
             )
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: numbers from {self.smallest:.6g} to {self.largest:.6g} "
-                f"were expected{cause}"
+                f"{self.name} is {value!r}: expected numbers from {self.smallest:.6g} to "
+                f"{self.largest:.6g}{cause}"
             )
         return numbers
 
@@ -58,7 +58,7 @@ class Direction(Numbers):
     def validate(self, obj, value):
         vector = super().validate(obj, value)
         if not any(vector):
-            raise traitlets.TraitError(f"{self.name} is {vector}: a zero vector points nowhere")
+            raise traitlets.TraitError(f"{self.name} is {vector}: a zero vector has no direction")
         return _unit(vector)
 
 
@@ -82,15 +82,15 @@ class Turns(traitlets.TraitType):
         )
         if turns is None:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: {COUNTS[self.fewest]} to {COUNTS[self.most]} pairs "
-                "were expected, each an axis and an angle in radians, as (('z', 0.7), ('x', 0.5))"
+                f"{self.name} is {value!r}: expected {COUNTS[self.fewest]} to {COUNTS[self.most]} "
+                "pairs, each an axis and an angle in radians, such as (('z', 0.7), ('x', 0.5))"
             )
         return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
 
     def _axis(self, axis):
         if axis not in ("x", "y", "z"):
             raise traitlets.TraitError(
-                f"{self.name} holds the axis {axis!r}: 'x', 'y' or 'z' was expected"
+                f"{self.name} has the axis {axis!r}: expected 'x', 'y' or 'z'"
             )
         return axis
 
@@ -101,7 +101,7 @@ class Turns(traitlets.TraitType):
             raise traitlets.TraitError(f"{self.name}: {error}") from None
         if abs(number) > math.pi + 1e-12:
             raise traitlets.TraitError(
-                f"{self.name} holds the angle {number:.6g}: it must be from -pi to pi. "
+                f"{self.name} has the angle {number:.6g}: it must be from -pi to pi. "
                 "Angles are in radians, not degrees"
             )
         return number
@@ -113,7 +113,7 @@ class Sequence(traitlets.TraitType):
     def validate(self, obj, value):
         if value not in SEQUENCES:
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}; the twelve are {', '.join(SEQUENCES)}"
+                f"{self.name} is {value!r}; the twelve sequences are {', '.join(SEQUENCES)}"
             )
         return value
 

@@ -78,7 +78,9 @@ class Stop:
     def __init__(self, name):
         known = [still["id"] for still in scenes()["stills"]]
         if name not in known:
-            raise ValueError(f"{name!r} is no stop of the essay; there is {', '.join(known)}")
+            raise ValueError(
+                f"{name!r} is not a stop of the essay; the stops are {', '.join(known)}"
+            )
         self.name = name
         self.still = scenes()["stills"][known.index(name)]
 

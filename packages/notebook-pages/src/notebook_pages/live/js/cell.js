@@ -99,7 +99,7 @@ export class Cell {
     const answer = `other_${name.split("/")[1].replace(/\W/g, "_")}${name.match(/\d*$/)[0]}`;
     if (!this.code.includes(`check('${name}'`)) {
       const above = this.code.trimEnd().replace(/^((?:check|worked_solution)\(.*\))$(?![\s\S])/m, "display($1)");
-      this.write(`${above}\n\n# The same with other numbers: replace the dots by your answer, and keep the name.\nfrom coursework import check, variant\n\nsibling = variant('${name}')\ndisplay(sibling)\n${answer} = ...\ncheck('${name}', ${answer})`);
+      this.write(`${above}\n\n# The same with other numbers: replace the dots with your answer, and keep the name.\nfrom coursework import check, variant\n\nsibling = variant('${name}')\ndisplay(sibling)\n${answer} = ...\ncheck('${name}', ${answer})`);
     }
     this.editor.focus();
     this.page.run(this);

@@ -102,7 +102,7 @@ export class Editions {
     try {
       wait();
       const answer = await fetch(this.key(path, print), { cache: "no-cache", signal: giveUp.signal });
-      if (!answer.ok) throw new Error(`${path} did not come (${answer.status})`);
+      if (!answer.ok) throw new Error(`${path} could not be downloaded (${answer.status})`);
       const parts = [], reader = answer.body.getReader();
       for (let { done, value } = await reader.read(); !done; { done, value } = await reader.read()) {
         wait();
@@ -111,7 +111,7 @@ export class Editions {
       const content = await new Blob(parts).arrayBuffer();
       const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", content));
       const found = Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("").slice(0, print.length);
-      if (found !== print) throw new Error(`${path} belongs to another edition; try again`);
+      if (found !== print) throw new Error(`${path} belongs to a different edition; try again`);
       return new Response(content, { headers: { "Content-Type": answer.headers.get("Content-Type") ?? "application/octet-stream" } });
     } finally {
       clearTimeout(clock);

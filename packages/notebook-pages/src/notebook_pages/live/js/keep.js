@@ -58,7 +58,7 @@ export async function keep(tools) {
   }
   actions["Not now"] = () => tools.say("Nothing was changed.");
   tools.ask(isNewest ? "The book is stored in this browser, for reading without a network."
-    : there ? "The copy stored here is of another edition. Update it?"
+    : there ? "The copy stored here is from a different edition. Update it?"
       : "Store the book in this browser, for reading without a network? When the pages change, it downloads the changes.", actions);
 }
 

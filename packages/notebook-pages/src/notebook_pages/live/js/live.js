@@ -206,7 +206,7 @@ class Page {
       return button;
     };
     this.edit();
-    const putAway = () => this.bar.say("It is put away. “Back up everything” still saves it.");
+    const putAway = () => this.bar.say("It has been put away. “Back up everything” still saves it.");
     const box = element("div", "live-note live-choice",
       element("p", "", gone ? `You wrote this for “${name}”, which this page no longer asks:`
         : "The book’s code here has changed since you edited it. This was yours:"),
@@ -252,7 +252,7 @@ class Page {
   // Run one cell, and before it what has not run yet; without a cell, the whole page.
   run(cell) {
     if (!cell && this.cells.every((another) => this.leftOut(another))) {
-      return this.bar.say("Each cell of this page draws a picture that is already there. Run below a cell draws it again.");
+      return this.bar.say("Every cell of this page draws a picture that is already shown. Run, below a cell, draws it again.");
     }
     // Asked twice by a quick hand: it is on its way.
     if (cell ? this.atWork(cell) : this.whole) return;
@@ -320,7 +320,7 @@ class Page {
   }
 
   async load() {
-    this.bar.say("Python is being loaded ...");
+    this.bar.say("Loading Python ...");
     this.has = null;
     this.python = new Python(this.place, (message, cell) => this.hear(message, cell));
     const { python } = this;
@@ -338,7 +338,7 @@ class Page {
 
   hear(message, cell) {
     if (message.type === "progress" && !this.has) this.bar.progress(message.bytes, message.all);
-    else if (message.type === "fetching") this.bar.say(`${named(message.name)} is being fetched from ${message.place} ...`);
+    else if (message.type === "fetching") this.bar.say(`Fetching ${named(message.name)} from ${message.place} ...`);
     else if (message.type === "output") cell.take(message.message);
     else if (message.type === "kept") this.keepOf(message);
     else if (message.type === "widget") this.figures.hear(message.message);
@@ -388,7 +388,7 @@ class Page {
       this.tally.ran += 1;
       this.tally.plain += Boolean(outcome.plain);
       const words = cell.words.join(" ").trim();
-      const by = outcome.plain ? ", its numbers by plain Python in NumPy’s place" : "";
+      const by = outcome.plain ? ", computed by plain Python instead of NumPy" : "";
       this.last = `${cell.name} ran${by}${words ? `. Result: ${words.length > 200 ? `${words.slice(0, 200)} ...` : words}` : ", without a result to show"}`;
     } else if (status === "missing") {
       this.leave(cell, outcome.reason);
@@ -403,7 +403,7 @@ class Page {
       this.empty();
     } else {
       const lost = status === "ended";
-      const why = outcome.reason === "interrupted" || !lost ? "Stopped." : `Python broke off: ${outcome.reason}.`;
+      const why = outcome.reason === "interrupted" || !lost ? "Stopped." : `Python stopped: ${outcome.reason}.`;
       const then = lost ? " At the next run Python restarts, and the page’s earlier cells run first." : " Everything that earlier cells defined is still there.";
       cell.end(element("div", "live-note", element("p", "", why + then)));
       cell.ran = false;

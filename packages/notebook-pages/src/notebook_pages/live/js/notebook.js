@@ -74,6 +74,6 @@ export async function prepare() {
   try {
     await open(path);
   } catch (error) {
-    console.warn(`The answers of the page were not brought into the notebook: ${error.message}`);
+    console.warn(`The answers of the page could not be copied into the notebook: ${error.message}`);
   }
 }

@@ -230,9 +230,9 @@
       const numbers = known?.whose ? `the numbers of ${known.whose}` : "the default numbers";
       const now = `${name ? `The numbers are those of ${name}` : "You have the default numbers"} now`;
       let said = "";
-      if (shown[number]) said = name && `Run this cell: you get the numbers of ${name}.`;
+      if (shown[number]) said = name && `Run this cell to get the numbers of ${name}.`;
       else if (!known) said = whose !== undefined && `${now}: run this cell once your answer is for these.`;
-      else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and that stays known. ${now}: run the question and this cell to see how you stand.`;
+      else if (known.whose !== undefined) said = `${known.outcome === "correct" ? "✓ Right with" : "Tried with"} ${numbers}, and this is remembered. ${now}: run the question and this cell to see how you stand.`;
       else if (known.outcome === "correct") said = "✓ Correct, in an earlier check. Run this cell to see the reply to the answer above it.";
       else said = `You have tried this one before. ${run}`;
       if (!said) return;

@@ -42,7 +42,7 @@ async function renew() {
 async function answer(event, url) {
   // Where nothing has come of the last look, or it still goes on, no page waits for the next one.
   if (event.request.mode === "navigate" && !looking) {
-    looking = renew().catch((error) => console.info(`The kept book stays as it is: ${error.message}`));
+    looking = renew().catch((error) => console.info(`The stored book stays as it is: ${error.message}`));
     const over = looking.finally(() => (looking = null));
     event.waitUntil(over);
     await Promise.race([over, new Promise((go) => setTimeout(go, RACE))]);

@@ -17,8 +17,8 @@
 //
 // What a newer version has kept is left alone, and the reader is told. What finds no room lasts as long as the page.
 export const VERSION = 3;
-export const NEWER = "A newer edition of this book has stored data in this browser in a form that this page cannot read. They stay"
-  + " as they are. What you do here lasts until you leave the page; a reload may bring the newer edition.";
+export const NEWER = "A newer edition of this book has stored data in this browser in a form that this page cannot read. It stays"
+  + " as it is. What you do here lasts until you leave the page; a reload may bring the newer edition.";
 
 export const cacheOf = (site) => `book ${site}`;
 const LISTS = ["read", "done", "checked"];

@@ -66,7 +66,7 @@ export async function handIn(data, originals) {
   });
   notebook.metadata.book = { cells: stamp }; // by which it is loaded back
   save(data.notebook.split("/").at(-1), `${JSON.stringify(notebook, null, 1)}\n`);
-  const left = kept.size ? ` ${count(kept.size, "text", "texts")} written for an older edition ${kept.size === 1 ? "is" : "are"} not in it: choose on the page first.` : "";
+  const left = kept.size ? ` ${count(kept.size, "text", "texts")} written for an older edition ${kept.size === 1 ? "is" : "are"} not in it: decide about each on the page first.` : "";
   return `Saved with what you have written in ${count(answered, "cell")} of this page.${left}`;
 }
 
@@ -100,7 +100,7 @@ export async function load(data, originals) {
   if (!kept) return "This browser has no room for everything in the notebook, or stores nothing, so not all of it was loaded.";
   const more = codes.length - originals.length;
   const own = more > 0 ? ` ${count(more, "cell")} of yours that the page does not have ${more === 1 ? "stays" : "stay"} in the file.` : "";
-  return `${changed ? `${count(changed, "cell")} changed: what stood in ${changed === 1 ? "it" : "them"} before is kept below each cell.` : "Nothing is different."}${own}`;
+  return `${changed ? `${count(changed, "cell")} changed: what stood in ${changed === 1 ? "it" : "them"} before is kept below each cell.` : "Nothing differs."}${own}`;
 }
 
 // --- all answers of the book ----------------------------------------------------------------------

@@ -64,7 +64,7 @@ function watchFetching(all) {
     }, 1000);
     const fail = (reason) => {
       clearInterval(clock);
-      const why = silent >= SILENCE ? `nothing came for ${SILENCE} seconds` : reason;
+      const why = silent >= SILENCE ? `nothing arrived for ${SILENCE} seconds` : reason;
       faults.push(`${fileOf(url)} could not be fetched from ${new URL(url, location.href).host} (${why})`);
       if (!python) postMessage({ type: "dead", reason: faults.at(-1) }); // Python cannot start without it
       return new Error(faults.at(-1));
@@ -114,7 +114,7 @@ function watchFetching(all) {
 
 // Of a module that is broken, or forbidden, Pyodide tells the console only.
 function watchModules() {
-  if (typeof WebAssembly === "undefined") throw new Error("this browser, or a setting of it, forbids WebAssembly");
+  if (typeof WebAssembly === "undefined") throw new Error("this browser, or one of its settings, forbids WebAssembly");
   for (const name of ["instantiate", "instantiateStreaming"]) {
     const plain = WebAssembly[name];
     WebAssembly[name] = async (...given) => {
@@ -154,7 +154,7 @@ async function start({ runtime, pyodide, lock: listed, interrupts }) {
   watchFetching(() => lock?.bytes);
   const [{ loadPyodide }] = await Promise.all([
     import(`${runtime}${pyodide}pyodide.js`).catch(() => {
-      throw new Error(`pyodide.js did not come from ${location.host}, or did not come as JavaScript`);
+      throw new Error(`pyodide.js was not served by ${location.host}, or not as JavaScript`);
     }),
     fetch(`${runtime}${listed}pyodide-lock.json`).then(async (answer) => (lock = await answer.json())),
   ]);
@@ -224,7 +224,7 @@ async function bring(module) {
   const came = name in python.loadedPackages;
   if (!came) {
     console.info(problems.join("\n"));
-    const silent = faults.at(-1)?.includes("nothing came for");
+    const silent = faults.at(-1)?.includes("nothing arrived for");
     refused[name] = `${named(name)} could not be fetched from ${place}${silent ? ", which does not answer" : ""}`;
   }
   tellWhatIsMissing();

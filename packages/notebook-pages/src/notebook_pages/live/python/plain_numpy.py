@@ -33,8 +33,8 @@ def real():
     numpy = importlib.import_module("numpy")
     if numpy is STAND_IN:
         raise ModuleNotFoundError(
-            "this needs the real NumPy: `import numpy` in the same cell has it fetched, where it "
-            "can be",
+            "this needs the real NumPy: write `import numpy` in the same cell, and the page "
+            "fetches it if it can",
             name="numpy",
         )
     return numpy
@@ -391,7 +391,7 @@ class Array:
         return getattr(self.__array__(), name)
 
     def __reduce__(self):
-        raise TypeError("an array of the page's own cannot be copied so")
+        raise TypeError("an array of the page's own cannot be copied in this way")
 
     def tolist(self):
         return nested(self.values, self.shape)

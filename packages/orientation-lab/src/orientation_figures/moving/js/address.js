@@ -3,12 +3,12 @@
 // of this format; an address that somebody has kept is read for ever. address.py is the same in Python.
 
 const ADDRESS_VERSION = 1, LONGEST_ADDRESS = 6000;
-const NEWER_ADDRESS = 'This address was made by a newer edition of the book than this page. Load the page anew.';
-const CUT_ADDRESS = 'This address is not whole: a part of it got lost on its way. Copy it again, to its last letter.';
-const LONG_ADDRESS = 'This is too much for an address, which some programs would cut. Send it as a file or in a message.';
+const NEWER_ADDRESS = 'This address was made by a newer edition of the book than this page. Reload the page.';
+const CUT_ADDRESS = 'This address is incomplete. Copy it again, to its last character.';
+const LONG_ADDRESS = 'This is too long for an address, which some programs would cut off. Send it as a file or in a message.';
 
 function finite(name, value) {
-  if (typeof value === 'number' && !Number.isFinite(value)) throw new Error(`${name} is ${value}, which no address carries.`);
+  if (typeof value === 'number' && !Number.isFinite(value)) throw new Error(`${name} is ${value}, which cannot be stored in an address.`);
   return value;
 }
 

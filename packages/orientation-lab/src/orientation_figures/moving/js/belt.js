@@ -64,11 +64,11 @@ export function render({ model, el }) {
 
 function sentence(theta, passed, turns) {
   const by = `The plate has been turned by ${plain(degrees(theta), 0)}°.`;
-  if (!turns) return `${by} The belt is twisted as far. Go on to one full turn, or to two.`;
+  if (!turns) return `${by} The belt is twisted just as far. Go on to one full turn, or to two.`;
   if (turns === 1) {
-    return `${by} It lies as at first, but the belt is twisted, and $q$ has come to −1. ${passed > 0.995
-      ? 'Passed round the plate, the belt is twisted the other way: the twist has not gone.' : 'Now hold the plate and pass the belt round it.'}`;
+    return `${by} The plate is as it was at first, but the belt is twisted, and $q$ has become −1. ${passed > 0.995
+      ? 'Passed round the plate, the belt is twisted the other way: the twist has not disappeared.' : 'Now hold the plate and pass the belt round it.'}`;
   }
-  return passed > 0.995 ? `${by} Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, one cannot.`
+  return passed > 0.995 ? `${by} Passed round the plate, which has not turned, the belt is flat: two full turns can be undone, but one cannot.`
     : `${by} The belt has twice the twist, and $q$ is 1 again. Hold the plate and pass the belt round it.`;
 }

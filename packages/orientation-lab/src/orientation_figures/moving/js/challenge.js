@@ -60,13 +60,13 @@ export function render({ model, el }) {
     names: AXES.map((i) => AXES.map((j) => `${what} row ${i}, column ${j}`)), light: () => {} });
   const wanted = matrix('Matrix of the goal', 'goal,'), current = matrix('Matrix of the box', 'box,');
   const rest = element('span', { class: 'value' });
-  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Turn that remains', 'aria-valuemin': '0', 'aria-valuemax': '180' }, element('span', {}));
+  const bar = element('div', { class: 'bar', role: 'meter', 'aria-label': 'Remaining turn', 'aria-valuemin': '0', 'aria-valuemax': '180' }, element('span', {}));
   const text = liveText();
   open(el, stage(sheet, text),
     element('div', { class: 'controls' }, element('div', { class: 'row-of-controls' }, task.element, next),
       group('Turn the box', 'row-of-controls', element('span', {}, 'Turn'), ...turns, back, show), last.element, ghost.element),
     element('div', { class: 'readouts' }, readout(['The goal'], wanted.element), readout(['The box, ${}^A\\mathbf{C}^N$'], current.element),
-      readout(['Turn that remains', rest], bar)));
+      readout(['Remaining turn', rest], bar)));
 
   function draw() {
     const { task: now, given, turns: made } = state();
@@ -106,12 +106,12 @@ const told = (turns) => turns.map(([axis, angle]) => `${inDegrees(angle)} about 
 function sentence(task, given, made, angle) {
   const count = `${made.length} turn${made.length === 1 ? '' : 's'}`;
   if (made.length && angle < CLOSE) {
-    return task === 'ghost' ? `Found: ${made.map(([axis]) => axis).join('-')}. There is no other sequence with these angles that ends here.`
+    return task === 'ghost' ? `Found: ${made.map(([axis]) => axis).join('-')}. No other sequence with these angles ends here.`
       : `Solved in ${count}: ${told(made)}.`;
   }
   if (task === 'match') return `Turn the box about its own arrows until its matrix is that of the goal. ${made.length ? `Now: ${told(made)}.` : 'Read the rows of the goal first: where does each arrow have to point?'}`;
   if (task === 'undo') return `The box was turned from $N$ through ${told(given)}. Bring it home. ${made.length ? `${count} so far: ${told(made)}.` : ''}`;
   const angles = given.map(([, one]) => inDegrees(one)).join(', then ');
   return `The ghost turned through ${angles}, each time about one of its own arrows. Press Play, watch, and make the same turns. ${
-    made.length === given.length ? 'Not yet: take back, and look again.' : ''}`;
+    made.length === given.length ? 'Not yet: undo a turn, and look again.' : ''}`;
 }

@@ -34,18 +34,18 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 // The orientation that the numbers in a text describe, and what was put right; a text that means none is an error.
 export function read(side, text) {
   const numbers = (text.replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
-  if (numbers.length !== wanted) throw new Error(`${numbers.length} numbers are there, and ${wanted} were expected for ${side.form}.`);
+  if (numbers.length !== wanted) throw new Error(`There are ${numbers.length} numbers here, but ${side.form} needs ${wanted}.`);
   let dcm = null, said = '';
   if (side.form === 'matrix') {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));
     const fault = checkDcm(dcm), near = fault ? nearestDcm(dcm) : null;
     if (near && !(near.dcm && near.distance < ROUNDED)) throw new Error(`${fault}.`);
-    if (near && near.distance > EXACT) said = `The matrix was rounded: the nearest valid one, ${near.distance.toFixed(4)} away, is taken.`;
+    if (near && near.distance > EXACT) said = `The matrix was rounded: the nearest valid one, ${near.distance.toFixed(4)} away, is used.`;
     dcm = near ? near.dcm : dcm;
   } else if (side.form === 'quaternion') {
     const parts = side.scalar === 'last' ? [numbers[3], ...numbers.slice(0, 3)] : numbers, long = length(parts);
     if (Math.abs(long - 1) > ROUNDED) throw new Error(`The quaternion has length ${long.toFixed(4)}, not 1.`);
-    if (Math.abs(long - 1) > EXACT) said = `The length was ${long.toFixed(4)}, and is made 1.`;
+    if (Math.abs(long - 1) > EXACT) said = `The length was ${long.toFixed(4)}. It has been set to 1.`;
     dcm = dcmFromQuaternion(unit(parts));
   } else {
     const values = side.unit === 'degrees' ? numbers.map(radians) : numbers;
@@ -79,7 +79,7 @@ export function told(side, orientation) {
 export function byAxesOf(source, target, programs, dcm) {
   const sides = [source, target].map(({ program }) => ({ program, ...programs[program] })), [one, other] = sides;
   const [body, world] = [0, 1].map((k) => (one.axes?.[k] && other.axes?.[k] ? multiply(other.axes[k], transpose(one.axes[k])) : IDENTITY));
-  if (determinant(body) !== determinant(world)) return { dcm, said: 'Axes of one world unknown: none are exchanged.' };
+  if (determinant(body) !== determinant(world)) return { dcm, said: 'The axes of one of the worlds are unknown, so none are exchanged.' };
   return { dcm: multiply(body, dcm, transpose(world)),
     said: body === world ? '' : `x, y, z point ${sides.map((side) => `${side.body.join(', ')} in ${side.program}`).join('; ')}.` };
 }
@@ -255,9 +255,9 @@ function note(to, numbers, programs) {
   const angles = to.unit === 'degrees' ? numbers.map(radians) : numbers;
   if (to.form === ANGLES[0] && gimbalLockMargin(angles, to.sequence) < 1e-6
     || to.form === ANGLES[1] && gimbalLockMargin(reversed(angles), reversed(to.sequence).join('')) < 1e-6) {
-    return 'This is gimbal lock: the first angle and the last could share their turn in any other way.';
+    return 'This is gimbal lock: the first and the last angle could share this rotation in any other way.';
   }
   const version = programs[to.program]?.version;
-  const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar stands ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
+  const means = { matrix: `the matrix is ${to.matrix}`, quaternion: `the scalar comes ${to.scalar}` }[to.form] ?? `the numbers are in ${to.unit}`;
   return `For ${to.program}${version ? ` (tried: ${version})` : ''} ${means}.`;
 }

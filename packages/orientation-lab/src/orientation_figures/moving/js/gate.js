@@ -27,7 +27,7 @@ export function render({ model, el }) {
   const redraw = onceAFrame(draw);
   const steel = slider({ symbol: '', name: 'Steel of the car', unit: 'microtesla', sign: ' µT', factor: 1, min: 0, max: 12, step: 2,
     more: () => '', change: setSteel });
-  const gate = choice({ name: 'The gate rejects, of honest looks', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
+  const gate = choice({ name: 'Share of honest measurements that the gate rejects', options: rejected.map((share) => [share, share ? percent(share) : 'none: no gate']),
     change: (value) => change(model, { gate: Number(value) }) });
   const text = liveText();
   open(el, stage(sheet, text), element('div', { class: 'controls' },
@@ -38,8 +38,8 @@ export function render({ model, el }) {
     steel.show(model.get('steel'));
     gate.show(String(model.get('gate')));
     sheet.draw(() => picture(sheet, walks.curves));
-    text.say(`Of a hundred walks half end within ${plain(walks.middle, 1)}° of the true heading, the worst ${plain(walks.worst, 1)}° off. `
-      + `${percent(walks.rejected)} of all looks at the field were rejected. Drawn: five of the walks.`);
+    text.say(`Of a hundred walks, half end within ${plain(walks.middle, 1)}° of the true heading, and the worst is ${plain(walks.worst, 1)}° off. `
+      + `The filter rejected ${percent(walks.rejected)} of all field measurements. Five of the walks are drawn.`);
   }
 
   draw();

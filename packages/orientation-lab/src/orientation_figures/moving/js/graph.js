@@ -85,5 +85,5 @@ function sentence(to, from, path, made) {
   const factors = path.slice(1).map((name, k) => dcmName(path[k], name)).join(' ');
   const back = made.filter(([name, parent]) => path.indexOf(name) > path.indexOf(parent)).map(([name, parent]) => dcmName(parent, name));
   return `${dcmName(to, from)} = ${factors}, over the path from $${from}$ to $${to}$. ${
-    back.length ? `Walked backwards, and so transposed: ${back.join(' and ')}.` : 'Nothing is walked backwards.'}`;
+    back.length ? `These steps go backwards, so their matrices are transposed: ${back.join(' and ')}.` : 'No step goes backwards.'}`;
 }

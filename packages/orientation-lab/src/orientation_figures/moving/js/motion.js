@@ -286,7 +286,7 @@ export function render({ model, el }) {
     const now = (run.step * k).toFixed(1), count = run.flips.filter((flip) => flip <= k).length;
     const begin = `After ${now} s the ${what} ${often(count, middle)}. `;
     if (run.ended && k === run.last) {
-      return `${begin}Here the run ends: the computed numbers have passed ten thousand. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
+      return `${begin}Here the run ends: the computed numbers have exceeded ten thousand. ${how === 'Euler' ? 'Euler’s' : 'This'} method needs smaller steps.`;
     }
     if (name === 'angles') {
       return `${begin}The Euler angles always give a valid orientation. It is wrong by ${power(wrong)} rad, and ${Math.round(run.marginAt(k))}° from gimbal lock.`;

@@ -104,7 +104,7 @@ export function render({ model, el }) {
   const save = element('a', { class: 'button', download: 'phone.csv' }, 'Download phone.csv'); // there when it leads somewhere
   const copy = button('Copy for a cell', async () => {
     await navigator.clipboard.writeText(`phone = '''${file}'''\n`);
-    text.say('Copied. Paste it into a cell: phone is then the text of the file.');
+    text.say('Copied. Paste it into a cell, and phone will be the text of the file.');
   }, { hidden: '' });
   const light = () => {};   // these numbers mean what their headings say
   const matrix = numberTable({ name: 'Direction cosine matrix of the phone with respect to the ground', kind: 'bracket', rows: B, columns: N,
@@ -130,7 +130,7 @@ export function render({ model, el }) {
       if (!kind?.requestPermission) continue;
       const answer = await kind.requestPermission().catch(() => 'denied');
       if (answer !== 'granted') {
-        text.say('The sensors were refused. Reload the page to be asked again; until then there is the recording.');
+        text.say('Access to the sensors was refused. Reload the page to be asked again. Meanwhile, play the recording.');
         return;
       }
     }
@@ -138,7 +138,7 @@ export function render({ model, el }) {
     text.say('Waiting for the sensors ...');
     setTimeout(() => {
       if (alive) return;
-      text.say(window.isSecureContext ? 'No sensor answers on this device: play the recording instead, or open this page on a phone.'
+      text.say(window.isSecureContext ? 'No sensor responds on this device: play the recording instead, or open this page on a phone.'
         : 'Browsers give sensors only to pages that came over a secure connection: play the recording instead.');
     }, PATIENCE);
   }

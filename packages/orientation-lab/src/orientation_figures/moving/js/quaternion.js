@@ -75,7 +75,7 @@ function doubleView(model) {
   const fields = AXES.map((axis, k) => numberField({ name: `${axis} component of the axis`, change(value) {
     typed[k] = value;
     if (length(typed) > 0) pointTo(unit(typed));
-    else text.say('A zero vector points nowhere: at least one component of the axis must differ from zero.');
+    else text.say('A zero vector has no direction: at least one component of the axis must differ from zero.');
   } }));
   const presets = IDENTITY.map((axis, k) => button(`$\\hat{n}_${AXES[k]}$`, () => pointTo(axis), { 'aria-label': `axis n ${AXES[k]}` }));
   const light = (i, j) => {

@@ -146,5 +146,5 @@ function sentence(end, kind, dcm, compare, otherDcm, lit, more) {
   const apart = axisAngleFromDcm(multiply(otherDcm, transpose(dcm)))[1];
   const what = compare === OTHER ? `The same turns, ${kind === 'body' ? 'space' : 'body'} fixed, lead` : `With turns ${compare} the chain leads`;
   return apart < 1e-7 ? `${what} to the same orientation: here $E$ is where $${end}$ is.`
-    : `${what} to $E$ instead of $${end}$. A turn of ${angleText(apart)} lies between the two.`;
+    : `${what} to $E$ instead of $${end}$. The two differ by a turn of ${angleText(apart)}.`;
 }

@@ -39,7 +39,7 @@ export function render({ model, el }) {
   const fields = AXES.map((axis, k) => numberField({ name: `${axis} component of the axis`, change(value) {
     typed[k] = value;
     if (length(typed) > 0) pointTo(unit(typed));
-    else text.say('A zero vector points nowhere: at least one component of the axis must differ from zero.');
+    else text.say('A zero vector has no direction: at least one component of the axis must differ from zero.');
   } }));
   const presets = [...IDENTITY, [1, 1, 1]].map((axis, k) => button(N[k] ?? '(1, 1, 1)', () => pointTo(unit(axis)),
     { 'aria-label': k < 3 ? `axis n ${AXES[k]}` : 'axis 1, 1, 1' }));
@@ -118,7 +118,7 @@ const MEANINGS = {
       `${A[AXES.indexOf(sequence[2])]}, which the first two turns have put in its place`][k];
     return {
       words: `${ANGLES[k]} = ${inDegrees(euler[k])}: the ${['first', 'second', 'third'][k]} turn, about ${about}.`
-        + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have one axis.' : ''),
+        + (margin < radians(1) ? ' Here this sequence is at gimbal lock: the first and the third turn have the same axis.' : ''),
       draw(sheet) {
         const frame = (rows, letter) => (letter ? sheet.triad(letter, rows, { length: letter === 'N' ? REACH : 1 })
           : rows.forEach((row) => sheet.arrow(row, { colour: 'muted' })));

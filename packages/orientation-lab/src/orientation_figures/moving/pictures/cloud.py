@@ -65,10 +65,10 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         f"A sphere with the tips of the unit vectors b x and b z of {COUNT} orientations. Their "
         f"errors are {math.degrees(figure.large):.0f} degrees about {frame}, and "
-        f"{math.degrees(figure.small):.0f} degrees across that axis (standard deviations). The "
-        "tips lie along arcs about this axis and form bent clouds. The mean of the b x has the "
-        f"length {figure.mean_length:.2f}, inside the sphere. The arrows b x and b z show the "
-        "estimate, and the triad N the ground.",
+        f"{math.degrees(figure.small):.0f} degrees about each axis perpendicular to it (standard "
+        "deviations). The tips lie along arcs about this axis and form bent clouds. The mean of "
+        f"the vectors b x has the length {figure.mean_length:.2f}, inside the sphere. The arrows "
+        "b x and b z show the estimate, and the triad N the ground.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.large, figure.small, figure.side == "body")

@@ -46,8 +46,9 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         "The error of a phone's heading over 37 seconds of a walk, for five walks. From 28 to 33 "
         f"seconds the route leads past a car that adds {figure.steel} microtesla. The filter has "
-        f"{gate}. The five curves end at {ends} degrees. Of a hundred walks half end "
-        f"within {walks['middle']} degrees, and the worst {walks['worst']} degrees off. The filter "
-        f"rejected {100 * walks['rejected']:.0f} per cent of the measurements of the field."
+        f"{gate}. The five curves end at {ends} degrees. Of a hundred walks, half end "
+        f"within {walks['middle']} degrees of the true heading, and the worst is {walks['worst']} "
+        f"degrees off. The filter rejected {100 * walks['rejected']:.0f} per cent of the field "
+        "measurements."
     )
     return sheet.paint(picture, walks["curves"])

@@ -210,7 +210,7 @@ def _ways(figure, Sheet):
         f"orientation of A to that of B, a turn of {math.degrees(angle_between(*ends)):.0f} "
         "degrees. C moves by slerp, a turn about one axis at constant speed. D moves by "
         "interpolated Euler angles z-x-y. E moves by the matrix nearest to interpolated entries, "
-        "on the same path as C but at another speed. "
+        "on the same path as C but at a different speed. "
         "A straight dashed line inside the sphere shows the blended entries before they are "
         "repaired. "
         f"After {figure.share * SECONDS:.1f} of {SECONDS} seconds, as shown, the speeds of C, D "

@@ -127,7 +127,7 @@ def _words(figure, now, frames):
             else f"with turns {figure.compare}"
         )
         words += (
-            f" A second chain, {kind}, ends in the frame E. The two ends differ by a turn of "
+            f" A second chain, {kind}, ends in the frame E. The two results differ by a turn of "
             f"{math.degrees(figure.angle_between):.1f} degrees."
         )
     return words

@@ -324,7 +324,7 @@ class World {
         return margin < deg(1) ? `${look} Locked: the first and the third motor turn about one line.`
           : `${look} The axes of the first and the third motor are ${say(margin < PI / 2 ? margin : PI - margin)} apart.`;
       },
-      'one-turn': () => `${look} From here home is one turn of ${say(axisOf(state.start)[1] * (1 - state.part))}.`,
+      'one-turn': () => `${look} From here, one turn of ${say(axisOf(state.start)[1] * (1 - state.part))} leads home.`,
       'two-mirrors': () => `The mirrors stand ${say(deg(35 + 30 * state.apart))} apart, and the arrow has turned ${say(deg(70 + 60 * state.apart))}.`,
       'four-numbers': () => `Turned ${say(state.whole)}: the point stands at ${say(state.whole / 2)}.`,
       'not-home': () => this.cable(),
@@ -338,7 +338,7 @@ class World {
   beside(D) {
     const aside = Math.acos(Math.max(-1, Math.min(1, dot(D[1], STAR)))), look = `The camera looks ${lookOf(D)}.`;
     if (aside > deg(4)) return `${look} The star is ${say(aside)} away from where it looks.`;
-    return lookOf(D).endsWith('level') ? `There: on the star, and level. Three motors were enough.` : `On the star. Now level it: ${lookOf(D).split(', ')[2]}.`;
+    return lookOf(D).endsWith('level') ? `It is on the star, and level. Three motors were enough.` : `On the star. Now level it: ${lookOf(D).split(', ')[2]}.`;
   }
 
   cable() {
@@ -346,7 +346,7 @@ class World {
     const whole = [0, 1, 2].find((count) => Math.abs(turns - count) < 0.01);
     if (whole === undefined) return `The camera has turned ${say(turn)}, and the cable has followed.`;
     if (whole === 0) return 'The camera is as it was, and the cable is flat.';
-    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it holds ${whole === 1 ? 'one turn' : 'two turns'}.`;
+    if (passed < 0.02) return `After ${whole === 1 ? 'one turn' : 'two turns'} the camera is as it was. The cable is not: it contains ${whole === 1 ? 'one turn' : 'two turns'}.`;
     if (passed < 0.98) return 'The camera stands still while the cable is passed round it.';
     return whole === 1 ? 'Passed round: the twist is still there, the other way. It will not go away.' : 'Passed round: the cable is flat. Two turns are none.';
   }
@@ -354,10 +354,10 @@ class World {
   way(D) {
     const needed = this.needed ??= ['one', 'angles'].map((kind) => turnedAlong(wholeWays().map((both) => both[kind])));
     const { track, free } = this.state;
-    if (!free) return `The one turn takes ${say(needed[0])}; the way in angles, red, turns the camera through ${say(needed[1])} in all.`;
+    if (!free) return `The single turn takes ${say(needed[0])}. The red path, in angles, turns the camera through ${say(needed[1])} in all.`;
     const left = apart(D, frames(TO).D), taken = turnedAlong(track);
-    if (left > deg(15)) return `Your way so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
-    return `Your way: ${say(taken + left)}. The one turn: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
+    if (left > deg(15)) return `Your path so far: ${say(taken)}. Pose 1 is ${say(left)} away.`;
+    return `Your path: ${say(taken + left)}. The single turn: ${say(needed[0])}. In angles: ${say(needed[1])}.`;
   }
 
   // Heard when it has rested.
@@ -605,8 +605,8 @@ class World {
     const address = location.href.split('#')[0] + fragmentOf(PLACE, this.content());
     try {
       await navigator.clipboard.writeText(address);
-      this.tell('The address is copied. Whoever opens it sees the gimbal as it stands now.');
-      write(this.seen, 'The address is copied. Whoever opens it sees the gimbal as it stands now.');
+      this.tell('The address is copied. Anyone who opens it sees the gimbal as it is now.');
+      write(this.seen, 'The address is copied. Anyone who opens it sees the gimbal as it is now.');
     } catch {
       history.replaceState(null, '', address);   // then it is in the bar of addresses
     }
@@ -662,7 +662,7 @@ class World {
     for (const kind of [window.DeviceOrientationEvent]) {
       if (!kind?.requestPermission) continue;
       if (await kind.requestPermission().catch(() => 'denied') !== 'granted') {
-        this.phoneWords = 'The sensors were refused. The gimbal turns under your finger all the same.';
+        this.phoneWords = 'Access to the sensors was refused. You can still turn the gimbal with your finger.';
         this.wake();
         return;
       }
@@ -685,7 +685,7 @@ class World {
     this.wake();
     setTimeout(() => {
       if (first) return;
-      this.phoneWords = 'No sensor answers here. The gimbal turns under your finger all the same.';
+      this.phoneWords = 'No sensor responds here. You can still turn the gimbal with your finger.';
       this.wake();
     }, 3000);
   }
