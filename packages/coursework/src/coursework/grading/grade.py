@@ -140,8 +140,9 @@ class Desk:
         """What becomes of a record, and where the best of several attempts counts, of the others:
         another may be the best by now.
         """
-        handed_in = {notebook.sha256 for notebook in record.notebooks}
-        handed_in |= {notebook.sha256 for notebook in record.superseded}
+        handed_in = {one.sha256 for one in record.notebooks} | {
+            one.sha256 for one in record.superseded
+        }
         attempts = [
             one
             for one in self.store.attempts(record.student, record.assignment).values()
@@ -172,6 +173,7 @@ class Desk:
                 notebook.file,
                 notebook.sha256,
                 f"it comes to {number(comes_to(one)[0])} points, and another to {most}",
+                comes_to_less=True,
             )
             for one in others
             for notebook in one.notebooks

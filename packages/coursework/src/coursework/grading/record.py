@@ -252,11 +252,20 @@ class RunNotebook(AsJson):
 
 @dataclass(frozen=True)
 class Superseded(AsJson):
-    """A notebook that does not count, since another one answers the same questions, and why."""
+    """A notebook that does not count, since another one answers the same questions.
+
+    Attributes
+    ----------
+    file, sha256 : str
+    why : str
+    comes_to_less : bool
+        Whether it was run and judged as well, and another attempt is better.
+    """
 
     file: str
     sha256: str
     why: str = ""
+    comes_to_less: bool = False
 
 
 @dataclass(frozen=True)

@@ -339,9 +339,9 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
     if before is None:
         why = "graded"
     elif sorted(before.files.values()) != sorted(files.values()):
-        others = {one.sha256 for one in record.superseded if "another to" in one.why}
-        is_there = others.issuperset(before.files.values())
-        why = "another attempt is the best now" if is_there else "handed in anew"
+        beaten = {one.sha256 for one in record.superseded if one.comes_to_less}
+        all_beaten = beaten.issuperset(before.files.values())
+        why = "another attempt is the best now" if all_beaten else "handed in anew"
     else:
         moved = [
             record.marks[name] for name, part in marks.items() if before.marks.get(name) != part
