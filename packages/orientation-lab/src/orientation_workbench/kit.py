@@ -104,11 +104,11 @@ def convention_of(
         )
         asked.append(np.concatenate([np.ravel(argument) for argument in arguments]))
         answered.append(np.asarray(function(*arguments), float))
-    known = [{"kind": takes}, {"kind": gives} if gives else {}]
-    if sequence:
-        for side, kind in zip(known, (takes, gives)):
-            if kind == "Euler angles":
-                side["sequence"] = sequence
+    known = [
+        ({"kind": kind} if kind else {})
+        | ({"sequence": sequence} if sequence and kind == "Euler angles" else {})
+        for kind in (takes, gives)
+    ]
     result = np.array(answered)
     if result.shape[1:] in ((3, 4), (4, 4)):
         result = result[:, :3, :3]

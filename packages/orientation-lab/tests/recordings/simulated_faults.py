@@ -178,6 +178,7 @@ def simulate(kind, seed):
         # Two sensitivities of data sheets that are easily taken for each other.
         planted["size"] = random.choice([131 / 114.3, 114.3 / 131, 2, 0.5])
         read[sensor] *= planted["size"]
+        planted["bias of the gyroscope"] *= planted["size"]  # as the file has it
     elif kind in ("gyroscope scale of an axis", "accelerometer scale of an axis"):
         planted["size"] = 1 + random.choice([-1, 1]) * random.uniform(0.06, 0.15)
         read[sensor][:, axis] *= planted["size"]

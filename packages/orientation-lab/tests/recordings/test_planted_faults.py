@@ -70,9 +70,9 @@ def judged(kind, seed, with_filter=False):
         verdict
         for verdict in verdicts
         if verdict.light in (RED, YELLOW) and verdict.about not in (about, ALSO.get(kind))
+        # Beside a fault, what counts is what is advised.
+        if not kind or (verdict.advice and not true(verdict, planted))
     ]
-    if kind:
-        others = [verdict for verdict in others if verdict.advice and not true(verdict, planted)]
     return named, [f"{one.light}: {one.about}: {one.words} -> {one.advice}" for one in others]
 
 

@@ -170,10 +170,8 @@ def explain(
         known = [declared.get("order") for _, declared in sides]
         names = _names(best, [chain for chain in alike if _usual_order(chain, known)], ways)
         verdict = "undecided" if names else "named"
-    further = ""
     open_still = verdict == "undecided" or (verdict == "same" and len(classes) > 1)
-    if open_still and not names:
-        further = _further_pose(classes, readings, sides)
+    further = _further_pose(classes, readings, sides) if open_still and not names else ""
     residual = math.degrees(2 * math.asin(min(1.0, best.residual / 2)))
     return Explanation(
         verdict, tuple(best.words(ways)), residual, tuple(classes), further, counts[0], mirrored,

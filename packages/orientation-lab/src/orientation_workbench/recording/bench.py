@@ -28,7 +28,7 @@ from .content import (
 )
 from .examined import GREEN, RED, UNKNOWN, YELLOW, Examined, Verdict
 from .field import FieldFit, fit_ellipsoid, fit_field, spread_of_lengths, uneven_lengths
-from .judged import filter_inputs, judge, too_sure
+from .judged import filter_inputs, judge
 from .motion import (
     ASSIGNMENTS,
     dcm_of_quaternions,
@@ -129,6 +129,7 @@ class _Bench:
         self.raw = {group.kind: _at(self.time, group.time, group.values) for group in sensors}
         self.counts = False  # whether the gyroscope's numbers are those of its chip
         self.rates = self.forces = self.field = self.oriented = None
+        self.warmth = np.interp(self.time, *content.temperature)
 
     def say(
         self,
@@ -160,8 +161,13 @@ class _Bench:
                     f"behave like those of the {kind}",
                 )
         if self.content.counted:
-            words = f"{self.content.clock}: the rate is not known"
-            return self.say("time", UNKNOWN, words, {}, "Give it: --rate 100.")
+            return self.say(
+                "time",
+                UNKNOWN,
+                f"{self.content.clock}: the rate is not known",
+                {},
+                "Give it: --rate 100.",
+            )
         steps = np.diff(time)
         step = float(np.median(steps))
         self.say(
@@ -176,8 +182,12 @@ class _Bench:
             },
         )
         if back := int((steps <= 0).sum()):
-            words = f"time stands still or goes back {back} times"
-            self.say("order of time", RED, words, {"times": back})
+            self.say(
+                "order of time",
+                RED,
+                f"time stands still or runs backwards {back} times",
+                {"times": back},
+            )
         long = steps > 2.5 * step
         lost = float(steps[long].sum() / time[-1]) if time[-1] > 0 else 0.0
         words = (
@@ -428,8 +438,14 @@ class _Bench:
                 "stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for some seconds."
             )
         poses = [stretch for stretch in self.still if stretch.last - stretch.first > 10]
+        # Where it lies still time and again, that tells whether the bias drifts; else gravity may.
+        at_rest = len(lying) > 1 and lying[-1].last - lying[0].first > len(self.time) / 2
+        drift = self._drift_at_rest(lying, bias) if at_rest else np.zeros(3)
+        drifting = bool(drift.any())
         if self.forces is not None:
-            fitted = fit_scales(self.time, self.rates, self.forces, poses, bias)
+            fitted = fit_scales(self.time, self.rates - drift, self.forces, poses, bias)
+        if fitted is not None and len(poses) > 6 and not at_rest:
+            fitted, drifting = self._drift_between(poses, lying, bias, fitted)
         if fitted is None:
             self.say(
                 "scale of the gyroscope",
@@ -453,15 +469,13 @@ class _Bench:
             )
         else:
             most, doubt = (float(np.degrees(np.abs(each).max())) for each in (bias, spread))
-            light = GREEN if doubt < 0.3 else UNKNOWN
-            light = RED if most > 1 and doubt < 0.3 else YELLOW if most > 0.3 else light
-            drifts = self._drift(lying, poses, scale)
+            light = _light(most, 0.5, 1) if doubt < 0.3 else UNKNOWN
             self.say(
                 "bias of the gyroscope",
                 light,
                 f"{_along(np.degrees(bias))} °/s, ± {doubt:.2g}",
                 {"°/s": np.degrees(bias).round(4).tolist()},
-                "" if drifts or light == UNKNOWN else f"Subtract {_along(np.degrees(bias))} °/s.",
+                "" if drifting or light == UNKNOWN else f"Subtract {_along(np.degrees(bias))} °/s.",
             )
             self.facts["bias of the gyroscope"] = bias
             self.rates = self.rates - bias
@@ -493,8 +507,11 @@ class _Bench:
             return common
         off = np.abs(fitted.scales / np.median(fitted.scales) - 1)
         odd = np.flatnonzero(off > np.maximum(0.04, 5 * fitted.spreads))
-        cut_off = self._cut_off("gyroscope")
-        if len(odd) == 1 and not cut_off and left < min(np.radians(3), 0.37 * fitted.left_alike):
+        # An accelerometer that errs bends the paths of gravity as well.
+        means = [self.forces[pose.first : pose.last].mean(axis=0) for pose in poses]
+        uneven = np.ptp(np.linalg.norm(means, axis=1)) > 0.08
+        doubtful = uneven or self._cut_off("gyroscope")
+        if len(odd) == 1 and not doubtful and left < min(np.radians(3), 0.37 * fitted.left_alike):
             axis, factor = "xyz"[odd[0]], float(fitted.scales[odd[0]])
             self.say(
                 "scale of the gyroscope",
@@ -508,7 +525,7 @@ class _Bench:
             return np.where(np.arange(3) == odd[0], factor, 1.0)
         off = abs(common - 1)
         light = GREEN if off < max(0.02, 3 * uncertain) else _light(off, 0, 0.05)
-        if cut_off or uncertain > 0.03 or left > np.radians(3):
+        if doubtful or uncertain > 0.03 or left > np.radians(3):
             light = UNKNOWN
         self.say(
             "scale of the gyroscope",
@@ -519,62 +536,81 @@ class _Bench:
         )
         return common if light in (RED, YELLOW) else 1.0
 
-    def _drift(
-        self, lying: Sequence[Stretch], poses: Sequence[Stretch], scale: float | Array
-    ) -> bool:
-        """Whether the bias is another one each time it lies still, or, where it is never laid down
-        later on, in the second half of its poses than in the first.
+    def _drift_at_rest(self, lying: Sequence[Stretch], bias: Array) -> Array:
+        """How far the bias is from its mean at each time, if it is another one each time the
+        instrument lies still; else zeros.
         """
-        if len(lying) > 1 and lying[-1].last - lying[0].first > len(self.time) / 2:
-            runs, sure, least = [[stretch] for stretch in lying], 8, np.radians(0.1)
-            known = [self._resting(run) for run in runs]
-        elif self.forces is None:
-            return False
-        else:
-            runs, sure, least = (
-                [poses[: len(poses) // 2 + 1], poses[len(poses) // 2 :]],
-                5,
-                np.radians(1),
-            )
-            fits = [fit_scales(self.time, self.rates * scale, self.forces, run) for run in runs]
-            # Five poses hardly say more than the scales and biases that are found from them.
-            if min(map(len, runs)) < 6 or not all(fit and fit.left < 0.15 for fit in fits):
-                return False
-            known = [(fit.bias, fit.bias_spreads) for fit in fits]
-            if lying:
-                runs, known = [lying, *runs], [self._resting(lying), *known]
-        biases, doubts = (np.array(each) for each in zip(*known, strict=True))
-        middles = np.array([self.time[(run[0].first + run[-1].last) // 2] for run in runs])
-        slopes, starts = np.polyfit(middles, biases, 1)
-        ends = starts + slopes * middles[[0, -1], None]
-        change, doubt = np.abs(ends[1] - ends[0]), np.max(doubts, axis=0)
+        biases, doubts = np.array([self._resting([stretch]) for stretch in lying]).swapaxes(0, 1)
+        middles = [(stretch.first + stretch.last) // 2 for stretch in lying]
+        times, warmth = self.time[middles], self.warmth[middles]
+        slopes, starts = np.polyfit(times, biases, 1)
+        change, doubt = np.abs(slopes) * np.ptp(times), doubts.max(axis=0)
         worst = int(np.argmax(change / doubt))
-        if change[worst] < max(sure * doubt[worst], least):
-            return False
-        told = [
-            f"{bias:.2f} °/s at {when:.0f} s"
-            for bias, when in zip(np.degrees(ends[:, worst]), middles[[0, -1]], strict=True)
+        if change[worst] < max(8 * doubt[worst], np.radians(0.1)):
+            return np.zeros(3)
+        follows = np.ptp(warmth) > 2 and abs(np.corrcoef(warmth, biases[:, worst])[0, 1]) > 0.95
+        slope = np.polyfit(warmth, biases[:, worst], 1)[0] if follows else None
+        ends = [middles[0], middles[-1]]
+        self._say_drift(worst, ends, starts[worst] + slopes[worst] * self.time[ends], slope)
+        return _at(self.time, times, biases) - bias
+
+    def _drift_between(
+        self,
+        poses: Sequence[Stretch],
+        lying: Sequence[Stretch],
+        bias: Array | None,
+        constant: ScaleFit,
+    ) -> tuple[ScaleFit, bool]:
+        """Scale and bias, if a bias that drifts with time or temperature leaves little and a
+        constant one much, which would be taken for a scale; and whether it surely drifts.
+        """
+        resting = np.concatenate([np.arange(one.first, one.last) for one in lying or poses])
+        courses = [
+            (values - values[resting].mean()) / np.ptp(values)
+            for values in (self.time, self.warmth)
+            if np.ptp(values) > 2
         ]
-        words = f"the bias about {'xyz'[worst]} is {' and '.join(told)}"
+        fits = [
+            fit_scales(self.time, self.rates, self.forces, poses, bias, course)
+            for course in courses
+        ]
+        # Of two that explain it nearly as well, the temperature is a cause, and time is none.
+        by_warmth = fits[-1].left < 1.25 * fits[0].left
+        fit, course = (fits[-1], courses[-1]) if by_warmth else (fits[0], courses[0])
+        if fit.left > min(np.radians(1.5), 0.8 * constant.left):
+            return constant, False
+        worst = int(np.argmax(np.abs(fit.drift) / fit.drift_spreads))
+        if abs(fit.drift[worst]) < max(5 * fit.drift_spreads[worst], np.radians(1)):
+            return fit, False
+        slope = fit.drift[worst] / np.ptp(self.warmth) if len(fits) > 1 and by_warmth else None
+        ends = [0, -1]
+        self._say_drift(worst, ends, fit.bias[worst] + fit.drift[worst] * course[ends], slope)
+        return fit, True
+
+    def _say_drift(self, axis: int, samples: list[int], biases: Array, slope: float | None) -> None:
+        """Say what the bias about an axis is at two samples, and by how much it changes with each
+        degree if it follows the temperature.
+        """
+        ends = zip(np.degrees(biases), self.time[samples], self.warmth[samples], strict=True)
+        (bias, time, warmth), (other, later, warmer) = ends
+        words = (
+            f"the bias about {'xyz'[axis]} is {bias:.2f} °/s at {time:.0f} s and {other:.2f} °/s "
+            f"at {later:.0f} s"
+        )
         advice = "let the filter estimate the bias, or subtract a line between the still stretches."
-        warmth = self.content.temperature
-        if warmth is not None:
-            at = np.interp(middles, *warmth)
-            if np.ptp(at) > 2 and abs(np.corrcoef(at, biases[:, worst])[0, 1]) > 0.95:
-                slope = float(np.degrees(np.polyfit(at, biases[:, worst], 1)[0]))
-                words += (
-                    f". It follows the temperature, {at.min():.0f} to {at.max():.0f} °C, by "
-                    f"{slope:.2f} °/s for each degree"
-                )
-                advice = "subtract a line over the temperature, or let it warm up first."
+        if slope is not None:
+            words += (
+                f". With the temperature, {warmth:.0f} to {warmer:.0f} °C, it changes by "
+                f"{np.degrees(slope):.2f} °/s for each degree"
+            )
+            advice = "subtract a line over the temperature, or let it warm up first."
         self.say(
             "drift of the bias",
-            RED if change[worst] > np.radians(0.3) else YELLOW,
+            RED if abs(other - bias) > 0.3 else YELLOW,
             words,
             {"°/s": np.degrees(biases).round(3).tolist()},
             f"Subtracting one number does not cure that: {advice}",
         )
-        return True
 
     def _noise(self, longest: Stretch) -> None:
         """What the Allan deviation of the longest still stretch says."""
@@ -584,12 +620,14 @@ class _Bench:
         noise, seconds = noise_of(*self.facts["Allan deviation"]), len(rates) * step
         walk = float(noise.angle_random_walk.max())
         if np.isnan(walk):
-            words = (
-                f"the {seconds:.0f} s in which it lies still are too few to separate white noise "
-                "from the rest"
+            return self.say(
+                "noise of the gyroscope",
+                UNKNOWN,
+                f"it lies still for only {seconds:.0f} s, too short to separate white noise from "
+                "the rest",
+                {},
+                "Let it lie for some minutes.",
             )
-            advice = "Let it lie for some minutes."
-            return self.say("noise of the gyroscope", UNKNOWN, words, {}, advice)
         words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
         evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
         if np.isnan(noise.bias_instability).all():
@@ -838,7 +876,8 @@ class _Bench:
         # What does not tell the axes tells no delay.
         if "axes of the gyroscope" not in self.facts or "magnetometer" not in self.raw:
             return
-        (lag, _), kind = lag_of(self.rates, self.raw["magnetometer"], step), "magnetometer"
+        # Uncorrected, the shape of a magnetometer may look like a delay.
+        (lag, _), kind = lag_of(self.rates, self.field, step), "magnetometer"
         if abs(lag) < max(2, round(0.03 / step)):
             return
         # A push that comes with each turn looks like a delay of the accelerometer, which therefore
@@ -973,17 +1012,21 @@ class _Bench:
         runs = self.judgements
         where = ", ".join(f"{run.times[0]:.0f} to {run.times[-1]:.0f} s" for run in runs)
         claimed, differ = _rms([(run.claimed, run.found) for run in runs])
+        heading = _rms([run.heading for run in runs]) if runs[0].heading else None
         words = (
             f"from {where} it claims to know the tilt to {claimed:.2f}°, and its forward and "
-            f"backward runs differ by {differ:.2f}°"
-        )
-        heading = _rms([run.heading for run in runs]) if runs[0].heading else None
-        words += (
-            "; gravity alone gives it no heading"
+            f"backward runs differ by {differ:.2f}°; "
+        ) + (
+            "gravity alone gives it no heading"
             if heading is None
-            else f"; for the heading these are {heading[0]:.2f}° and {heading[1]:.2f}°"
+            else f"for the heading these are {heading[0]:.2f}° and {heading[1]:.2f}°"
         )
-        worst, high = too_sure(runs)
+        squares = {
+            name: float(np.mean([run.squares[name] for run in runs])) for name in runs[0].squares
+        }
+        # Forwards against backwards, in tilt and heading, and what each sensor contradicts.
+        pairs = ((claimed, differ), *(() if heading is None else (heading,)))
+        worst, high = max(found / max(own, 1e-6) for own, found in pairs), max(squares.values())
         light, advice = _light(max(worst, high), 3, 5), ""
         if light == RED:
             advice = f"Its errors are {max(worst, np.sqrt(high)):.0f} times what it claims. " + (
@@ -1006,10 +1049,7 @@ class _Bench:
         evidence = {
             "claimed (°)": round(float(claimed), 3),
             "found (°)": round(float(differ), 3),
-            "innovations": {
-                name: round(float(np.mean([run.squares[name] for run in runs])), 2)
-                for name in runs[0].squares
-            },
+            "innovations": {name: round(square, 2) for name, square in squares.items()},
         }
         self.say("filter", light, words, evidence, advice)
 

@@ -91,8 +91,8 @@ class Content(NamedTuple):
     remarks : list of str
     unused : list of str
         Headings of columns that nothing was made of.
-    temperature : pair of arrays of shape ``(n,)`` or None
-        Times and values of the first column that is called so.
+    temperature : pair of arrays of shape ``(n,)``
+        Times and values of the first column that is called so; one zero each if there is none.
     """
 
     groups: dict[str, Group]
@@ -100,7 +100,7 @@ class Content(NamedTuple):
     counted: bool
     remarks: list[str]
     unused: list[str]
-    temperature: tuple[Array, Array] | None = None
+    temperature: tuple[Array, Array]
 
 
 def read_content(
@@ -133,7 +133,7 @@ def read_content(
     clocks: list[tuple[str, bool]] = []
     unused: list[str] = []
     remarks: list[str] = []
-    warmth: tuple[Array, Array] | None = None
+    warmth = np.zeros(1), np.zeros(1)
     for table in tables:
         remarks += [
             f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks
@@ -144,7 +144,7 @@ def read_content(
         groups += found
         unused += left
         warm = [k for k, name in enumerate(table.columns) if "temp" in name.lower()]
-        if warm and warmth is None and np.isfinite(table.values[:, warm[0]]).all():
+        if warm and len(warmth[0]) == 1 and np.isfinite(table.values[:, warm[0]]).all():
             warmth = time, table.values[:, warm[0]]
     chosen = _roles(groups)
     remarks += [
@@ -177,9 +177,8 @@ def read_content(
         }
     start = min(group.time[0] for group in kinds.values())
     kinds = {kind: group._replace(time=group.time - start) for kind, group in kinds.items()}
-    if warmth is not None:
-        warmth = (warmth[0] / (rate or 1.0) if counted else warmth[0]) - start, warmth[1]
-    return Content(kinds, clock, counted and not rate, remarks, unused, warmth)
+    temperature = warmth[0] / (rate or 1.0 if counted else 1.0) - start, warmth[1]
+    return Content(kinds, clock, counted and not rate, remarks, unused, temperature)
 
 
 #: One entry of what a reader says the columns are.
@@ -331,17 +330,13 @@ def _parts(heading: str) -> tuple[str, str]:
     return text, ""
 
 
-def _called(text: str) -> str:
-    return next((kind for kind, pattern in HEADINGS.items() if re.search(pattern, text)), "")
-
-
-def _called_by_unit(heading: str) -> str:
-    return next((kind for kind, pattern in UNITS.items() if re.search(pattern, _unit(heading))), "")
+def _called(text: str, patterns: Mapping[str, str] = HEADINGS) -> str:
+    return next((kind for kind, pattern in patterns.items() if re.search(pattern, text)), "")
 
 
 def _named(stem: str, table: Table, column: int) -> str:
     """What the heading of an axis, its unit or the name of its table say that it is."""
-    unit, name = _called_by_unit(table.columns[column]), _called(table.name.lower())
+    unit, name = _called(_unit(table.columns[column]), UNITS), _called(table.name.lower())
     # Gauss or gravity: the name of the table knows better.
     if _unit(table.columns[column]) in ("g", "mg"):
         unit, name = name, unit
@@ -449,8 +444,8 @@ def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str
     ]
     if felt is not None and points_one_way(felt.values) or not apart:
         return []
-    moved = [group for group in groups if group.called in ("linear acceleration", "accelerometer")]
-    felt = felt or next(iter(moved), None)
+    moving = ("linear acceleration", "accelerometer")
+    felt = felt or next((group for group in groups if group.called in moving), None)
     if felt is None:
         return []
     gravity = np.stack(

@@ -86,28 +86,6 @@ class Judgement(NamedTuple):
     claims: Array
 
 
-def too_sure(judgements: Sequence[Judgement]) -> tuple[float, float]:
-    """How many times as large as claimed the doubt is that the data give, and the innovations'
-    squares; above 5 is red.
-
-    Parameters
-    ----------
-    judgements : list of Judgement
-        Of one recording.
-
-    Returns
-    -------
-    tuple of two float
-        The worst of tilt and heading, forwards against backwards; the worst of the sensors.
-    """
-    pairs = [(one.claimed, one.found) for one in judgements]
-    claims = [np.sqrt(np.mean(np.square(pairs), axis=0))]
-    if judgements[0].heading:
-        claims.append(np.sqrt(np.mean(np.square([one.heading for one in judgements]), axis=0)))
-    squares = [np.mean([one.squares[name] for one in judgements]) for name in judgements[0].squares]
-    return float(max(found / max(claimed, 1e-6) for claimed, found in claims)), float(max(squares))
-
-
 def _start(forces: Array, field: Array | None) -> Array:
     up = forces.mean(axis=0)
     north = np.zeros(3) if field is None else np.cross(up, np.cross(field.mean(axis=0), up))

@@ -177,7 +177,7 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     # A stretch ends where it gets restless, and also where it gets much less calm.
     runs: list[list[int]] = []
     for k in np.flatnonzero(calm):
-        if not runs or k > runs[-1][-1] + 1 or spread[k] > 2.5 * spread[runs[-1]].min():
+        if not runs or k > runs[-1][-1] + 1 or spread[k] > 1.8 * spread[runs[-1]].min():
             runs.append([])
         runs[-1].append(int(k))
     found = []
@@ -186,7 +186,10 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
         deviation = float(np.sqrt(rates[first:last].var(axis=0, ddof=1).mean()))
         lies = bool(autocorrelation(rates[first:last]) < 0.2 or deviation < TREMBLE)
         found.append(Stretch(first, last, lies, deviation))
-    return found
+    # Wherever an instrument lies, its noise is the same: a jolt among it may also look white.
+    calmest = min((stretch.deviation for stretch in found if stretch.still), default=0.0)
+    usual = max(3 * calmest, TREMBLE)
+    return [each._replace(still=each.still and each.deviation < usual) for each in found]
 
 
 # --- axes, signs, unit and scale of a gyroscope ---------------------------------------------------
@@ -311,7 +314,8 @@ def carried(time: Array, rates: Array, poses: Sequence[Stretch]) -> Array:
 
 
 class ScaleFit(NamedTuple):
-    """Scales and bias of a gyroscope: the true angular velocity is ``scales * (rates - bias)``.
+    """Scales and bias of a gyroscope: the true angular velocity is ``scales * (rates - bias -
+    drift * course)``.
 
     Attributes
     ----------
@@ -319,6 +323,8 @@ class ScaleFit(NamedTuple):
         Of each axis, and their standard deviations.
     bias, bias_spreads : arrays of shape ``(3,)``
         Radians per second; zeros as its deviations where it was known.
+    drift, drift_spreads : arrays of shape ``(3,)``
+        Radians per second for each unit of the course; zeros where none was given.
     left : float
         By how much gravity is missed, radians.
     left_alike : float
@@ -329,6 +335,8 @@ class ScaleFit(NamedTuple):
     spreads: Array
     bias: Array
     bias_spreads: Array
+    drift: Array
+    drift_spreads: Array
     left: float
     left_alike: float
 
@@ -340,7 +348,12 @@ class ScaleFit(NamedTuple):
 
 
 def fit_scales(
-    time: Array, rates: Array, forces: Array, poses: Sequence[Stretch], bias: Array | None = None
+    time: Array,
+    rates: Array,
+    forces: Array,
+    poses: Sequence[Stretch],
+    bias: Array | None = None,
+    course: Array | None = None,
 ) -> ScaleFit | None:
     """Scales and bias of a gyroscope: turns must carry gravity from one pose to the next.
 
@@ -352,6 +365,8 @@ def fit_scales(
     poses : list of Stretch
     bias : array of shape ``(3,)``, optional
         Radians per second, where it is known.
+    course : array of shape ``(n,)``, optional
+        What a bias that drifts is proportional to, such as time: zero where the bias is as above.
 
     Returns
     -------
@@ -364,39 +379,42 @@ def fit_scales(
     ups = ups / np.linalg.norm(ups, axis=1, keepdims=True)
     if (np.linalg.norm(np.cross(ups[1:], ups[:-1]), axis=1) > 0.2).sum() < 2:
         return None
-    free = 3 if bias is not None else 6
+    free = np.flatnonzero(np.repeat([True, bias is None, course is not None], 3))
+    course = np.zeros((len(time), 1)) if course is None else course[:, None]
 
     def residuals(parameters: Array) -> Array:
-        """By how much gravity is missed with scales and biases of shape ``(..., 6)``."""
-        scales, biases = parameters[..., None, :3], parameters[..., None, 3:]
-        off = (
-            ups[1:] - (carried(time, scales * (rates - biases), poses) @ ups[:-1, :, None])[..., 0]
-        )
+        """By how much gravity is missed with scales, biases and drifts of shape ``(..., 9)``."""
+        scales, biases, drifts = np.split(parameters[..., None, :], 3, axis=-1)
+        turns = carried(time, scales * (rates - biases - drifts * course), poses)
+        off = ups[1:] - (turns @ ups[:-1, :, None])[..., 0]
         return off.reshape(*off.shape[:-2], -1)
 
     # Several turns have many scales that nearly fit: the best one of a grid is refined.
-    grid = np.repeat(np.geomspace(0.4, 2.5, 47)[:, None], 3, axis=1)
-    tried = np.column_stack([grid, np.tile(np.zeros(3) if bias is None else bias, (47, 1))])
+    tried = np.repeat(np.geomspace(0.4, 2.5, 47)[:, None], 9, axis=1)
+    tried[:, 3:] = np.concatenate([np.zeros(3) if bias is None else bias, np.zeros(3)])
     start = parameters = tried[int(np.abs(residuals(tried)).sum(axis=-1).argmin())]
-    # Scales of one part are much alike, and a bias is some degrees per second at most.
-    prior = np.diag(np.repeat([0.3 * start[0], np.radians(1.0)], 3)[:free] ** -2.0)
+    # Scales of one part are much alike, and a bias or drift is some degrees per second at most.
+    usual = np.repeat([0.3 * start[0], np.radians(1.0), np.radians(2.0)], 3)
+    prior = np.diag(usual[free] ** -2.0)
+    spreads = np.zeros(9)
     for _ in range(8):
-        at, *moved = residuals(parameters + 1e-5 * np.eye(7, 6, -1)[: 1 + free])
+        at, *moved = residuals(parameters + 1e-5 * np.eye(10, 9, -1)[[0, *(free + 1)]])
         slopes = (np.array(moved) - at).T / 1e-5
         noise = max(np.sqrt(np.median(at**2)) * 1.5, 0.003)
         weights = 1 / np.maximum(noise, np.abs(at)) / noise  # a wild transition counts less
         information = (slopes * weights[:, None]).T @ slopes + prior
-        pull = (slopes * weights[:, None]).T @ -at - prior @ (parameters - start)[:free]
-        change = np.pad(np.linalg.solve(information, pull), (0, 6 - free))
+        pull = (slopes * weights[:, None]).T @ -at - prior @ (parameters - start)[free]
+        change = np.zeros(9)
+        change[free] = np.linalg.solve(information, pull)
         parameters = parameters + change
         if np.abs(change).max() < 1e-6:
             break
-    freedom = max(1.0, len(at) * 2 / 3 - free)
+    freedom = max(1.0, len(at) * 2 / 3 - len(free))
     excess = max(1.0, (at**2 * weights).sum() / freedom)
-    spreads = np.pad(np.sqrt(np.diag(np.linalg.inv(information)) * excess), (0, 6 - free))
-    fit = ScaleFit(parameters[:3], spreads[:3], parameters[3:], spreads[3:], _rms(at), 0.0)
-    alike = residuals(np.concatenate([np.repeat(np.median(fit.scales), 3), fit.bias]))
-    return fit._replace(left_alike=_rms(alike))
+    spreads[free] = np.sqrt(np.diag(np.linalg.inv(information)) * excess)
+    alike = np.concatenate([np.repeat(np.median(parameters[:3]), 3), parameters[3:]])
+    each = zip(np.split(parameters, 3), np.split(spreads, 3), strict=True)
+    return ScaleFit(*(part for pair in each for part in pair), _rms(at), _rms(residuals(alike)))
 
 
 def _rms(off: Array) -> float:

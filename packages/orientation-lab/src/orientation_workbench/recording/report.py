@@ -58,8 +58,11 @@ def as_csv(examined: Examined, convention: str = "wxyz") -> str:
             columns.append(values)
             names += [f"{kind} {axis} ({unit})" for axis in "xyz"]
     if examined.judgements:
-        own = ["yaw (deg)", "pitch (deg)", "roll (deg)"]
-        own = own if convention == "yaw-pitch-roll" else [f"q{letter}" for letter in convention]
+        own = (
+            ["yaw (deg)", "pitch (deg)", "roll (deg)"]
+            if convention == "yaw-pitch-roll"
+            else [f"q{letter}" for letter in convention]
+        )
         orientations = np.full((len(examined.time), len(own)), np.nan)
         for judgement in examined.judgements:
             times = judgement.times
