@@ -49,6 +49,17 @@ def test_two_quaternions_scalar_last_are_asked_about():
     assert code == 1 and "y and z of the body reversed" in answer and "world" not in answer
 
 
+def test_yaw_pitch_roll_against_roll_pitch_yaw_is_asked_about():
+    """Either side may be the one whose turns are about axes that stay, as in ROS."""
+    angles = "yaw 30 pitch 20 roll 10", "10 20 30"
+    code, answer = explained(*angles)
+    assert code == 2 and "which side's about axes that stay (space fixed)?" in answer
+    known = ("--first-is", "body fixed", "--second-is", "space fixed")
+    assert '--first-is "body fixed" --second-is "space fixed"' in answer
+    code, answer = explained(*known, *angles)
+    assert code == 0 and "the same orientation" in answer
+
+
 #: A camera-to-world matrix in OpenCV's axes and in OpenGL's: the camera's axes are the columns.
 OPENCV = "0.86869 -0.47475 0.14141\n0.31313 0.74748 0.58586\n-0.38384 -0.46465 0.79798"
 OPENGL = "0.86869 0.47475 -0.14141\n0.31313 -0.74748 -0.58586\n-0.38384 0.46465 -0.79798"

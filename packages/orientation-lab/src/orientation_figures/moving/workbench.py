@@ -4,14 +4,14 @@ import json
 
 import traitlets
 
-from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, WAYS, whole_table
+from orientation_workbench.mismatch.table import COUNTS, SEQUENCES, TURNS, WAYS, whole_table
 from orientation_workbench.programs import PROGRAMS
 
 from .figure import MovingFigure
 from .state import Numbers
 
 UNKNOWN = "not known"
-NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way"), UNKNOWN)
+NOTHING_KNOWN = dict.fromkeys(("program", "kind", "sequence", "order", "way", TURNS), UNKNOWN)
 # Typical cases, most with the numbers of a public thread: the numbers of both programs, and the
 # known facts about each.
 EXAMPLES = {
@@ -84,7 +84,7 @@ class Known(traitlets.TraitType):
         known = NOTHING_KNOWN | value
         for name, allowed in (
             ("program", PROGRAMS), ("kind", COUNTS), ("sequence", SEQUENCES),
-            ("order", ("wxyz", "xyzw")), ("way", WAYS),
+            ("order", ("wxyz", "xyzw")), ("way", WAYS), (TURNS, ("body fixed", "space fixed")),
         ):  # fmt: skip
             if known[name] != UNKNOWN and known[name] not in allowed:
                 raise traitlets.TraitError(
@@ -102,7 +102,8 @@ class WorkbenchFigure(MovingFigure):
         The numbers of each program, as :func:`orientation_workbench.explain` reads them.
     first_is, second_is : dict
         The known facts about each: ``program``, ``kind``, ``sequence``, ``order`` of a quaternion,
-        and ``way``, the direction of the transformation; each ``'not known'`` at first.
+        ``axes of the turns``, and ``way``, the direction of the transformation; each
+        ``'not known'`` at first.
     noise : float
         Degrees by which the two may differ besides rounding.
 

@@ -14,6 +14,7 @@ from ..programs import expected_of, program_named
 from . import search, table
 from .meaning import dcms_from_numbers, numbers_from_dcms
 from .mounting import mountings
+from .table import TURNS
 from .text import SLACK, read_poses
 
 #: Of so many chains, and of so many readings of the first side, it is seen whether a further pose
@@ -239,12 +240,15 @@ _ORDERS = {"wxyz": "first", "xyzw": "last"}
 
 
 def _names(best, others, ways):
-    """Descriptions of one relation that call different axes, or none if all call the same."""
+    """Descriptions of one relation that differ in the axes that they name, or in the side whose
+    angles are space fixed; none if all agree.
+    """
     names, seen = [], set()
     near = [
         chain
         for chain in others
         if _dearness(chain) - _dearness(best) <= _limit(chain, best) + 1e-6
+        and set(_turns(chain)) == set(_turns(best))
     ]
     for chain in [best, *near]:
         swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
@@ -252,9 +256,10 @@ def _names(best, others, ways):
             faults = tuple(chain.words(ways, which))
             upright = chain.relation.get("said", chain.relation) | {"inverse": False}
             axes = tuple(table.words_of(upright, chain.kinds, second_inverse))
-            if axes in seen:
+            meant = axes, _turns(chain)
+            if meant in seen:
                 continue
-            seen.add(axes)
+            seen.add(meant)
             inverses = second_inverse ^ chain.relation["inverse"], second_inverse
             names.append(_name(chain, inverses, faults, len(swaps) > 1, best))
     return tuple(names) if len(names) > 1 else ()
@@ -267,6 +272,12 @@ def _usual_order(chain, known):
         order is None or order == declared or (declared is None and order in _ORDERS)
         for order, declared in zip(orders, known, strict=True)
     )
+
+
+def _turns(chain):
+    """Whether each side's Euler angles are body fixed or space fixed, if the two differ."""
+    turns = [reading["choices"].get(TURNS) for reading in (chain.first, chain.second)]
+    return tuple(turns) if None not in turns and turns[0] != turns[1] else ()
 
 
 def _limit(chain, best):
@@ -306,12 +317,16 @@ def _name(chain, inverses, faults, by_way, best):
             else f"the {'first' if inverses[0] else 'second'} side gives the world as seen from "
             "the body"
         )
+    for side, turns in zip(declare, _turns(chain)):
+        side[TURNS] = turns
+    if turns := _turns(chain):
+        conditions.append(f"the first side's angles are {turns[0]} and the second's {turns[1]}")
     return Name(" and ".join(conditions), faults, declare)
 
 
 def _question(names, best):
-    order, way = (
-        len({name.declare[0].get(what) for name in names}) > 1 for what in ("order", "way")
+    order, way, turns = (
+        len({name.declare[0].get(what) for name in names}) > 1 for what in ("order", "way", TURNS)
     )
     asked = {
         "Did angles or a quaternion pass from one program to the other?": any(
@@ -322,6 +337,8 @@ def _question(names, best):
         and "matrix" in best.kinds,
         "Which side gives the inverse, the world as seen from the body?": way
         and "matrix" not in best.kinds,
+        "Which side's turns are about axes that turn with the body (body fixed), and which side's "
+        "about axes that stay (space fixed)?": turns,
     }
     return " ".join(question for question, still_open in asked.items() if still_open)
 

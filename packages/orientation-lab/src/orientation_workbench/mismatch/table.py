@@ -101,6 +101,9 @@ _UNIT = {
     ],
 }
 
+#: The group of choices that says whether Euler angles are body fixed or space fixed.
+TURNS = "axes of the turns"
+
 #: What the numbers of one side may mean: for each kind its groups, for each group its choices. The
 #: first choice that a side declares, or this book's, is no fault.
 KINDS = {
@@ -109,7 +112,7 @@ KINDS = {
     "Euler angles": [
         {"group": "sequence", "choices": _sequences()},
         {
-            "group": "axes of the turns",
+            "group": TURNS,
             "choices": [
                 choice(
                     "body fixed", "each turn is about an axis of the turned frame (body fixed)", 0.0
@@ -138,7 +141,7 @@ KINDS = {
 #: default: which one it is, is a finding.
 BOOK = {
     "order": "wxyz",
-    "axes of the turns": "body fixed",
+    TURNS: "body fixed",
     "places": "123",
     "signs": "+++",
     "unit": "radians",
@@ -148,7 +151,7 @@ BOOK = {
 #: Departures that are no mix-up between two programs if both make them.
 SHARED = (
     ("order", "xyzw"),
-    ("axes of the turns", "space fixed"),
+    (TURNS, "space fixed"),
     ("unit", "degrees"),
     ("place of the angle", "first"),
 )
@@ -506,7 +509,7 @@ def _codes(choices, base, declared):
     """
     unit, letters = choices.get("unit"), choices.get("sequence")
     usual = unit == base.get("unit")
-    space_fixed = choices.get("axes of the turns") == "space fixed"
+    space_fixed = choices.get(TURNS) == "space fixed"
     return (
         ("radians", "degrees").index(unit) + 1 if unit and usual else 0,
         int("unit" in declared),

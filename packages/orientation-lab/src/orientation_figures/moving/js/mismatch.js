@@ -8,7 +8,7 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmF
 
 const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, DEARER_CROSSED = 1.7, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
-const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
+const SAME_AXES = 'x y z', TURNS = 'axes of the turns', DEGREE = Math.PI / 180;
 
 // ---- what is pasted ------------------------------------------------------------------------------------
 
@@ -756,17 +756,24 @@ const limitOf = (chain, best) => {
 const orderShared = ({ first, second }) => first.choices.order === second.choices.order;
 const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
 
-// Descriptions of one relation that call different axes, none if all call the same; and the question that decides.
+// Which side's Euler angles are body fixed and which space fixed, if the sides differ in this.
+const turnsOf = ({ first, second }) => {
+  const turns = [first, second].map(({ choices }) => choices[TURNS]);
+  return turns.every(Boolean) && turns[0] !== turns[1] ? turns : [];
+};
+
+// Descriptions of one relation that differ in the axes that they name or in the side whose turns are space fixed, none if
+// all agree; and the question that decides.
 function namesOf(best, others, known, ways, table) {
   const names = [], seen = new Set();
   const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || order === known[k] || (!known[k] && order in ORDERS))
-    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6);
+    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6 && turnsOf(chain).length === turnsOf(best).length);
   for (const chain of [best, ...usual]) {
     const swaps = secondIsInverse(chain, ways);
     swaps.forEach((swapped, which) => {
-      const axes = relationWords(chain, swapped, table, false).join('; ');
-      if (seen.has(axes)) return;
-      seen.add(axes);
+      const turns = turnsOf(chain), meant = [...relationWords(chain, swapped, table, false), ...turns].join('; ');
+      if (seen.has(meant)) return;
+      seen.add(meant);
       const inverses = [swapped !== chain.relation.inverse, swapped], declare = [{}, {}], conditions = [];
       const orders = [chain.first, chain.second].map(({ choices }) => choices.order);
       orders.forEach((order, k) => { if (order) declare[k].order = order; });
@@ -780,6 +787,8 @@ function namesOf(best, others, known, ways, table) {
         conditions.push(matrix ? `the body's axes are the ${inverses[0] ? 'columns' : 'rows'} of the first matrix`
           : `the ${inverses[0] ? 'first' : 'second'} side gives the world as seen from the body`);
       }
+      turns.forEach((axes, k) => { declare[k][TURNS] = axes; });
+      if (turns.length) conditions.push(`the first side's angles are ${turns[0]} and the second's ${turns[1]}`);
       names.push({ condition: conditions.join(' and '), faults: wordsOf(chain, table, ways, which), declare });
     });
   }
@@ -791,6 +800,7 @@ function namesOf(best, others, known, ways, table) {
     asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Which way does the first matrix lead: are the body\'s axes its rows or its columns?'
       : 'Which side gives the inverse, the world as seen from the body?');
   }
+  if (differ(TURNS)) asked.push('Which side\'s turns are about axes that turn with the body (body fixed), and which side\'s about axes that stay (space fixed)?');
   return { names, question: asked.join(' ') };
 }
 

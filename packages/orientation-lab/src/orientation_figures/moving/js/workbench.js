@@ -22,16 +22,18 @@ export function takenUp(content, programs = []) {
   const state = {}, ways = [UNKNOWN, 'rows', 'columns', 'body in world', 'world in body'];
   for (const side of ['first', 'second']) {
     if (typeof content[side] === 'string' && content[side].length <= LONGEST) state[side] = content[side];
-    const { program = UNKNOWN, kind = UNKNOWN, sequence = UNKNOWN, order = UNKNOWN, way = UNKNOWN } = content[`${side}_is`] ?? {};
-    const known = ways.includes(way) && [UNKNOWN, 'wxyz', 'xyzw'].includes(order) && KINDS.includes(kind) && [UNKNOWN, ...OFFERED_SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
-    if (known) state[`${side}_is`] = { program, kind, sequence, order, way };
+    const { program, kind, sequence, order, way, [TURNS]: turns } = { ...NOTHING_KNOWN, ...content[`${side}_is`] };
+    const known = ways.includes(way) && [UNKNOWN, 'body fixed', 'space fixed'].includes(turns) && [UNKNOWN, 'wxyz', 'xyzw'].includes(order) && KINDS.includes(kind) && [UNKNOWN, ...OFFERED_SEQUENCES].includes(sequence) && (program === UNKNOWN || programs.includes(program));
+    if (known) state[`${side}_is`] = { program, kind, sequence, order, way, [TURNS]: turns };
   }
   if (content.noise >= 0 && content.noise <= 30) state.noise = content.noise;
   // Numbers that were brought alone wait for the other program's.
   return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
 }
 
-const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, order: UNKNOWN, way: UNKNOWN };
+// What a reader answers is known of these numbers alone.
+const TURNS = 'axes of the turns', UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
+const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, ...UNANSWERED };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
   && (name !== 'sequence' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
 const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
@@ -46,8 +48,7 @@ export function render({ model, el }) {
   const answered = (...declare) => Object.fromEntries(['first_is', 'second_is'].map((name, k) => [name, { ...model.get(name), ...declare[k] }]));
   const sides = ['first', 'second'].map((side, k) => {
     const field = element('textarea', { rows: 5, spellcheck: 'false', 'aria-label': `What the ${side} program gives`,
-      // What was answered of other numbers is not known of these.
-      input: () => change(model, { [side]: field.value, ...answered({ order: UNKNOWN, way: UNKNOWN }, { order: UNKNOWN, way: UNKNOWN }) }) });
+      input: () => change(model, { [side]: field.value, ...answered(UNANSWERED, UNANSWERED) }) });
     const read = element('p', { class: 'read' });
     const is = (name) => model.get(`${side}_is`)[name];
     const set = (values) => change(model, { [`${side}_is`]: { ...model.get(`${side}_is`), ...values } });
