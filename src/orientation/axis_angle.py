@@ -67,7 +67,7 @@ def dcm_from_axis_angle(axis: Values, angle: Values) -> Array | Matrix:
     Parameters
     ----------
     axis : SymPy expressions, floats or array of shape ``(3,)`` or ``(..., 3)``
-        Direction of the axis; its length does not matter, as long as it has one.
+        Direction of the axis; its length does not matter, as long as it is not zero.
     angle : SymPy expression, float or array of shape ``(...)``
         Radians, positive by the right-hand rule.
 

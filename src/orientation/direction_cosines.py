@@ -254,7 +254,7 @@ def nearest_dcm(matrix: Values) -> NearestDCM:
     Parameters
     ----------
     matrix : array of shape ``(3, 3)`` or ``(..., 3, 3)``
-        Measured or rounded entries. Numbers only: for symbols the question has no one answer.
+        Measured or rounded entries. Numbers only: for symbols there is no single answer.
 
     Returns
     -------

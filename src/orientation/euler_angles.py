@@ -215,7 +215,7 @@ def dcm_from_space_fixed(angles: Numbers, sequence: AxisSequence) -> Array: ...
 @overload
 def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Matrix: ...
 def dcm_from_space_fixed(angles: Values, sequence: AxisSequence) -> Array | Matrix:
-    r"""Direction cosine matrix of three rotations about the axes of the frame that stays.
+    r"""Direction cosine matrix of three rotations about the axes of the fixed frame.
 
     Turning about fixed axes multiplies the matrices in the other order: for the sequence z-x-y,
 

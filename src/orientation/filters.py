@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Innovation(NamedTuple):
-    r"""By how much a measurement differs from what a filter expected, and by how much it might.
+    r"""How far a measurement is from what a filter expected, and how far it may be.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Innovation(NamedTuple):
         needed. If the claim is true it is 2 on average for a direction, which differs from another
         in two ways, and 3 for a whole orientation.
     accepted : array of bool of shape ``(...)``
-        Whether the square was within the gate; else the filter left the measurement alone.
+        Whether the square was within the gate. If not, the filter ignored the measurement.
     """
 
     difference: Array

@@ -203,7 +203,7 @@ class Frames:
     def orient_space_fixed(
         self, frame: str, reference: str, angles: Values, sequence: AxisSequence
     ) -> Frames:
-        """Return frames with ``frame`` turned in ``reference`` about axes that stay.
+        """Return frames with ``frame`` turned in ``reference`` about fixed axes.
 
         Parameters are those of :func:`orientation.dcm_from_space_fixed`.
         """
@@ -246,7 +246,7 @@ class Frames:
         return functools.reduce(Frames._and, left, Frames())
 
     def subs(self, values: Mapping[Symbolic, object]) -> Frames:
-        """Return frames with values in place of symbols, as SymPy's ``subs`` puts them in."""
+        """Return frames with values in place of symbols, as SymPy's ``subs`` does."""
         substituted = (
             edge._replace(turns=tuple(turn.subs(values) for turn in edge.turns))
             for edge in self._edges

@@ -98,7 +98,7 @@ def turns_from_angular_velocity(
 
 
 def dcms_after_turns(start: Numbers, turns: Numbers) -> Array:
-    r"""Return an orientation and those that successive turns lead to from there.
+    r"""Return an orientation, and those reached from it by successive turns.
 
     .. math::
 
