@@ -250,7 +250,7 @@ def test_a_misspelt_attribute_is_an_error(figure):
     before = instance.state()
     with pytest.raises(AttributeError, match=message):
         setattr(instance, misspelt, 1)
-    with pytest.raises(AttributeError, match=f"{figure.__name__} has no xyzzy; what"):
+    with pytest.raises(AttributeError, match=f"{figure.__name__} has no xyzzy; you can set"):
         instance.xyzzy = 1
     assert instance.state() == before and not hasattr(instance, misspelt)
 
@@ -277,7 +277,7 @@ def test_a_matrix_and_a_quaternion_of_ones_own(seed):
     assert challenge.remaining == pytest.approx(moving.TriadFigure(dcm=dcm).angle)
     with pytest.raises(ValueError, match="not orthogonal"):
         challenge.goal = 1.1 * dcm
-    with pytest.raises(ValueError, match="the goal of the task 'undo' follows from given"):
+    with pytest.raises(ValueError, match="the goal of the task 'undo' follows from `given`"):
         moving.ChallengeFigure(task="undo", goal=dcm)
 
 

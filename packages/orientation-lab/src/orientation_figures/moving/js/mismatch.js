@@ -8,7 +8,8 @@ import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmF
 
 const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, DEARER_CROSSED = 1.7, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
-const SAME_AXES = 'x y z', TURNS = 'axes of the turns', DEGREE = Math.PI / 180;
+export const TURNS = 'axes of the turns';
+const SAME_AXES = 'x y z', DEGREE = Math.PI / 180;
 
 // ---- what is pasted ------------------------------------------------------------------------------------
 
@@ -762,8 +763,7 @@ const turnsOf = ({ first, second }) => {
   return turns.every(Boolean) && turns[0] !== turns[1] ? turns : [];
 };
 
-// Descriptions of one relation that differ in the axes that they name or in the side whose turns are space fixed, none if
-// all agree; and the question that decides.
+// Descriptions of one relation that differ in axes or turns, none if all agree; and the question that decides.
 function namesOf(best, others, known, ways, table) {
   const names = [], seen = new Set();
   const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || order === known[k] || (!known[k] && order in ORDERS))

@@ -1,6 +1,6 @@
 import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, slerp } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
-import { drawnDcms, explaining, formulaOf, mendingLine, taughtBy } from './mismatch.js';
+import { drawnDcms, explaining, formulaOf, mendingLine, taughtBy, TURNS } from './mismatch.js';
 import { picture, SIZE } from './workbench_picture.js';
 import { button, calm, change, choice, element, follow, glide, group, inSlices, liveText, numberField,
   onceAFrame, open, put, readout, Sheet, stage, write } from './shared.js';
@@ -32,7 +32,7 @@ export function takenUp(content, programs = []) {
 }
 
 // What a reader answers is known of these numbers alone.
-const TURNS = 'axes of the turns', UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
+const UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
 const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, ...UNANSWERED };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
   && (name !== 'sequence' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
