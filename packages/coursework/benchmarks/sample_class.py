@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from coursework.authoring.course import edition_of, find_course
+from coursework.authoring.course import course_around, find_course
 from coursework.authoring.release import KERNEL, exercise_notebook, shows_variants
 from coursework.authoring.source import CHAPTERS, answered_in, checked_names, read_source, solved
 from coursework.authoring.variation import drawn_in
@@ -96,7 +96,7 @@ class _Exercise:
     def __init__(self, stems: Iterable[str], folder: Path) -> None:
         import nbformat
 
-        self.edition = edition_of(folder)
+        self.edition = getattr(course_around(folder), "edition", "")
         paths = [Path(folder) / f"{stem}.ipynb" for stem in stems]
         sources = [read_source(path, edition=self.edition) for path in paths]
         self.questions = {

@@ -55,7 +55,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "--folder", default=".", help="the folder with your work (default: this folder)"
     )
     for room in rooms:
-        room.add_commands(commands)
+        for command, (does, arguments_of_command) in room.ARGUMENTS.items():
+            parser_of_command = commands.add_parser(command, help=does)
+            for names, about in arguments_of_command:
+                parser_of_command.add_argument(*names, **about)
     options = vars(parser.parse_args(arguments))
     runs = {
         "update": _update,
@@ -67,7 +70,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         raise
     except KeyboardInterrupt:
-        sys.exit("\nStopped. Run the same command again to resume.")
+        # Only grading keeps what it has done.
+        sys.exit("\nStopped." + " Run the same command again to resume." * (command == "grade"))
     except ModuleNotFoundError as error:
         needs = (
             "means of Linux that this system has not, to judge what strangers wrote apart from all "

@@ -189,6 +189,7 @@ def test_what_is_dropped_is_best_for_the_student(rules):
         ("a-day = 0.1", "a-day = 10", "late.a-day must be a number from 0 to 1, not 10"),
         ("due = 2026-10-05T23:59:00", "due = 2026-10-05", "a date with a time.*2026-10-05"),
         ("due = 2026-10-05T23:59:00", "due = '5 October'", "a date with a time"),
+        ("due = 2026-10-05T23:59:00", "due = 2026-10-05 23:59", "a date as 2026-10-05T23:59:00"),
         ("weight = 3", "wieght = 3", "unknown key 'wieght' in assignments.turns"),
         (
             "[late]",

@@ -24,7 +24,7 @@ def test_a_sheet_shows_the_numbers_that_only_a_cell_has(tmp_path, monkeypatch):
     (tmp_path / "marks").mkdir()
     (tmp_path / "marks" / "term.toml").write_text("time-zone = 'UTC'\n[assignments.trial]\n")
     (tmp_path / "roster.csv").write_text("student,name\nada,Ada\nben,Ben\ncem,Cem\ndan,Dan\n")
-    sheets, *_ = sittings.sitting(
+    sheets, markers, _ = sittings.sitting(
         tmp_path / "marks",
         "quiz",
         ["trial/sum"],
@@ -32,4 +32,5 @@ def test_a_sheet_shows_the_numbers_that_only_a_cell_has(tmp_path, monkeypatch):
         solutions=source.parent,
     )
     text = sheets.read_text("utf8")
+    assert "≈ 72<" in markers.read_text("utf8")
     assert "numbers = [31, 41]" in text and "numbers = [59, 26]" in text

@@ -86,7 +86,7 @@ def test_lateness_is_part_of_what_an_attempt_comes_to(course):
     # 8 points less a fifth are more than 4.
     assert course.points() == {"ada": 8}
     said = course.run("why", "ada", "hw1")
-    assert "late: 20 % are lost" in said and "it comes to 4 points, and another to 6.4" in said
+    assert "late: 20 % lost" in said and "it comes to 4 points, and another to 6.4" in said
 
 
 def test_the_page_of_moves_is_there_when_it_is_named(course):

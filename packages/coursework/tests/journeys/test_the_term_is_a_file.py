@@ -173,7 +173,7 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
         course.grade("--yes")
         assert course.points() == points
     said = course.run("why", "ada", "hw1")
-    assert "handed in 2025-10-09T10:00:00" in said and "late: 40 % are lost" in said
+    assert "handed in 2025-10-09T10:00:00" in said and "late: 40 % lost" in said
     assert (
         "It came late: due 2025-10-05 23:59 UTC"
         in (course.marks / "feedback" / "ada" / "hw1.html").read_text()

@@ -4,105 +4,142 @@
 
 from __future__ import annotations
 
-import argparse
 import shlex
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .course import Course
 
 
-def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add these commands to those of ``coursework``."""
-    new = commands.add_parser("new", help="create a small course, ready to use")
-    new.add_argument(
-        "course", metavar="COURSE", help="the folder to create; the course takes its name"
-    )
-    release = commands.add_parser(
-        "release", help="build the exercises, the sealed questions and the archive for students"
-    )
-    release.add_argument(
-        "only",
-        nargs="*",
-        metavar="NOTEBOOK",
-        help="names of the notebooks to release (default: all)",
-    )
-    for name, purpose in (
-        ("sources", "folder of the notebooks with solutions"),
-        ("exercises", "folder for the exercise notebooks"),
-        ("sealed", "folder for the sealed questions"),
-    ):
-        release.add_argument(
-            f"--{name}", type=Path, help=f"{purpose} (default: the one in course.toml)"
-        )
-    release.add_argument(
-        "--no-archive", action="store_true", help="do not build the archive for students"
-    )
-    publish = commands.add_parser(
-        "publish", help="build a site from the exercises, with pages that check answers"
-    )
-    publish.add_argument(
-        "--site", type=Path, help="folder for the site (default: site, beside the archive)"
-    )
-    publish.add_argument(
-        "--room",
-        action="store_true",
-        help="also download all packages, for a room without a network",
-    )
-    trial = commands.add_parser(
-        "try", help="show a question as students will see it, with every reply"
-    )
-    trial.add_argument(
-        "name",
-        metavar="NOTEBOOK/QUESTION",
-        help="a question, or a notebook to show all of its questions",
-    )
-    ask = commands.add_parser(
-        "ask", help="print a notebook's questions as text to give to a language model"
-    )
-    ask.add_argument("notebook", type=Path, metavar="NOTEBOOK.ipynb", help="an exercise notebook")
-    ask.add_argument(
-        "--answers", type=Path, metavar="REPLY", help="file with the model's reply (needs --to)"
-    )
-    ask.add_argument(
-        "--to", type=Path, metavar="FILE.ipynb", help="file for the notebook with those answers"
-    )
-    bank = commands.add_parser(
-        "bank", help="write the questions WITH ALL ANSWERS for Moodle or another system"
-    )
-    bank.add_argument("out", type=Path, metavar="OUT", help="file for the questions")
-    bank.add_argument(
-        "--format", choices=("moodle", "qti"), required=True, help="Moodle XML or a QTI 2.2 package"
-    )
-    bank.add_argument(
-        "--questions",
-        nargs="*",
-        default=[],
-        metavar="NOTEBOOK/QUESTION",
-        help="questions or notebooks (default: all)",
-    )
-    wheels = commands.add_parser(
-        "wheels", help="build the packages of coursework, to install elsewhere"
-    )
-    wheels.add_argument("folder", type=Path, metavar="FOLDER", help="folder for the packages")
-    selftest = commands.add_parser(
-        "selftest", help="test every question as a student would, and look for leaks"
-    )
-    selftest.add_argument(
-        "only", nargs="*", metavar="NOTEBOOK", help="names of the notebooks to test (default: all)"
-    )
-    selftest.add_argument(
-        "--sources",
-        type=Path,
-        help="folder of the notebooks with solutions (default: the one in course.toml)",
-    )
-    for parser, page in ((trial, "try"), (selftest, "selftest")):
-        parser.add_argument(
-            "--page", help=f"file for the page (default: {page}.html, beside the archive)"
-        )
+def argument(*names: str, **options: Any) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """One argument of a command, as argparse takes it."""
+    return names, options
+
+
+SOURCES = argument(
+    "--sources",
+    type=Path,
+    help="folder of the notebooks with solutions (default: the one in course.toml)",
+)
+#: The help and the arguments of each command.
+ARGUMENTS = {
+    "new": (
+        "create a small course, ready to use",
+        [
+            argument(
+                "course", metavar="COURSE", help="the folder to create; the course takes its name"
+            )
+        ],
+    ),
+    "release": (
+        "build the exercises, the sealed questions and the archive for students",
+        [
+            argument(
+                "only",
+                nargs="*",
+                metavar="NOTEBOOK",
+                help="names of the notebooks to release (default: all)",
+            ),
+            SOURCES,
+            argument(
+                "--exercises",
+                type=Path,
+                help="folder for the exercise notebooks (default: the one in course.toml)",
+            ),
+            argument(
+                "--sealed",
+                type=Path,
+                help="folder for the sealed questions (default: the one in course.toml)",
+            ),
+            argument(
+                "--no-archive", action="store_true", help="do not build the archive for students"
+            ),
+        ],
+    ),
+    "publish": (
+        "build a site from the exercises, with pages that check answers",
+        [
+            argument(
+                "--site", type=Path, help="folder for the site (default: site, beside the archive)"
+            ),
+            argument(
+                "--room",
+                action="store_true",
+                help="also download all packages, for a room without a network",
+            ),
+        ],
+    ),
+    "try": (
+        "show a question as students will see it, with every reply",
+        [
+            argument(
+                "name",
+                metavar="NOTEBOOK/QUESTION",
+                help="a question, or a notebook to show all of its questions",
+            ),
+            argument("--page", help="file for the page (default: try.html, beside the archive)"),
+        ],
+    ),
+    "ask": (
+        "print a notebook's questions as text to give to a language model",
+        [
+            argument("notebook", type=Path, metavar="NOTEBOOK.ipynb", help="an exercise notebook"),
+            argument(
+                "--answers",
+                type=Path,
+                metavar="REPLY",
+                help="file with the model's reply (needs --to)",
+            ),
+            argument(
+                "--to",
+                type=Path,
+                metavar="FILE.ipynb",
+                help="file for the notebook with those answers",
+            ),
+        ],
+    ),
+    "bank": (
+        "write the questions WITH ALL ANSWERS for Moodle or another system",
+        [
+            argument("out", type=Path, metavar="OUT", help="file for the questions"),
+            argument(
+                "--format",
+                choices=("moodle", "qti"),
+                required=True,
+                help="Moodle XML or a QTI 2.2 package",
+            ),
+            argument(
+                "--questions",
+                nargs="*",
+                default=[],
+                metavar="NOTEBOOK/QUESTION",
+                help="questions or notebooks (default: all)",
+            ),
+        ],
+    ),
+    "wheels": (
+        "build the packages of coursework, to install elsewhere",
+        [argument("folder", type=Path, metavar="FOLDER", help="folder for the packages")],
+    ),
+    "selftest": (
+        "test every question as a student would, and look for leaks",
+        [
+            argument(
+                "only",
+                nargs="*",
+                metavar="NOTEBOOK",
+                help="names of the notebooks to test (default: all)",
+            ),
+            SOURCES,
+            argument(
+                "--page", help="file for the page (default: selftest.html, beside the archive)"
+            ),
+        ],
+    ),
+}
 
 
 def _course(

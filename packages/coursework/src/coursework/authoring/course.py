@@ -72,7 +72,7 @@ def find_course(start: str | Path = ".") -> Course:
     AuthorError
         There is none, or it is not understood.
     """
-    course = _course_around(start)
+    course = course_around(start)
     if course is None:
         raise AuthorError(
             f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. Create a "
@@ -81,7 +81,8 @@ def find_course(start: str | Path = ".") -> Course:
     return course
 
 
-def _course_around(start: str | Path) -> Course | None:
+def course_around(start: str | Path) -> Course | None:
+    """The course that a folder belongs to, or ``None``."""
     first = Path(start).resolve()
     found = next(
         (folder / FILE for folder in (first, *first.parents) if (folder / FILE).is_file()), None
@@ -89,21 +90,14 @@ def _course_around(start: str | Path) -> Course | None:
     return _read(found) if found else None
 
 
-def edition_of(folder: str | Path) -> str:
-    """The edition of the course that a folder belongs to; empty where it belongs to none."""
-    course = _course_around(folder)
-    return course.edition if course else ""
-
-
 def gives_by_name(folder: str | Path) -> bool:
     """Whether the course of a folder gives variants by their names."""
-    course = _course_around(folder)
-    return course is not None and course.variants == BY_NAME
+    return getattr(course_around(folder), "variants", "") == BY_NAME
 
 
 def links_of(folder: str | Path) -> dict[str, str]:
     """The addresses that the course of a folder names, by what they lead to."""
-    course = _course_around(folder)
+    course = course_around(folder)
     return {
         name: address
         for name in ("chapter", "solution")

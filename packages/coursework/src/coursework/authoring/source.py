@@ -210,9 +210,6 @@ def read_source(
         given[name] = rules[name].parameters(variant if variant < count else 0, edition)
         return Given(shown(texts[name], written(given[name])), given[name])
 
-    def record_check(name: str, answer: object) -> None:
-        answers[name] = answer
-
     def record_question(name: str, **about: Any) -> None:
         if name not in answers:
             raise author.AuthorError(
@@ -257,9 +254,6 @@ def read_source(
                 name, about.pop("kind"), answers[name], variant=own, **about
             )
 
-    def record_identity(identity: str = "") -> None:
-        identities.append(identity)
-
     namespace = {
         "__name__": "__main__",
         "question": record_question,
@@ -276,7 +270,10 @@ def read_source(
     needed = set(range(len(notebook.cells)))
     if only is not None:
         needed = cells_needed(notebook, only, plots if pictures and not variant else ())
-    said = {"check": record_check, "student": record_identity}
+    said = {
+        "check": answers.__setitem__,
+        "student": lambda identity="": identities.append(identity),
+    }
     with contextlib.ExitStack() as replaced:
         for name, record in said.items():
             replaced.enter_context(_replaced(coursework, name, record))

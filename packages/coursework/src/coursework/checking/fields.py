@@ -6,7 +6,7 @@ A reader takes a result of :func:`json.loads` and its location, and returns the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar, cast
 
 # Values that JSON can represent.
@@ -134,9 +134,11 @@ class Fields:
 
 
 def written(value: object) -> Json:
-    """Return the result of a reader as JSON, with lists for tuples."""
+    """Return the result of a reader as JSON, with lists for tuples and objects for dataclasses."""
+    if hasattr(value, "as_json"):
+        return cast(Json, value.as_json())
     if isinstance(value, (tuple, list)):
         return [written(part) for part in value]
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {name: written(part) for name, part in value.items()}
     return cast(Json, value)

@@ -9,7 +9,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from ..authoring.course import edition_of, find_course
+from ..authoring.course import course_around, find_course
 from ..authoring.source import names_asked, posed
 from .judging import marking
 from .judging.contract import Contract
@@ -53,7 +53,7 @@ class Course:
         only: Collection[str] = (),
     ) -> None:
         folder = self.folder = Path(solutions or find_course().sources)
-        self.edition = edition_of(folder)
+        self.edition = getattr(course_around(folder), "edition", "")
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import getpass
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ..authoring.commands import argument
 
 if TYPE_CHECKING:
     from .judging.journal import Journal
@@ -16,31 +17,27 @@ if TYPE_CHECKING:
     from .store import Store
 
 
-def _argument(*names: str, **options: Any) -> tuple[tuple[str, ...], dict[str, Any]]:
-    return names, options
-
-
 def _moment(text: str) -> datetime.datetime:
     """A time that a person typed, on the clocks of this machine if it names no zone."""
     return datetime.datetime.fromisoformat(text).astimezone()
 
 
-OUT = _argument("out", metavar="MARKS", help="the folder that `coursework grade --out` created")
-SOLUTIONS = _argument(
+OUT = argument("out", metavar="MARKS", help="the folder that `coursework grade --out` created")
+SOLUTIONS = argument(
     "--solutions",
     help="folder of the notebooks with solutions (default: the one in course.toml)",
 )
-DRY_RUN = _argument(
+DRY_RUN = argument(
     "--dry-run", action="store_true", help="show what would happen, without changing any mark"
 )
-GRADER = _argument(
+GRADER = argument(
     "--grader",
     help="name to record in the journal with these decisions (default: your user name)",
 )
-YES = _argument(
+YES = argument(
     "--yes", action="store_true", help="accept every change of a mark, up or down, without asking"
 )
-WORKERS = _argument(
+WORKERS = argument(
     "--workers",
     type=int,
     help="number of notebooks to run at a time (default: one per processor)",
@@ -50,42 +47,42 @@ ARGUMENTS = {
     "grade": (
         "grade a folder or an archive of notebooks",
         [
-            _argument(
+            argument(
                 "submissions",
                 help="a folder, a zip from Canvas, Moodle or Brightspace, or a notebook",
             ),
-            _argument(
+            argument(
                 "--out", required=True, metavar="MARKS", help="folder for marks, feedback, reports"
             ),
             SOLUTIONS,
-            _argument(
+            argument(
                 "--assignment",
                 action="append",
                 default=[],
                 metavar="NAME",
                 help="grade only this assignment (default: all in term.toml)",
             ),
-            _argument("--student", help="the student who handed in all the files"),
+            argument("--student", help="the student who handed in all the files"),
             DRY_RUN,
             YES,
             WORKERS,
-            _argument(
+            argument(
                 "--scheduler",
                 metavar="ADDRESS",
                 help="run on this Dask cluster instead, such as tls://host:8786",
             ),
-            _argument(
+            argument(
                 "--keys",
                 metavar="FOLDER",
                 help="folder of the cluster's keys, from `coursework cluster`",
             ),
-            _argument(
+            argument(
                 "--allow-weak-isolation",
                 action="store_true",
                 help="run students' code even if this machine cannot isolate it; use it only on a "
                 "machine that you can afford to lose",
             ),
-            _argument(
+            argument(
                 "--as-listed",
                 action="store_true",
                 help="trust the list even if many notebooks carry another student's ID",
@@ -106,8 +103,8 @@ ARGUMENTS = {
         [
             OUT,
             GRADER,
-            _argument("--hide-names", action="store_true", help="show numbers instead of names"),
-            _argument(
+            argument("--hide-names", action="store_true", help="show numbers instead of names"),
+            argument(
                 "--port", type=int, default=0, help="port for the page (default: any free one)"
             ),
             YES,
@@ -117,16 +114,16 @@ ARGUMENTS = {
         "print a personal question paper for each student, and marking sheets",
         [
             OUT,
-            _argument("name", metavar="NAME", help="the assignment's name, such as quiz-1"),
-            _argument(
+            argument("name", metavar="NAME", help="the assignment's name, such as quiz-1"),
+            argument(
                 "--questions",
                 nargs="+",
                 default=[],
                 metavar="NOTEBOOK/QUESTION",
                 help="the questions (default: those in term.toml)",
             ),
-            _argument("--roster", metavar="FILE.csv", help="the students, if not in term.toml"),
-            _argument(
+            argument("--roster", metavar="FILE.csv", help="the students, if not in term.toml"),
+            argument(
                 "--paper",
                 choices=["a4", "letter"],
                 default="a4",
@@ -140,7 +137,7 @@ ARGUMENTS = {
         "add another grader's decisions, or a table of decisions or appeals",
         [
             OUT,
-            _argument(
+            argument(
                 "files",
                 nargs="+",
                 metavar="FILE",
@@ -156,7 +153,7 @@ ARGUMENTS = {
     "term": (
         "write the totals, pages and statistics of a course from MARKS/term.toml",
         [
-            _argument(
+            argument(
                 "new",
                 nargs="?",
                 choices=["new"],
@@ -164,10 +161,8 @@ ARGUMENTS = {
             ),
             OUT,
             SOLUTIONS,
-            _argument(
-                "--roster", metavar="FILE.csv", help="roster of the course (only with 'new')"
-            ),
-            _argument(
+            argument("--roster", metavar="FILE.csv", help="roster of the course (only with 'new')"),
+            argument(
                 "--earlier",
                 nargs="+",
                 default=[],
@@ -180,18 +175,18 @@ ARGUMENTS = {
         "export the marks and the pages of feedback",
         [
             OUT,
-            _argument(
+            argument(
                 "--lms",
                 metavar="FILE.csv",
                 help="the gradebook that you exported from Canvas, Moodle, Brightspace or "
                 "Blackboard; term.toml says which column belongs to which assignment",
             ),
-            _argument(
+            argument(
                 "--filled",
                 metavar="FILE.csv",
                 help="file for the filled gradebook (default: FILE-filled.csv)",
             ),
-            _argument(
+            argument(
                 "--as-of",
                 metavar="TIME",
                 type=_moment,
@@ -199,41 +194,41 @@ ARGUMENTS = {
                 "2026-12-01T12:00 (default: now)",
             ),
             DRY_RUN,
-            _argument(
+            argument(
                 "--overwrite",
                 action="append",
                 default=[],
                 metavar="STUDENT",
                 help="override this student's manually entered mark (but not an excused one)",
             ),
-            _argument(
+            argument(
                 "--assignment",
                 help="the assignment to export (default: all whose columns in term.toml are in "
                 "the gradebook)",
             ),
-            _argument(
+            argument(
                 "--feedback",
                 metavar="FILE.zip",
                 help="write the feedback pages, named as your LMS expects",
             ),
-            _argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table"),
+            argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table"),
         ],
     ),
     "gradescope": (
         "build a Gradescope autograder for one assignment",
         [
-            _argument("marks", metavar="MARKS", help="a folder with term.toml"),
-            _argument("--out", required=True, metavar="FILE.zip", help="file for the autograder"),
+            argument("marks", metavar="MARKS", help="a folder with term.toml"),
+            argument("--out", required=True, metavar="FILE.zip", help="file for the autograder"),
             SOLUTIONS,
-            _argument("--assignment", required=True, metavar="NAME", help="the assignment"),
+            argument("--assignment", required=True, metavar="NAME", help="the assignment"),
         ],
     ),
     "why": (
         "explain a mark, with its history",
         [
-            _argument("student", metavar="STUDENT", help="the student's ID"),
-            _argument("assignment", metavar="ASSIGNMENT", help="the assignment's name"),
-            _argument(
+            argument("student", metavar="STUDENT", help="the student's ID"),
+            argument("assignment", metavar="ASSIGNMENT", help="the assignment's name"),
+            argument(
                 "--marks",
                 default="marks",
                 metavar="MARKS",
@@ -244,23 +239,23 @@ ARGUMENTS = {
     "cluster": (
         "start the scheduler of a cluster, or one of its workers",
         [
-            _argument(
+            argument(
                 "--keys",
                 required=True,
                 metavar="FOLDER",
                 help="folder of the keys (we create keys in an empty one)",
             ),
-            _argument(
+            argument(
                 "--host",
                 help="start the scheduler at this address, which the workers must be able to reach",
             ),
-            _argument(
+            argument(
                 "--port",
                 type=int,
                 default=8786,
                 help="the scheduler's port (default: %(default)s)",
             ),
-            _argument(
+            argument(
                 "--worker",
                 metavar="ADDRESS",
                 help="start a worker for the scheduler at this address, such as tls://host:8786",
@@ -269,14 +264,6 @@ ARGUMENTS = {
         ],
     ),
 }
-
-
-def add_commands(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add these commands to those of ``coursework``."""
-    for command, (does, arguments) in ARGUMENTS.items():
-        parser = commands.add_parser(command, help=does)
-        for names, options in arguments:
-            parser.add_argument(*names, **options)
 
 
 def grade(
@@ -531,7 +518,7 @@ def export(
         written = gradebooks.write_feedback(feedback, marks, store)
         print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
     if nbgrader:
-        gradebooks.write_nbgrader(nbgrader, marks)
+        print(gradebooks.write_nbgrader(nbgrader, marks))
 
 
 def why(student: str, assignment: str, marks: str) -> None:

@@ -370,28 +370,35 @@ def say_other_numbers(
 
 
 def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | None) -> None:
-    """Everything from one student is a question, not a result: a folder
-    around it may have been taken for one.
+    """Everything from one student is a question, not a result: a folder around it may have been
+    taken for one. And notebooks that lie by themselves have only their own names.
     """
-    students = {one.student for one in work}
-    doubtful = [
-        notebook
+    by_name = [
+        (one, notebook)
         for one in work
         for notebook in (*one.superseded, *one.notebooks)
         if not notebook.claim.given_by_system
-        and (
-            one.attempts > 1
-            or notebook in one.superseded
-            # A notebook that lies by itself has only its own name, which is nobody's.
-            or any(name.startswith(f"{one.student}/") for name in notebook.named)
-        )
     ]
-    if len(students) == 1 and doubtful and roster is None and student is None:
-        (only,) = students
+    students = {one.student for one in work}
+    several = len(students) == 1 and any(
+        one.attempts > 1 or notebook in one.superseded for one, notebook in by_name
+    )
+    of_notebooks = {
+        one.student
+        for one, notebook in by_name
+        if any(name.startswith(f"{one.student}/") for name in notebook.named)
+    }
+    if (several or of_notebooks) and roster is None and student is None:
+        why = (
+            f"{', '.join(sorted(of_notebooks))} would be graded as a student, but that is the name "
+            "of a notebook."
+            if of_notebooks
+            else f"All notebooks would belong to one student, {min(students)!r}, and only one of "
+            "them would count."
+        )
         raise NothingToGrade(
-            f"All notebooks would belong to one student, {only!r}, and only one of them would "
-            "count. If that is right, add --student and the student's ID. If not, give the folder "
-            "in which each student has a folder, or set a roster in term.toml."
+            f"{why} If one student handed in all of them, add --student and the student's ID. If "
+            "not, give the folder in which each student has a folder, or set a roster in term.toml."
         )
 
 

@@ -25,6 +25,7 @@ from ..checking.fields import (
     text,
     truth,
     whole,
+    written,
 )
 
 PLAIN: dict[object, Reader[Any]] = {str: text, float: number, int: whole, bool: truth}
@@ -87,17 +88,6 @@ def _reader(kind: Any) -> Reader[Any]:
         inner = _reader(next(one for one in arguments if one is not NoneType))
         return lambda value, where: None if value is None else inner(value, where)
     return anything
-
-
-def written(value: Any) -> Json:
-    """A value of a dataclass as JSON."""
-    if hasattr(value, "as_json"):
-        return value.as_json()  # type: ignore[no-any-return]
-    if isinstance(value, (tuple, list)):
-        return [written(part) for part in value]
-    if isinstance(value, Mapping):
-        return {name: written(part) for name, part in value.items()}
-    return value  # type: ignore[no-any-return, union-attr]
 
 
 def from_table(file: Any, kind: Any, where: str, value: object, most: float = math.inf) -> Any:

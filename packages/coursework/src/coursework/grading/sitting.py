@@ -22,6 +22,7 @@ from markupsafe import Markup
 from ..authoring.author import to_page
 from ..checking.catalogue import message
 from ..checking.plain import Plain, Value, parts_of
+from ..checking.reading import read
 from ..checking.reply import plain_text
 from ..checking.variants import text_of
 from ..checking.writing import LONGEST, answer_as_tex, answer_as_text
@@ -68,6 +69,7 @@ class Asked(NamedTuple):
     worth: float
     text: Markup
     right: Markup
+    decimals: str
     wide: bool
     boxes: list[Box]
 
@@ -94,7 +96,7 @@ def sitting(
     with at_desk(out, show, agree) as (desk, closing):
         people = Roster(roster) if roster else desk.term.roster
         if people is None:
-            raise ValueError("who is in the course? Set a roster in term.toml, or use --roster.")
+            raise ValueError("Who is in the course? Set a roster in term.toml, or use --roster.")
         is_new = _has_entered(desk, name, tuple(questions))
         desk.ask(course := Course(solutions, desk.term, [name]), [name], closing)
         for question, (contract, *_) in desk.questions[name].items():
@@ -194,9 +196,19 @@ def _asked(contract: Contract, figures: str) -> Asked:
         contract.worth,
         Markup(to_page(text, functools.partial(pages.formula, longest=LONGEST))),
         right,
+        _decimals(contract),
         wide,
         boxes_of(contract),
     )
+
+
+def _decimals(contract: Contract) -> str:
+    """The numbers of an answer in decimals, as students write them on paper; words have none."""
+    question = contract.question
+    if contract.plain is None or question.symbols or question.kind == "measurement":
+        return ""
+    numbers = read(question, contract.plain).numbers
+    return ", ".join(number(float(entry)) for entries in numbers[:1] for entry in entries)
 
 
 def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> list[Path]:
@@ -212,7 +224,7 @@ def _printed(desk: Desk, name: str, records: Sequence[Record], paper: str) -> li
     ]
     made = []
     for template in ("sheets", "markers"):
-        path = (folder / f"{template}.html").resolve()
+        path = folder / f"{template}.html"
         write(
             path,
             page(f"{template}.html", name=name, people=people, paper=paper),
@@ -234,7 +246,7 @@ def _as_pdf(path: Path) -> Path:
         return path
     made = path.with_suffix(".pdf")
     command = [browser, "--headless", "--no-sandbox", "--no-pdf-header-footer"]
-    command += [f"--print-to-pdf={made}", path.as_uri()]
+    command += [f"--print-to-pdf={made}", path.resolve().as_uri()]
     subprocess.run(command, check=True, capture_output=True)
     path.unlink()
     return made

@@ -41,7 +41,6 @@ class Store:
         """Keep other runs away; what a run that was killed left half done is removed."""
         # Marks and answers are for nobody else who works on this machine.
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        self.records.mkdir(exist_ok=True)
         with open(self.folder / "lock", "w") as self.lock:
             try:
                 lock(self.lock, wait=False)
@@ -49,7 +48,12 @@ class Store:
                 raise InUse(f"Another run is using {self.folder}.") from None
             for path in self.folder.rglob(".half-*"):
                 path.unlink()
-            yield
+            try:
+                yield
+            finally:
+                # A run that was refused leaves nothing behind.
+                if not self.records.exists():
+                    (self.folder / "lock").unlink()
 
     def in_copy_of_process(self) -> None:
         """Leave the lock to the process that has it: when that one

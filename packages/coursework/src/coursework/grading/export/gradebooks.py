@@ -757,18 +757,23 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     return len(pages)
 
 
-def write_nbgrader(path: str | Path, marks: Marks) -> None:
-    """Write nbgrader's table of grades."""
-    rows = []
+def write_nbgrader(path: str | Path, marks: Marks) -> str:
+    """Write nbgrader's table of grades, and say what it has; it has no mark for an answer that
+    waits for a person.
+    """
+    rows, pending = [], 0
     for (student, assignment), result in sorted(marks.results.items()):
         given = marks.given.get((marks.term.group_of(student, assignment), assignment))
-        if given or (result.state == "missing" and result.due):
+        if given and given.undecided:
+            pending += 1
+        elif given or (result.state == "missing" and result.due):
             raw = given.points - result.held_back if given else 0
             worth = given.worth if given else result.worth
             lost = round(raw * result.penalty, 4)
             points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
             rows.append((assignment, "", "", student, "", "", "", *points))
     write(path, table(NBGRADER, rows), private=True)
+    return f"{len(rows)} marks: {path}. Left out, because a decision is pending: {pending}."
 
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:

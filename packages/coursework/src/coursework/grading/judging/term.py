@@ -433,6 +433,7 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
         There is one already.
     """
     # Only this function needs what makes questions.
+    from ...authoring.course import course_around
     from ...authoring.source import CHAPTERS
 
     path = Path(folder, FILE)
@@ -441,10 +442,10 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     names = [source.stem for source in sorted(sources.glob("*.ipynb")) if source.stem != CHAPTERS]
     if not names:
         raise BadTerm(f"There is no notebook with solutions in {sources}.")
-    place = os.path.relpath(roster, folder) if roster else ""
+    place, course = os.path.relpath(roster, folder) if roster else "", course_around(sources)
     _, _, zone = os.path.realpath("/etc/localtime").partition("zoneinfo/")
     text = NEW.format(
-        name=json.dumps(Path(folder).resolve().parent.name),
+        name=json.dumps(course.title if course else Path(folder).resolve().parent.name),
         zone=json.dumps(zone or "UTC"),
         roster=f"roster = {json.dumps(place)}" if roster else '# roster = "gradebook.csv"',
         assignments="".join(
@@ -476,8 +477,12 @@ def read_term(path: str | Path) -> Term:
     try:
         said: dict[str, object] = tomllib.loads(path.read_text("utf8"))
     except (OSError, ValueError) as error:
-        new = "; `coursework term new` writes it" if isinstance(error, FileNotFoundError) else ""
-        raise BadTerm(f"{path}: {error}{new}") from None
+        advice = (
+            ". Create it with `coursework term new`."
+            if isinstance(error, FileNotFoundError)
+            else ". Write a date as 2026-10-05T23:59:00, and put text in quotation marks."
+        )
+        raise BadTerm(f"{path}: {error}{advice}") from None
     file = _File(path)
     if zone := said.get("time-zone"):
         try:

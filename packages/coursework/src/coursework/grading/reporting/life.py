@@ -2,6 +2,7 @@
 
 import datetime
 
+from ...checking.reply import plain_text
 from ..judging import term as of_term
 from ..judging.journal import Appeal, Decision, Exported, Given, Journal
 from ..store import Store
@@ -52,9 +53,9 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
     result = of_term.result_of(
         student, assignment, record, term, {assignment: 0}, now, refused=senders
     )
-    due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "nothing says when it was due"
-    in_time = "in time" if result.handed_in else "nothing says when it came"
-    late = f"late: {number(round(100 * result.penalty))} % are lost" if result.late else in_time
+    due = f"due {result.due:%Y-%m-%d %H:%M %Z}" if result.due else "no due date"
+    in_time = "in time" if result.handed_in else "we do not know when it was handed in"
+    late = f"late: {number(round(100 * result.penalty))} % lost" if result.late else in_time
     if not record:
         missing = result.due and result.state == "missing"
         late = "it is exported as 0" if missing else "no mark is exported"
@@ -63,9 +64,10 @@ def life_of(store: Store, student: str, assignment: str) -> list[str]:
         case = cases.get(name)
         rule = f", variant {case.own.variant} ({case.rule})" if case and case.rule else ""
         decided = f", decided by {mark.decided['who']}" if mark.decided else ""
-        note = f" ({mark.note})" if mark.note else ""
+        note = plain_text(mark.messages[0]) if mark.note == "authored" else mark.note
+        said = f" ({in_a_line(note, 120)})" if note else ""
         lines.append(
-            f"  {name}{rule}: {mark.outcome}{note}, {number(mark.points)} of {number(mark.worth)}"
+            f"  {name}{rule}: {mark.outcome}{said}, {number(mark.points)} of {number(mark.worth)}"
             f"{decided}"
         )
     for event in journal.events:
