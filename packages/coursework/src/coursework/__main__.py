@@ -74,9 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit("\nStopped." + " Run the same command again to resume." * (command == "grade"))
     except ModuleNotFoundError as error:
         needs = (
-            "means of Linux that this system has not, to judge what strangers wrote apart from all "
-            "else. Run it in WSL or in a container; review, merge, term and export run here, too, "
-            "and what was decided is in the journal."
+            "Linux, because it runs students' code in isolation. Run it in WSL or in a "
+            "container. You can still run review, merge, term and export here, and your "
+            "decisions are in the journal."
             if error.name in ("fcntl", "resource")
             else f"{error.name}, which is not installed here. Install coursework-tools, or in a "
             "working copy: python -m pip install --editable '.[tools]'"

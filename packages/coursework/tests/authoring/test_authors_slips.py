@@ -90,7 +90,7 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": changed("'x')", "'x', hints={'oposite': ['Think.']})")},
-            "`hints` names 'oposite', and this",
+            "`hints` names 'oposite', but this",
         ),
         (
             {"question": changed("'x')", "'x', after={'a/b': 'Think.'})")},
@@ -98,7 +98,7 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"question": changed("'x')", "'x', credit={'oposite': 0.5})")},
-            "knows no such mistake. It knows 'opposite'",
+            "has no such mistake. Its mistakes are 'opposite'",
         ),
         (
             {"question": changed("'x')", "'x', credit={'opposite': 50})")},

@@ -81,7 +81,8 @@ def test_a_release_from_the_wrong_folder_deletes_nothing(statics, tmp_path, monk
     before = contents(tmp_path)
     monkeypatch.chdir(tmp_path)
     with pytest.raises(
-        SystemExit, match=r"is made of no notebook in \S*mine, and neither are 1 other files"
+        SystemExit,
+        match=r"was not made from any notebook in \S*mine, and neither are 1 other files",
     ):
         main(["release", "--sources", "mine"])
     assert contents(tmp_path) == before
@@ -326,8 +327,8 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
     monkeypatch.chdir(course)
     main(["release", "beam"])
     said = capsys.readouterr().out
-    assert "beam/support, 3 points: one of 2 answers." in said
-    assert "beam/loads, 2 points: one of 125 answers." in said
+    assert "beam/support, 3 points: one of 2 answers, so" in said
+    assert "beam/loads, 2 points: one of 125 answers, so" in said
     assert "5 of 8 points have an answer that a script" in said and "beam/bent, 2" not in said
     assert "8 of 8 points in exercise notebooks have one answer for everybody." in said
     assert "beam/bent (2): vary it, or" in said and "beam/ends (1): Two ends." in said

@@ -399,7 +399,7 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
         match="the siblings of 'levers/see-saw' are levers/see-saw/sibling and",
     ):
         coursework.check(f"{NAME}/sibling-3", 1)
-    with pytest.raises(questions.NoSuchQuestion, match="has no other numbers"):
+    with pytest.raises(questions.NoSuchQuestion, match="has only one set of numbers"):
         coursework.variant("levers/plain/sibling")
 
 
@@ -542,7 +542,7 @@ def test_from_the_students_notebook_to_the_report(recorded, course, tmp_path):
     report = (tmp_path / "marks" / "report.html").read_text("utf8")
     assert "Tries" in report and "2 (2 at most, 2 known)" in report
     page = (tmp_path / "marks" / feedback_of(students["ben"], "levers")).read_text("utf8")
-    assert "2 different answers, as your notebook remembers" in page
+    assert "2 different answers, according to your notebook" in page
 
 
 def test_an_edition_draws_afresh():

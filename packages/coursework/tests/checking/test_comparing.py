@@ -348,7 +348,7 @@ def test_a_mistake_is_found_beside_a_slip():
 def test_in_an_exam_only_the_form_is_looked_at():
     unit = Question("vector", salt="s", unit_vector=True)
     assert reply_to(unit, None, [1, 0, 0])[:2] == ("recorded", "")
-    assert "nothing in your files tells whether it is right" in reply_to(unit, None, [1, 0, 0])[2]
+    assert "nothing in your files shows whether it is right" in reply_to(unit, None, [1, 0, 0])[2]
     assert reply_to(unit, None, [1, 1, 0])[:2] == ("invalid", "not unit length")
     sealed = Sealed(Question("vector", salt="s", exam=True))
     reply = judge("a/b", sealed, to_plain([1, 1, 0]))
@@ -560,7 +560,7 @@ LONG = "levers/" + "a" * 90
         (7, "first, as a string: .* Yours is of type `int`"),
         (type("T" * 50, (), {})(), f"of type `{'T' * 40}`"),
         ("levers/arm/sibling-3", "-3' .* the siblings of 'levers/arm' are levers/arm/sibling and "),
-        ("levers/plain/sibling", "does not exist: 'levers/plain' has no other numbers"),
+        ("levers/plain/sibling", "does not exist: 'levers/plain' has only one set of numbers"),
         ("levers", "^'levers' is a notebook. Its questions are 'levers/arm', 'levers/plain'"),
         ("levers/plan", r"^There is no question 'levers/plan'\. Did you mean 'levers/plain'\?$"),
         ("Levers/Arm", r"Did you mean 'levers/arm'\?"),

@@ -256,7 +256,7 @@ def test_a_plug_in_is_given_the_turns_and_the_question(monkeypatch):
 def test_two_mistakes_of_one_name_are_refused(monkeypatch):
     monkeypatch.setattr(catalogue, "short_name", lambda note, details: b"the same")
     catalogue._by_short_name.cache_clear()
-    with pytest.raises(RuntimeError, match="have one short name") as error:
+    with pytest.raises(RuntimeError, match="have the same short name") as error:
         by_short_name(Question("order"))
     catalogue._by_short_name.cache_clear()
     assert "Note(note='transposed'" in str(error.value) and "'in degrees'" in str(error.value)

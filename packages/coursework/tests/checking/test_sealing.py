@@ -87,16 +87,16 @@ def test_what_was_changed_is_refused():
     for place in range(len(data)):
         changed = bytearray(data)
         changed[place] ^= 1
-        with pytest.raises(ValueError, match="does not fit this key"):
+        with pytest.raises(ValueError, match="does not match this key"):
             sealing.unseal(base64.b85encode(bytes(changed)).decode(), KEY)
-    with pytest.raises(ValueError, match="does not fit this key"):
+    with pytest.raises(ValueError, match="does not match this key"):
         sealing.unseal(PAGE, OTHER)
     mistakes = sealing.locker(KEY, 1)
     assert sealing.open_locker(sealing.pack([mistakes]), KEY) == (1, None, bytes(8))
     for place in range(sealing.NAME, sealing.LOCKER):
         changed = bytearray(mistakes)
         changed[place] ^= 1
-        with pytest.raises(ValueError, match="data was changed"):
+        with pytest.raises(ValueError, match="data has been changed"):
             sealing.open_locker(sealing.pack([bytes(changed)]), KEY)
 
 

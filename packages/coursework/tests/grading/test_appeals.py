@@ -314,7 +314,8 @@ def test_a_decision_on_what_has_changed_since_is_shown_as_such(begun, out, tmp_p
             served.ask(f"/{served.secret}/answer/{one}?show=earlier")[1] for one in clusters
         )
         assert (
-            "The question was another when Ann decided" in pages and "to an earlier answer" in pages
+            "The question has changed since Ann decided" in pages
+            and "to an earlier answer" in pages
         )
         cluster = cluster_of(out, SUM, "cem")
         assert served.decide(cluster.id, "credit=2").status == 303

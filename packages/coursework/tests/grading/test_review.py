@@ -318,7 +318,7 @@ def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
         ]
         found = hints_of([*remembering, *records[len(tried) :]], lambda digest: [])
         return {
-            student: [said for said in found[student, "turns/sum"] if "tried on the way" in said]
+            student: [said for said in found[student, "turns/sum"] if "also tried" in said]
             for student in (one, other, third)
         }
 
@@ -326,7 +326,7 @@ def test_shared_tries_are_a_hint_if_they_are_several_and_unusual(out):
     assert (
         shared[one]
         == shared[other]
-        == ["2 unusual wrong answers were tried on the way that one other tried, too"]
+        == ["2 unusual wrong answers that one other student also tried"]
     )
     assert shared[third] == []
     # One may be chance.

@@ -126,7 +126,7 @@ def test_a_decision_that_was_merged_stays(course, tmp_path):
         path = where.write_table("decided.csv", [{**table[0], "credit": credit}])
         where.run("merge", "marks", path, "--grader", who)
     said = course.run("merge", "marks", copy.marks / "journal.jsonl", fails=True)
-    assert "Ann gave 1.0, Ben gave 0.5; the later one counts" in said
+    assert "Ann gave 1.0, Ben gave 0.5; the later decision counts" in said
     assert "1 student would lose: hw2/why." in said and course.points() == {"ada": 9}
     course.run("merge", "marks", copy.marks / "journal.jsonl", "--yes")
     assert course.points() == {"ada": 8.5}

@@ -66,7 +66,7 @@ def test_from_a_new_file_to_filled_columns(tmp_path):
     course = Course(tmp_path, hw1={"sum": (5, 4)}, hw2={"load": (7, 8)})
     (tmp_path / "roster.csv").write_text("student\nada\nben\n")
     made = ["term", "new", "marks", "--solutions", "solutions", "--roster", "roster.csv"]
-    assert "read it, and make your choices" in course.run(*made)
+    assert "Read it, and make your choices" in course.run(*made)
     assert "already exists" in course.run(*made, fails=True)
     path = course.marks / "term.toml"
     text = path.read_text()
@@ -175,7 +175,7 @@ def test_what_came_in_time_counts_before_what_came_late(tmp_path):
     said = course.run("why", "ada", "hw1")
     assert "handed in 2025-10-09T10:00:00" in said and "late: 40 % lost" in said
     assert (
-        "It came late: due 2025-10-05 23:59 UTC"
+        "It was late: due 2025-10-05 23:59 UTC"
         in (course.marks / "feedback" / "ada" / "hw1.html").read_text()
     )
 
@@ -244,7 +244,7 @@ def test_who_handed_in_what_is_damaged_did_not_hand_in_nothing(course):
     }
     assert totals["ben"] == totals["dan"] == ("", "damaged") and totals["cem"][1] == "missing"
     page = (course.marks / "course" / "students" / "ben.html").read_text()
-    assert "your file cannot be graded: a person has to look at it" in page
+    assert "your file cannot be graded automatically, so a person has to look at it" in page
     course.run("export", "marks", "--nbgrader", "grades.csv", "--assignment", "hw1")
     rows = list(csv.DictReader((course.place / "grades.csv").read_text().splitlines()))
     assert [row["student_id"] for row in rows] == ["ada", "cem"]

@@ -76,5 +76,5 @@ def _read(path: str | Path) -> NotebookNode:
     try:
         notebook: NotebookNode = nbformat.read(path, as_version=4)
     except (OSError, ValueError) as error:  # nbformat's own errors are of values
-        raise AuthorError(f"cannot read {path} as a notebook: {error}") from None
+        raise AuthorError(f"We cannot read {path} as a notebook: {error}") from None
     return notebook

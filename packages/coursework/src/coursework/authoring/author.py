@@ -276,8 +276,8 @@ class AuthoredQuestion:
             if len(edges_near(self.public, numbers)) <= MOST_EDGES:
                 return
         raise AuthorError(
-            f"{self.name}: found no points at which to compare this answer reliably. Is "
-            "it well defined for all values of its symbols?"
+            f"{self.name}: we found no points at which to compare this answer reliably. Is it "
+            "well defined for all values of its symbols?"
         )
 
     def _varying(self) -> set[int]:
@@ -315,8 +315,9 @@ class AuthoredQuestion:
             for key in keys:
                 if key not in known:
                     raise AuthorError(
-                        f"{self.name}: `{argument}` names {key!r}, and this question knows no such "
-                        f"mistake. It knows {', '.join(repr(one) for one in known)}."
+                        f"{self.name}: `{argument}` names {key!r}, but this question has no "
+                        "such mistake. Its mistakes are "
+                        f"{', '.join(repr(one) for one in known)}."
                     )
 
     def _catalogued(self) -> list[Mistake]:

@@ -145,7 +145,7 @@ def _exported(
 ) -> tuple[dict[str, list[Item]], dict[str, str]]:
     """The items of each question of a notebook; or why it cannot be exported."""
     if path.stem == CHAPTERS:
-        return {}, dict.fromkeys(names, "its text stands in a chapter")
+        return {}, dict.fromkeys(names, "its text is in a chapter")
     items, left = dict[str, list[Item]](), dict[str, str]()
     source = read_source(path, 0, course.edition, names, pictures=True)
     above = texts_of_questions(source.notebook, source.figures)

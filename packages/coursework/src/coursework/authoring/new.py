@@ -45,7 +45,7 @@ question('first-steps/slope', kind='expression', symbols='x', worth=2,
 ### BEGIN HIDDEN TESTS
 question('first-steps/mean', kind='function', result='expression', worth=3,
          calls=[[[2, 4, 9]], [[-1.5]], [[0.25, 3.5]]],
-         mistakes={'This is the sum; it is still to be divided by the number of terms.': sum})
+         mistakes={'This is the sum. Divide it by the number of terms.': sum})
 ### END HIDDEN TESTS""",
 ]
 FILES = {
@@ -109,7 +109,7 @@ Exercises in notebooks that check themselves and hold no answers.
 | folder | what | who sees it |
 |---|---|---|
 | `solutions/` | the notebooks with solutions, which you write | you alone |
-| `exercises/` | the notebooks with blanks, and the sealed questions; never edited | everybody |
+| `exercises/` | the notebooks with blanks, and the sealed questions; do not edit them | everybody |
 | `wheels/` | the packages of coursework that this course was made with | everybody |
 
     python -m pip install -r requirements.txt
@@ -125,8 +125,8 @@ of its own, as a submodule:
     git rm -r --cached solutions
     git submodule add PRIVATE-ADDRESS solutions
 
-Whoever gets this folder without the submodule can do everything but release and grade; the tests
-that need the solutions are skipped there.
+Without the submodule you can do everything except release and grade, and the tests that need the
+solutions are skipped.
 """,
 }
 

@@ -67,26 +67,26 @@ README = """Exercises of {title}
    These lines install the package that came with the exercises. Do not run "pip install
    coursework": the project of that name on the index is somebody else's.
 
-   The folder "environment" is Python with what the exercises need, apart from that of your
-   system. If somebody gave you a folder "wheels" for a room without a network, the last line is
+   The folder "environment" contains Python and the packages that the exercises need, separate
+   from your system's Python. If somebody gave you a folder "wheels" for a room without a network,
+   the last line is
 
        python -m pip install --no-index --find-links wheels -r requirements.txt
 
-2. Start Jupyter and open a notebook; another day begin with the second line above:
+2. Start Jupyter and open a notebook. On another day, begin with the second line above:
 
        jupyter lab
 
-Answer in place of the dots and run the check below each question. It says whether the answer is
-right or what was mixed up. Your progress is kept in the folder .coursework beside the notebooks
+Answer in place of the dots and run the check below each question. It tells you whether the answer
+is right, or what you mixed up. Your progress is kept in the folder .coursework beside the notebooks
 and nowhere else.
 
 When there is a newer archive, do not unpack it over your work. Run
 
        python -m coursework update exercises.zip
 
-in this folder: it adds what is new, puts the new package in place of the old one, tells how to
-install it, replaces the notebooks that you have not changed, and leaves every one that you have
-changed as it is.
+in this folder. It adds the new files, replaces the old package and tells you how to install the
+new one. It replaces the notebooks that you have not changed, and keeps those that you have.
 """
 ABOUT = """Metadata-Version: 2.1
 Name: {name}

@@ -49,7 +49,7 @@ COLUMNS = (
     "Kind",
     "Forms that pass",
     "Mistakes named",
-    "Mistakes that change nothing here",
+    "Mistakes that do not change the answer",
     "Possible answers",
     "Faults",
 )
@@ -74,8 +74,7 @@ td details{display:inline-block;max-width:100%;vertical-align:top}
 }
 """
 NO_LEAK = (
-    "<p>None: no line of a solution, hint, hidden test or answer is in anything that is "
-    "released.</p>"
+    "<p>None: no line of a solution, hint, hidden test or answer is in the released files.</p>"
 )
 
 
@@ -486,14 +485,15 @@ def write_page(
     # A test of a few questions does not look for leaks.
     leaks_found = f"<h2>Leaks</h2>{f'<ul>{listed}</ul>' if listed else NO_LEAK}"
     return (
-        '<!doctype html><html lang="en"><meta charset="utf-8"><title>Exercises, tried</title>'
+        '<!doctype html><html lang="en"><meta charset="utf-8">'
+        "<title>Self-test of the exercises</title>"
         '<meta name="viewport" content="width=device-width, '
         f'initial-scale=1"><style>{STYLE}</style>'
-        f"<h1>Exercises, tried</h1><p>{_of(len(findings), 'question')}; "
+        f"<h1>Self-test of the exercises</h1><p>{_of(len(findings), 'question')}; "
         f"{sum(bool(f.faults) for f in findings)} with "
         f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
-        "<p>The last but one column counts the answers that a question allows, where they are few "
-        "words, an order or small whole numbers: a program tries them all. A program that builds "
+        "<p>The second-to-last column counts the possible answers where an answer is a few words, "
+        "an order or small whole numbers, since a program can try them all. A program that builds "
         "formulas finds more.</p>"
         f"{before}{'' if leaked is None else leaks_found}<h2>Questions</h2><table><thead><tr>"
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)

@@ -109,8 +109,8 @@ def notebooks_in(folder: str | Path, only: Collection[str] = ()) -> list[Path]:
     if not found:
         raise author.AuthorError(
             f"There is no notebook with solutions in {folder}. If you keep the solutions in a "
-            "private repository, fetch them first. Without them you can build everything, but "
-            "release and grade nothing."
+            "private repository, fetch them first. Without them you can neither release nor "
+            "grade."
         )
     unknown = sorted(set(only) - {path.stem for path in found})
     if unknown:
@@ -295,7 +295,7 @@ def read_source(
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
     if len(set(variables.values())) < len(variables):
-        raise author.AuthorError(f"{path.name}: two answers have one name: give each its own.")
+        raise author.AuthorError(f"{path.name}: two answers have the same name. Give each its own.")
     for name, question in questions.items():
         question.variable = variables[name]
     if only is None and not variant:

@@ -104,7 +104,7 @@ def _rubric(question: AuthoredQuestion) -> str:
     worths = question.rubric if isinstance(question.rubric, dict) else {}
     shares = {line: f" ({worth:g} of {question.worth})" for line, worth in worths.items()}
     lines = "".join(f"<li>{to_html(line)}{shares.get(line, '')}</li>" for line in question.rubric)
-    return f"<h3>What a person looks for</h3><ul>{lines}</ul>" if lines else ""
+    return f"<h3>What a grader looks for</h3><ul>{lines}</ul>" if lines else ""
 
 
 def _hints(question: AuthoredQuestion) -> str:

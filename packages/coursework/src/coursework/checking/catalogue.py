@@ -51,8 +51,8 @@ def _by_short_name(name: str, symbols: tuple[str, ...]) -> dict[bytes, Note]:
                     known = Note(note, dict(zip(needed, values, strict=True)))
                     if by_name.setdefault(short_name(*known), known) != known:
                         raise RuntimeError(
-                            f"{known} and {by_name[short_name(*known)]} have one short name: "
-                            "rename a note."
+                            f"{known} and {by_name[short_name(*known)]} have the same short "
+                            "name. Rename a note."
                         )
     return by_name
 

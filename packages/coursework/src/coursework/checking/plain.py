@@ -769,7 +769,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
     [(rest, terms)] = terms_of.items()
     powers = rest.as_powers_dict() if rest != 1 else {}
     if not all(part in base.values() and power.is_Integer for part, power in powers.items()):
-        raise NotPlain("The unit of this answer is not a product of whole powers of base units.")
+        raise NotPlain("The unit of this answer is not a product of integer powers of base units.")
     unit = " ".join(
         f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers
     )

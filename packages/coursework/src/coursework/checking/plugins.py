@@ -49,7 +49,7 @@ def plugins() -> list[ModuleType]:
             modules.append(entry.load())
         except Exception as error:
             brought = (
-                f", which {entry.dist.name} {entry.dist.version} brings for coursework,"
+                f", which {entry.dist.name} {entry.dist.version} provides for coursework,"
                 if entry.dist
                 else ""
             )
@@ -68,7 +68,8 @@ def kinds() -> dict[str, Kind]:
         for name, kind in getattr(plugin, "KINDS", {}).items():
             if name in all_kinds:
                 raise RuntimeError(
-                    f"{plugin.__name__} brings a kind of question {name!r}; there is one already."
+                    f"{plugin.__name__} provides a kind of question named {name!r}, but there "
+                    "is one already."
                 )
             all_kinds[name] = kind
     return all_kinds

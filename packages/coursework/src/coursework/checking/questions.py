@@ -54,8 +54,8 @@ NEARLY = 3
 # The note of an answer that is right for another variant, here and in the marks, and its message.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = (
-    "This is right for other numbers than yours: the default ones, or another student's. You "
-    "find yours in the text of the question after you have run its cell."
+    "This is right for other numbers than yours: the default ones, or another student's. Run "
+    "the question's cell to see yours in its text."
 )
 # The distance within which this applies if the locker has opened nevertheless, because its cell is
 # wider for several numbers.
@@ -177,7 +177,7 @@ def find_question(name: str, student: str) -> Sealed:
             there = (
                 f"the siblings of '{asked}' are {' and '.join(siblings)}"
                 if siblings
-                else f"'{asked}' has no other numbers"
+                else f"'{asked}' has only one set of numbers, so it has no siblings"
             )
             raise NoSuchQuestion(f"'{name}' does not exist: {there}.")
         number = own_variant(student, asked, questions[asked].question, order)
@@ -415,8 +415,8 @@ def _taken_down(name: str, question: Question, reading: Reading) -> Reply:
         "recorded",
         "",
         [
-            "We can read your answer, and it has the right form. It will be marked later, and "
-            "nothing in your files tells whether it is right."
+            "We can read your answer, and it has the right form. It will be marked later, "
+            "and nothing in your files shows whether it is right."
         ],
     )
 

@@ -156,7 +156,7 @@ def open_locker(lockers: str, key: bytes) -> tuple[int, int | None, bytes] | Non
                 data[start + NAME + INSIDE : start + LOCKER],
             )
             if not hmac.compare_digest(tag, _tag(hidden, key, "locker")[:TAG]):
-                raise ValueError("The sealed data was changed.")
+                raise ValueError("The sealed data has been changed.")
             inside = _mask(hidden, key, "locker")
             return inside[0], None if inside[1] == NO_PAGE else inside[1], inside[2:]
     return None
@@ -232,7 +232,7 @@ def unseal(sealed: str, key: bytes) -> Any:
     data = base64.b85decode(sealed)
     hidden, tag = data[:-PAGE_TAG], data[-PAGE_TAG:]
     if not hmac.compare_digest(tag, _tag(hidden, key, "page")[:PAGE_TAG]):
-        raise ValueError("The sealed data does not fit this key, or was changed.")
+        raise ValueError("The sealed data does not match this key, or has been changed.")
     data = _mask(hidden, key, "page")
     return json.loads(zlib.decompress(data[4:]))  # what follows its end fills up
 

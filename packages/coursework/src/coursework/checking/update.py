@@ -98,8 +98,9 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
     digest = _digest_of_all(now)
     if digest in archives[:-1]:
         raise ArchiveRefused(
-            f"You have already updated this folder from {archive_file}, and from a newer archive "
-            "since. Does the newest have another name? We changed nothing."
+            f"You have already updated this folder from {archive_file}, and from a newer "
+            "archive since. Does the newest archive have a different name? We changed "
+            "nothing."
         )
     if digest not in archives:
         archives.append(digest)
@@ -129,7 +130,7 @@ def update(archive_file: str | Path, folder: str | Path = ".") -> list[str]:
             place.write_text(_with_new_packages(place.read_text("utf8"), older), "utf8")
             report.append(f"changed     {name}")
         elif before.get(name) == now[name]:
-            report.append(f"kept yours  {name}, in which nothing is new")
+            report.append(f"kept yours  {name}, since its exercise has not changed")
         else:
             beside = _put_beside(place, data, before)
             now[beside] = now[name]
@@ -164,8 +165,8 @@ def _files_in(archive_file: str | Path) -> dict[str, bytes]:
     newest = max(others, key=lambda file: file.stat().st_mtime)
     if newest.stat().st_mtime > place.stat().st_mtime:
         raise ArchiveRefused(
-            f'Beside {place} lies "{newest.name}", which is newer. Nothing was changed: write that '
-            "name, in quotation marks, or delete what you do not want."
+            f'There is a newer archive beside {place}: "{newest.name}". We changed nothing. '
+            "Give that name, in quotation marks, or delete the archive that you do not want."
         )
     try:
         with zipfile.ZipFile(archive_file) as box:

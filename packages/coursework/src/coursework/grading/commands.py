@@ -32,7 +32,7 @@ DRY_RUN = argument(
 )
 GRADER = argument(
     "--grader",
-    help="name to record in the journal with these decisions (default: your user name)",
+    help="your name for the journal (default: your user name)",
 )
 YES = argument(
     "--yes", action="store_true", help="accept every change of a mark, up or down, without asking"
@@ -49,10 +49,13 @@ ARGUMENTS = {
         [
             argument(
                 "submissions",
-                help="a folder, a zip from Canvas, Moodle or Brightspace, or a notebook",
+                help="a folder, a zip file from Canvas, Moodle or Brightspace, or a notebook",
             ),
             argument(
-                "--out", required=True, metavar="MARKS", help="folder for marks, feedback, reports"
+                "--out",
+                required=True,
+                metavar="MARKS",
+                help="folder for the marks, feedback and reports",
             ),
             SOLUTIONS,
             argument(
@@ -69,7 +72,7 @@ ARGUMENTS = {
             argument(
                 "--scheduler",
                 metavar="ADDRESS",
-                help="run on this Dask cluster instead, such as tls://host:8786",
+                help="run the notebooks on this Dask cluster, such as tls://host:8786",
             ),
             argument(
                 "--keys",
@@ -85,7 +88,8 @@ ARGUMENTS = {
             argument(
                 "--as-listed",
                 action="store_true",
-                help="trust the list even if many notebooks carry another student's ID",
+                help="trust the roster or the folder names even if many notebooks carry another "
+                "student's ID",
             ),
         ],
     ),
@@ -103,7 +107,9 @@ ARGUMENTS = {
         [
             OUT,
             GRADER,
-            argument("--hide-names", action="store_true", help="show numbers instead of names"),
+            argument(
+                "--hide-names", action="store_true", help="show numbers instead of students' names"
+            ),
             argument(
                 "--port", type=int, default=0, help="port for the page (default: any free one)"
             ),
@@ -122,7 +128,9 @@ ARGUMENTS = {
                 metavar="NOTEBOOK/QUESTION",
                 help="the questions (default: those in term.toml)",
             ),
-            argument("--roster", metavar="FILE.csv", help="the students, if not in term.toml"),
+            argument(
+                "--roster", metavar="FILE.csv", help="the students, if term.toml has no roster"
+            ),
             argument(
                 "--paper",
                 choices=["a4", "letter"],
@@ -134,16 +142,16 @@ ARGUMENTS = {
         ],
     ),
     "merge": (
-        "add another grader's decisions, or a table of decisions or appeals",
+        "import another grader's decisions, or a table of decisions or appeals",
         [
             OUT,
             argument(
                 "files",
                 nargs="+",
                 metavar="FILE",
-                help="the journal.jsonl in their folder of marks; a copy of undecided.csv with "
-                "credit filled in, or the ticks.csv of a sitting; or a table of appeals with the "
-                "columns student, question and words",
+                help="the journal.jsonl in the other grader's folder of marks; a copy of "
+                "undecided.csv with credit filled in, or the ticks.csv of a sitting; or a "
+                "table of appeals with the columns student, question and words",
             ),
             GRADER,
             DRY_RUN,
@@ -167,7 +175,7 @@ ARGUMENTS = {
                 nargs="+",
                 default=[],
                 metavar="counts.json",
-                help="counts of an earlier year, to compare with",
+                help="counts of earlier years, to compare with this one",
             ),
         ],
     ),
@@ -211,7 +219,7 @@ ARGUMENTS = {
                 metavar="FILE.zip",
                 help="write the feedback pages, named as your LMS expects",
             ),
-            argument("--nbgrader", metavar="FILE.csv", help="write nbgrader's table"),
+            argument("--nbgrader", metavar="FILE.csv", help="file for nbgrader's table of marks"),
         ],
     ),
     "gradescope": (
@@ -243,7 +251,7 @@ ARGUMENTS = {
                 "--keys",
                 required=True,
                 metavar="FOLDER",
-                help="folder of the keys (we create keys in an empty one)",
+                help="folder of the keys (if it is empty, we create them)",
             ),
             argument(
                 "--host",
@@ -336,8 +344,8 @@ def _bring_in_decisions(out: str, yes: bool) -> None:
         _say_moved(bring_in_decisions(out, agree=_agree(out, yes)))
     except ValueError as error:
         sys.exit(
-            f"Your decisions are saved but not applied yet. Run `coursework regrade {out}` "
-            f"({error})"
+            f"Your decisions are saved, but we could not apply them yet: {error} Then run "
+            f"`coursework regrade {out}`."
         )
 
 
@@ -457,7 +465,7 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
     for first, second in differing:
         print(
             f"  {second.student!r}, {second.question}: {first.who} gave {first.credit}, "
-            f"{second.who} gave {second.credit}; the later one counts."
+            f"{second.who} gave {second.credit}; the later decision counts."
         )
 
 
@@ -549,7 +557,10 @@ def cluster(
 
     folder = Path(keys).absolute()
     if find_spec("distributed") is None:
-        sys.exit("coursework cluster: install what it needs: python -m pip install distributed")
+        sys.exit(
+            "coursework cluster: to use a cluster, first install Dask: python -m pip install "
+            "distributed"
+        )
     if worker:
         command = cluster_keys.worker(folder, worker, workers or processors())
     else:

@@ -49,7 +49,7 @@ from .submissions.roster import BadRoster
 from .tables import in_a_line, number
 
 #: What moves marks, where it is not work that was handed in anew.
-REJUDGED = "the questions or the software changed"
+REJUDGED = "the questions or the software have changed"
 DECIDED = "a person decided"
 MOST_SHOWN = 40  # names on the screen
 
@@ -290,7 +290,10 @@ def grade(
         keys = [(one, key_of(one, desk.asked(one)[0], running)) for one in handed_in.work]
         waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)
-        desk.tell(f"{len(keys)} to grade, {kept} of them graded before, {refused} files refused.")
+        desk.tell(
+            f"{len(keys)} to grade, {kept} of them graded before, {refused} "
+            f"{'file' if refused == 1 else 'files'} refused."
+        )
         said = {"graded": 0 if dry_run else len(waiting), "kept": kept, "refused": refused}
         if dry_run:
             return {**said, "held": 0}

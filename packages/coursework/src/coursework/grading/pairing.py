@@ -134,7 +134,7 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            why = "It contains no question of any assignment."
+            why = "It does not contain a question of any assignment."
             refused.append(Refused(notebook.file, notebook.student, why))
         elif not graded:
             left_alone[answered[0]] += 1
@@ -235,8 +235,8 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
     if len(around) == 1:
         (enclosing,) = around
         print(
-            f"The folder {in_a_line(enclosing, 120)!r} contains everything, so we did not take it "
-            "as a student's name.",
+            f"All submissions are in the folder {in_a_line(enclosing, 120)!r}, so we did not "
+            "take it as a student's name.",
             file=show,
         )
     for student, assignment, file, matched, _, why in itertools.islice(rows, MOST_SHOWN):
@@ -268,7 +268,7 @@ def _say_absent(
     ):
         if names:
             shown = ", ".join(names[:MOST_SHOWN]) + (", ..." if len(names) > MOST_SHOWN else "")
-            print(f"Of the roster, {len(names)} {what}: {shown}.", file=show)
+            print(f"Of the students in the roster, {len(names)} {what}: {shown}.", file=show)
 
 
 def _say_foreign(work: Sequence[Work], show: TextIO) -> list[Foreign]:

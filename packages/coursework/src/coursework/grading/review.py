@@ -364,7 +364,7 @@ class Class:
 
 #: What two may have in common, that is worth a look.
 ANSWER, CODE = "unusual wrong answer", "code, character by character,"
-TRIED = "unusual wrong answers were tried on the way that one other tried, too"
+TRIED = "unusual wrong answers that one other student also tried"
 
 
 def hints_of(records: Sequence[Record], work: Callable[[str], Sequence[str]]) -> Hints:

@@ -194,10 +194,10 @@ def run_on_cluster(
                     b"KilledWorker" in part for part in error.args if isinstance(part, bytes)
                 ):
                     raise ValueError(
-                        f"A worker of the cluster at {address} sent something else than a result. "
-                        "Does it have this package, in this version?"
+                        f"A worker of the cluster at {address} sent something other than a "
+                        "result. Does it have this version of the package?"
                     ) from None
-                yield given_up(job, "worker after worker of the cluster was lost")
+                yield given_up(job, "several workers of the cluster were lost, one after another")
                 continue
             yield _demand_sound(answer, job, ours)
 
@@ -234,7 +234,8 @@ def _demand_sound(answer: object, job: Job, ours: Mapping[str, str]) -> Result:
         theirs = about.get("software", by_name(text))
         if theirs != ours:
             raise ValueError(
-                f"The cluster has other versions than this machine: {theirs}, and here {ours}."
+                f"The versions on the cluster differ from those on this machine: {theirs} "
+                f"there, {ours} here."
             )
         result = about.get("result", by_name(anything))
         _, answers = read_result(result, job["id"])

@@ -104,7 +104,9 @@ def scheduler(folder: Path, host: str, port: int = PORT) -> list[str]:
 def worker(folder: Path, address: str, workers: int) -> list[str]:
     """The command that starts the workers of a machine, each of one notebook at a time."""
     if not address.startswith("tls://"):
-        raise NoKeys(f"A scheduler with keys is at tls://..., and this is {address!r}.")
+        raise NoKeys(
+            f"The address of a scheduler with keys begins with tls://; {address!r} does not."
+        )
     place = urlsplit(address)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as way:
         way.connect((place.hostname or "", place.port or PORT))  # sends nothing

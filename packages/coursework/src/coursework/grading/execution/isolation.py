@@ -66,8 +66,8 @@ HOW_TO_GET = {
     "command line)",
     SECCOMP: "use Linux on x86-64 or ARM64 with seccomp filters, and no container that forbids "
     "them",
-    LIMITS: "start grading where the limits of memory, time and files may be lowered",
-    PRIVILEGES: "start grading as an ordinary user, or as root with the right to change users",
+    LIMITS: "grade on a system that lets a program lower its limits of memory, time and files",
+    PRIVILEGES: "grade as an ordinary user, or as root with the right to change users",
 }
 
 
@@ -449,10 +449,9 @@ def user_for_students(preferred: int, uid_map: str) -> int:
         if any(first <= user < first + count for first, _, count in known):
             return user
     raise RuntimeError(
-        "Here is no other user than root, as in a container or namespace of one user, so that "
-        "student code could not be run as anybody else. "
-        "Start the grading as an ordinary user, or in a container that has more users (unshare "
-        "--map-auto, podman --userns=auto)."
+        "Root is the only user here, as in a container or namespace with one user, so we "
+        "cannot run student code as another user. Grade as an ordinary user, or in a "
+        "container that has more users (unshare --map-auto, podman --userns=auto)."
     )
 
 

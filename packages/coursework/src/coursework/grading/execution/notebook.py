@@ -83,15 +83,15 @@ SUSPICIOUS = {
     "os.kill": "sent a signal",
     "os.killpg": "sent a signal",
     "ctypes.string_at": "read memory by address",
-    "ctypes.dlopen": "loaded a library of the system",
-    "ctypes.dlsym": "called the system directly",
-    "sys._getframe": "looked into the frames that call it",
-    "sys._current_frames": "looked into the frames that call it",
+    "ctypes.dlopen": "loaded a system library",
+    "ctypes.dlsym": "made a system call directly",
+    "sys._getframe": "inspected the frames of its callers",
+    "sys._current_frames": "inspected the frames of its callers",
     "gc.get_objects": "searched the memory",
     "gc.get_referrers": "searched the memory",
     "sys.settrace": "traced the grader",
     "sys.setprofile": "traced the grader",
-    "code.__new__": "made code by hand",
+    "code.__new__": "built a code object by hand",
 }
 
 

@@ -333,10 +333,11 @@ class WarmParent:
                 Path(file).read_bytes()
         except OSError as error:
             problems.append(
-                f"the isolated process cannot read Python's own libraries ({error}). "
-                "Root runs it as another user, and a umask such as 077 has kept them from all "
-                "others: let them be read, with `chmod -R o+rX` on their folder and `chmod o+x` on "
-                "those above it, or grade as an ordinary user whose own they are"
+                f"the isolated process cannot read Python's own libraries ({error}). Root "
+                "runs it as another user, but only their owner may read them, perhaps "
+                "because of a umask such as 077. Let everybody read them, with `chmod -R "
+                "o+rX` on their folder and `chmod o+x` on the folders above it, or grade as "
+                "the ordinary user who owns them"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)

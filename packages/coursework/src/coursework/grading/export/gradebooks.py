@@ -488,9 +488,7 @@ def fill(
     for line, student in sorted(students.items()):
         there = book.says(line, place)
         if why_not := _why_not(book, system, marks, line, student):
-            listed[why_not].append(
-                f"{student}: {there} stays there" if there.strip("-") else student
-            )
+            listed[why_not].append(f"{student}: {there} stays" if there.strip("-") else student)
             continue
         points = "0" if student in marks.missing else number(_scaled(marks, student, out_of))
         known = there in ("", "-") or any(_is_same(there, one) for one in ours.get(student, ()))

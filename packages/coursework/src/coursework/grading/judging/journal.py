@@ -521,8 +521,8 @@ class Journal:
         words = words.strip()
         if len(words) > LONGEST_WORDS:
             raise ValueError(
-                f"This text is longer than {LONGEST_WORDS} characters. Please shorten it; we do "
-                "not truncate it."
+                f"This text is longer than {LONGEST_WORDS} characters. Please shorten it, "
+                "since we do not cut anything off."
             )
         if state not in (RAISED, UNDER_REVIEW, REJECTED) or (state == RAISED) != (of is None):
             raise ValueError(f"An appeal is raised, under review or rejected, not {state!r}.")
@@ -732,9 +732,9 @@ class Journal:
         if {"student", "question", "words"} <= header:
             return self._take_in_appeals(rows, records, who)
         raise ValueError(
-            f"{path}: decisions are a copy of undecided.csv, with its columns id and version, and "
-            "with credit filled in; appeals have the columns student, question and words. "
-            f"There are {', '.join(sorted(header)) or 'none'}."
+            f"{path}: decisions are a copy of undecided.csv, with its columns id and version, "
+            "and with credit filled in; appeals have the columns student, question and "
+            f"words. This table has {', '.join(sorted(header)) or 'none'}."
         )
 
     def _take_in_decisions(
@@ -874,8 +874,8 @@ def events_in(path: Path) -> Iterator[Event]:
                 why = f" ({error})" if isinstance(error, Misread) else ""
                 raise ValueError(
                     f"{path}, line {number}: this is not what coursework wrote: "
-                    f"{line[:80]!r}{why}. Somebody has edited the file. Restore the line, or move "
-                    "it to a separate file and decide about that answer again."
+                    f"{line[:80]!r}{why}. Somebody has edited the file. Restore the line, or "
+                    "move it to another file and decide on that answer again."
                 ) from None
 
 
@@ -929,6 +929,6 @@ def _credit(text: str, where: str) -> float | None:
         return share
     except ValueError:
         raise ValueError(
-            f"{where}: credit must be a number from 0 to 1, or a tick the letter of a box, not "
-            f"{text!r}."
+            f"{where}: credit must be a number from 0 to 1, and a tick the letter of a box, "
+            f"not {text!r}."
         ) from None

@@ -369,7 +369,7 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
         and reply.known is None
         and any(_is_right(name, Asked(sibling), answer) for sibling in question.siblings)
     ):
-        said = "This is right for other numbers than yours."
+        said = "This is right for numbers other than yours."
         reply = Reply(name, "wrong", OTHER_NUMBERS, [said])
     share = {"correct": 1, "wrong": contract.credit.get(reply.note, 0) if reply.note else 0}.get(
         reply.outcome, 0
@@ -628,7 +628,7 @@ def _elsewhere_wrong(name: str) -> Reply:
         name,
         "wrong",
         "right only where it is checked",
-        ["This agrees with the right answer only where the check looks."],
+        ["This agrees with the right answer only where the check tests it."],
     )
 
 

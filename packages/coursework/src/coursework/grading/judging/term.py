@@ -102,8 +102,11 @@ class Assignment:
             )
         if self.homework_factor is not None:
             share = f"{100 * self.homework_factor:g} %"
-            return f"Once this is marked, homework on these questions counts {share} of its points."
-        return "Homework on these questions counts in full beside it." * bool(self.questions)
+            return (
+                f"Once this is marked, homework on these questions counts for {share} of its "
+                "points."
+            )
+        return "Homework on these questions counts in full alongside it." * bool(self.questions)
 
     def most(self, mark: Mark | Part, seen: Mark | Part) -> float:
         """The points that homework on a question counts at most, by what the sitting showed."""
@@ -361,7 +364,7 @@ def term_of(folder: str | Path) -> Term:
 
 NEW = """\
 # The term: who is in the course, what is due when, and the rules that hold for all. Every command
-# reads this file. A line that begins with # is a suggestion: remove the # to make it hold.
+# reads this file. A line that begins with # is a suggestion: remove the # to use it.
 
 name = {name}
 time-zone = {zone}  # of the times below
@@ -376,7 +379,7 @@ time-zone = {zone}  # of the times below
 attempts = "newest in time"
 
 [late]
-# grace-minutes = 15      # not late yet
+# grace-minutes = 15      # so many minutes cost nothing
 # a-day = 0.1             # the share of the points that each day costs, once it has begun
 # most = 0.5              # the most that all days together cost
 # nothing-after-days = 7  # after this, no points
@@ -405,7 +408,7 @@ attempts = "newest in time"
 # What a corrected question may do to marks already given; see `coursework regrade --dry-run`:
 [regrading]
 # never-lower = ["{first}/question"]            # nobody loses by it
-# full-credit = ["{first}/question@taken-out"]  # all who had a variant that is gone; without @, all
+# full-credit = ["{first}/question@taken-out"]  # who had a removed variant; without @, all
 # void = ["{first}/question"]                   # it counts for nobody
 
 # The columns of the gradebook, if its language is not one that coursework knows:
@@ -462,7 +465,7 @@ def new_term(folder: str | Path, sources: Path, roster: str | None) -> str:
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     path.write_text(text, "utf8")
     read_term(path)
-    return f"{path}: read it, and make your choices."
+    return f"We wrote {path}. Read it, and make your choices."
 
 
 def read_term(path: str | Path) -> Term:
@@ -539,7 +542,7 @@ def _demand_one_rule(file: _File, term: Term) -> None:
             why = "is not a sitting" if not about.questions else "has both: choose one"
             raise file.bad(
                 f"assignments.{name}.homework-cap",
-                f"homework-cap and homework-factor are rules of a sitting, and {name} {why}.",
+                f"homework-cap and homework-factor are rules for a sitting, but {name} {why}.",
             )
 
 

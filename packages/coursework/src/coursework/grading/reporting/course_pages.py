@@ -22,7 +22,7 @@ STATES = {
     "dropped": "dropped: it does not count",
     "excused": "excused",
     "missing": "nothing was handed in",
-    "damaged": "your file cannot be graded: a person has to look at it",
+    "damaged": "your file cannot be graded automatically, so a person has to look at it",
     "not due": "not due yet",
 }
 OUTCOMES = {
@@ -113,7 +113,7 @@ def write_course(
     lines += unknown_times(all_results, term)
     lines += [
         f"{name}: the files of {', '.join(those)} cannot be graded. The totals leave them out "
-        f"until a person has looked: {store.folder / 'refused.csv'} says why."
+        f"until a person has looked at them: {store.folder / 'refused.csv'} says why."
         for name, those in damaged.items()
     ]
     write(folder / "course.csv", table(_header(term), rows))

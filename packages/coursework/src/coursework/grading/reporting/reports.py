@@ -51,7 +51,7 @@ DEEDS = {
     "complement": "gave the complementary angle",
     "not turned": "left the components as they were, along the first frame",
     "turned the wrong way": "multiplied by the transpose",
-    "other numbers": "answered with other numbers than those given to them",
+    "other numbers": "answered with numbers other than their own",
     "stray symbol": "used a symbol that the question does not have",
     "undefined": "gave something without a finite value",
     "too large": "gave something too large to evaluate",
@@ -64,7 +64,7 @@ DEEDS = {
     "not unit length": "gave something not of unit length",
     "degrees": "gave angles in degrees",
     "unreadable": "gave something that cannot be read as an answer",
-    "right only where it is checked": "gave something that is right only where the check looks",
+    "right only where it is checked": "gave something that is right only where the check tests it",
 }
 MOST_UNDECIDED, MOST_NAMES = 200, 200  # that the report names; all are in the tables
 MOST_STOPPED = 10  # cells of a notebook that did not come to their end, which feedback names
@@ -470,7 +470,9 @@ def _oddities(record: Record) -> dict[str, None]:
             found["it checks an answer to a question that is not in the assignment"] = None
         outcomes = sorted({cell.outcome for cell in notebook.cells} - {"done", "not run", "error"})
         found.update(
-            dict.fromkeys(f"stopped by a limit or by itself: {outcome}" for outcome in outcomes)
+            dict.fromkeys(
+                f"stopped by a limit, or ended by itself: {outcome}" for outcome in outcomes
+            )
         )
     if record.superseded:
         found["handed in more than once; their feedback says which counts, and why"] = None

@@ -377,7 +377,7 @@ def _take(
         return
     if claim is None:
         refused.append(
-            Refused(name, "", "Its name does not say whose it is, as the other names do.")
+            Refused(name, "", "Its name does not say whose it is, although the other names do.")
         )
         return
     try:

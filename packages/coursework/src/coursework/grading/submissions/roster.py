@@ -47,7 +47,7 @@ WORDS = {
     "gradescope": "the number or address in Gradescope",
     "brightspace": "Brightspace's number",
     "github": "the GitHub name",
-    "handed in as": "the roster's own word",
+    "handed in as": "the column `handed in as`",
 }
 
 
@@ -180,7 +180,10 @@ class Roster:
             ):
                 surest = kind
             if kind == "github" and kind not in self.kinds:
-                return None, "The roster has no column `github`, and anybody may choose that name."
+                return None, (
+                    "The roster has no column `github`, and a GitHub name alone proves nothing, "
+                    "since anybody may choose one."
+                )
         return None, "Nobody in the roster matches."
 
     def are_a_group(self, people: Iterable[Iterable[tuple[str, str]]]) -> bool:
