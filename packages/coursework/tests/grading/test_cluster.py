@@ -180,7 +180,7 @@ def test_a_captured_worker_runs_nothing_here(submissions, solutions, tmp_path, d
     preload = tmp_path / "hostile.py"
     preload.write_text(HOSTILE.format(folder=str(touched), deed=deed))
     with cluster(tmp_path, preload=preload) as (address, _):
-        with pytest.raises(ValueError, match="sent something else than a result"):
+        with pytest.raises(ValueError, match="sent something other than a result"):
             grade_quietly(submissions, tmp_path / "out", solutions, address)
     assert str(os.getpid()) not in os.listdir(touched)
     assert not list((tmp_path / "out" / "records").glob("*/*"))

@@ -468,7 +468,7 @@ def test_a_namespace_of_one_user_is_named_as_the_cause(monkeypatch):
     monkeypatch.setattr("os.geteuid", lambda: 0)
     assert isolation.user_for_students(4242, "0 0 4294967295\n") == 4242
     assert isolation.user_for_students(4242, "0 1000 1\n65534 100000 1\n") == isolation.OUTSIDER
-    with pytest.raises(RuntimeError, match="no other user than root"):
+    with pytest.raises(RuntimeError, match="Root is the only user here"):
         isolation.user_for_students(4242, "         0       1000          1\n")
 
 

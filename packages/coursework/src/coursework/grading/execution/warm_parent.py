@@ -337,7 +337,7 @@ class WarmParent:
                 "runs it as another user, but only their owner may read them, perhaps "
                 "because of a umask such as 077. Let everybody read them, with `chmod -R "
                 "o+rX` on their folder and `chmod o+x` on the folders above it, or grade as "
-                "the ordinary user who owns them"
+                "an ordinary user with a Python of their own"
             )
         try:
             Path("trial").write_bytes(b"x" * 100)
