@@ -20,12 +20,12 @@ def test_noise_makes_no_opposite_turns_the_same():
     """Small angles, taken as degrees, hardly move, so that a degree of noise fits anything."""
     code, answer = explained("--noise", "1", "0.21 0.13 -0.32", "-0.21 -0.13 0.32")
     assert code == 2 and "the same orientation" not in answer
-    assert "one is the turn in the other sense" in answer
+    assert "one is the rotation in the opposite sense" in answer
 
 
 def test_where_the_noise_exceeds_the_motion_nothing_is_judged():
     code, answer = explained("--noise", "5", "0.9999 0.0087 0.0052 0.0087", "0.9999 0 0.0141 0")
-    assert code == 3 and "too little to judge by" in answer and "5 degrees" in answer
+    assert code == 3 and "too small to judge by" in answer and "5 degrees" in answer
 
 
 def test_degrees_against_radians_is_no_agreement():
@@ -107,7 +107,7 @@ def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
     assert code == 1 and "scalar part stands last" in answer
     code, answer = explained("qw: 0.782240  qx: 0.589819  qy: 0.199939  qz: 0.000000",
                              "qw: 0.000000  qx: 0.782240  qy: 0.589819  qz: 0.199939")  # fmt: skip
-    assert code == 2 and "has length 0.999881: it was taken for one of length 1" in answer
+    assert code == 2 and "has length 0.999881: it was normalised to length 1" in answer
 
 
 Q, P = "0.7304 0.3604 0.2402 0.5284", "0.7404 0.3504 0.2302 0.5254"
@@ -172,7 +172,7 @@ def test_of_a_whole_file_of_bvh_one_is_told_what_to_cut_out():
     assert code == 3 and "only the three angles of one joint" in answer and "CHANNELS" in answer
     # Follow the advice: paste the joint's angles with their sequence.
     code, answer = explained("--first-is", "zxy", "-3.41 14.78 -164.35", Q)
-    assert code == 2 and "Nothing that was tried explains" in answer
+    assert code == 2 and "No explanation was found" in answer
 
 
 def bench(*arguments):

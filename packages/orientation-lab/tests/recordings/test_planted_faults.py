@@ -25,8 +25,8 @@ from orientation_workbench.recording.report import as_code
 #: What an answer about the fault is called, and words that must stand in it; in braces what was
 #: planted.
 NAMED = {
-    "gyroscope saturated": ("range of the gyroscope", "cut off"),
-    "gyroscope late": ("delay of the gyroscope", "comes late"),
+    "gyroscope saturated": ("range of the gyroscope", "clipped"),
+    "gyroscope late": ("delay of the gyroscope", "is late"),
     "gyroscope offset": ("bias of the gyroscope", "Subtract"),
     "gyroscope drifts": ("drift of the bias", "about {axis}"),
     "gyroscope drifts with temperature": ("drift of the bias", "about {axis} .*temperature"),
@@ -35,13 +35,13 @@ NAMED = {
     "gyroscope axis reversed": ("axes of the gyroscope", "-{axis}"),
     "gyroscope axes exchanged": ("axes of the gyroscope", "Use"),
     "gyroscope unit": ("unit of the gyroscope", "Read it as rad/s"),
-    "accelerometer saturated": ("range of the accelerometer", "cut off"),
+    "accelerometer saturated": ("range of the accelerometer", "clipped"),
     "accelerometer offset": ("accelerometer", "Subtract .*from {axis}"),
     "accelerometer scale of an axis": ("accelerometer", "Divide .*{axis} by"),
     "accelerometer axis reversed": ("axes of the accelerometer", "Use"),
     "accelerometer axes exchanged": ("axes of the accelerometer", "Use"),
     "accelerometer unit": ("unit of the accelerometer", "Read it as g"),
-    "magnetometer late": ("delay of the magnetometer", "comes late"),
+    "magnetometer late": ("delay of the magnetometer", "is late"),
     "magnetometer hard iron": ("offset of the magnetometer", "Subtract"),
     "magnetometer soft iron": ("shape of the magnetometer", "multiply by the matrix"),
     "magnetometer axis reversed": ("axes of the magnetometer", "Use"),

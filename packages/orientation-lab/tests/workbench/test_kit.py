@@ -149,7 +149,7 @@ def test_no_convention_is_told():
     fixed = np.eye(3)[[1, 2, 0]]
     with pytest.raises(ValueError, match="no convention known here"):
         convention_of(lambda q: fixed, "quaternion")
-    with pytest.raises(ValueError, match="no rotation"):
+    with pytest.raises(ValueError, match="not a rotation"):
         convention_of(lambda q: 2 * np.eye(3), "quaternion")
     with pytest.raises(ValueError, match="can take"):
         convention_of(lambda q: np.eye(3), "spinor")

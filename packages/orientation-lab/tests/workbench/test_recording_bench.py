@@ -241,7 +241,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     for content, words in (
         (b"", "empty"),
         (b"\0\1\2" * 99, "not a text file"),
-        (b"Dear all,\nI am here.\nBye\n", "no table"),
+        (b"Dear all,\nI am here.\nBye\n", "not a table"),
         (b"[1, 2", "line 1"),
     ):
         with pytest.raises(RecordingError, match=words):
@@ -308,7 +308,7 @@ def spoilt(kind, change):
             {kind: values[:9] for kind, values in simulate(3, poses=2).items() if kind != "truth"},
             "too few",
         ),
-        (spoilt("time", lambda values: values[::-1]), "goes back"),
+        (spoilt("time", lambda values: values[::-1]), "runs backwards"),
         (spoilt("time", lambda values: 0 * values), "no column of time"),
         (spoilt("gyroscope", lambda values: np.tile(values[:1], (len(values), 1))), "never change"),
         (spoilt("accelerometer", lambda values: 0 * values), "never change"),

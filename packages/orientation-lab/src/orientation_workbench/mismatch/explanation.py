@@ -188,7 +188,7 @@ def _normalised(sides):
         worst = float(lengths[np.argmax(np.abs(lengths - 1))])
         if poses.kinds == ("quaternion",) and abs(worst - 1) > SLACK + 2 * poses.half:
             remarks.append(
-                f"A quaternion of the {name} side has length {worst:.6g}: it was taken for one of "
+                f"A quaternion of the {name} side has length {worst:.6g}: it was normalised to "
                 "length 1."
             )
     return tuple(remarks)
@@ -477,15 +477,18 @@ def sentences(explanation):
     more = f"{left - 1} other reading{'s' * (left != 2)}"
     if explanation.verdict == "unrelated":
         yield (
-            f"Nothing that was tried explains these numbers: no mix-up of up to "
-            f"{table.MOST_FAULTS} faults fits {several}."
+            f"No explanation was found: no combination of up to {table.MOST_FAULTS} mix-ups fits "
+            f"{several}."
         )
         if explanation.poses < 3:
-            yield "An instrument that is mounted askew shows in three poses or more: paste them."
+            yield (
+                "Only three or more poses can show whether an instrument is mounted askew: paste "
+                "them."
+            )
         if explanation.mirrored:
             yield (
-                f"The {explanation.mirrored} side's matrix has the determinant -1: a mirror image, "
-                "and no rotation."
+                f"The {explanation.mirrored} side's matrix has determinant -1: it is a mirror "
+                "image, not a rotation."
             )
         return
     yield from explanation.remarks
@@ -510,7 +513,7 @@ def sentences(explanation):
     for fault in () if explanation.names else explanation.faults:
         yield f"- {fault}"
     if explanation.residual > 1e-3:
-        yield f"What is left then is {explanation.residual:.2g} degrees."
+        yield f"After that, {explanation.residual:.2g} degrees remain."
     if explanation.further_pose:
         if left > 1:
             yield f"{more[0].upper()}{more[1:]} fit{'s' * (left == 2)} as well."

@@ -77,12 +77,12 @@ _ORDINAL = ("first", "second", "third")
 
 def _places():
     words = {
-        "123": "the angles are printed in the order of the turns",
-        "321": f"{REVERSED}, the last turn first",
+        "123": "the angles are printed in the order of the rotations",
+        "321": f"{REVERSED}, the last rotation first",
     }
     for places in map("".join, itertools.permutations("123")):
         order = ", ".join(_ORDINAL[int(digit) - 1] for digit in places)
-        other = f"the angles are printed in another order: {order} turn"
+        other = f"the angles are printed in another order: {order} rotation"
         yield choice(places, words.get(places, other), {"123": 0.0, "321": 0.1}.get(places, 0.5))
 
 
@@ -115,9 +115,11 @@ KINDS = {
             "group": TURNS,
             "choices": [
                 choice(
-                    "body fixed", "each turn is about an axis of the turned frame (body fixed)", 0.0
+                    "body fixed",
+                    "each rotation is about an axis of the rotated frame (body fixed)",
+                    0.0,
                 ),
-                choice("space fixed", "each turn is about an axis that stays (space fixed)", 0.0),
+                choice("space fixed", "each rotation is about a fixed axis (space fixed)", 0.0),
             ],
         },
         {"group": "places", "choices": list(_places())},
@@ -161,8 +163,8 @@ INVERSE = {
     "matrix": TRANSPOSE,
     "quaternion": f"{CONJUGATE} (so is a JPL quaternion)",
     "Euler angles": "the inverse, the orientation the other way round",
-    "rotation vector": "the turn in the other sense",
-    "axis and angle": "the turn in the other sense",
+    "rotation vector": "the rotation in the opposite sense",
+    "axis and angle": "the rotation in the opposite sense",
 }
 
 
@@ -388,13 +390,13 @@ def words_of(relation, kinds, swapped=False):
         return [_words_inside(*inside), *said]
     relation = relation.get("said", relation)
     said += [
-        f"a constant turn on the {whose}'s side, as of an instrument that is mounted askew"
+        f"a constant rotation on the {whose}'s side, as if an instrument were mounted askew"
         for whose in ("body", "world")
         if relation.get(f"{whose} turn") is not None
     ]
     if relation["hand"]:
         axis = next(name[-1] for name in relation["body"] if name.startswith("-"))
-        return [*said, f"the other hand: {axis} is reversed in the world and on the body"]
+        return [*said, f"opposite handedness: {axis} is reversed in the world and on the body"]
     body, world = (relation["body"], relation["world"])[:: -1 if swapped else 1]
     # All signs of both reversed does the same: what is known goes first, then what is right-handed.
     body, world = min(
@@ -559,20 +561,20 @@ def _choices(group):
 #: the turns about the body's own axes.
 #: The last line of a list of descriptions.
 NONE_OF_THESE = (
-    "None of these? Then something else is wrong that these poses hide: paste more of them, that "
-    "differ by turns about all axes."
+    "None of these? Then something else is wrong that these poses hide: paste more poses, rotated "
+    "about all axes."
 )
 FURTHER_POSES = (
-    ("turn it by about 40 degrees about its x axis", (("x", 40),)),
-    ("turn it by about 30 degrees about its y axis", (("y", 30),)),
-    ("turn it by about 50 degrees about its z axis", (("z", 50),)),
+    ("rotate it by about 40 degrees about its x axis", (("x", 40),)),
+    ("rotate it by about 30 degrees about its y axis", (("y", 30),)),
+    ("rotate it by about 50 degrees about its z axis", (("z", 50),)),
     (
-        "turn it by about 40 degrees about its x axis, then by about 25 about its own y axis",
+        "rotate it by about 40 degrees about its x axis, then by about 25 about its own y axis",
         (("x", 40), ("y", 25)),
     ),
     (
-        "turn it by about 50 degrees about its z axis, then by about 30 about its own y axis, then "
-        "by about 20 about its own x axis",
+        "rotate it by about 50 degrees about its z axis, then by about 30 about its own y axis, "
+        "then by about 20 about its own x axis",
         (("z", 50), ("y", 30), ("x", 20)),
     ),
 )

@@ -108,7 +108,9 @@ def _rows_of_array(given, name):
             f"the {name} side is neither text nor an array of numbers: {error}"
         ) from None
     if array.ndim == 0:
-        raise ValueError(f"the {name} side is the one number {array}; a pose takes at least three")
+        raise ValueError(
+            f"the {name} side is a single number, {array}; a pose takes at least three"
+        )
     return array.reshape(-1, array.shape[-1]).tolist()
 
 
@@ -125,10 +127,10 @@ def _rows_of_text(text, name):
         text = bare
     text = _without_places(_decimal_points(text))
     if found := _PATTERNS["not a number"].search(text):
-        raise ValueError(f"the {name} side holds '{found.group().strip()}', which is no number")
+        raise ValueError(f"the {name} side holds '{found.group().strip()}', which is not a number")
     if found := _PATTERNS["arithmetic"].search(text):
         raise ValueError(
-            f"the {name} side holds '{found.group().strip()}': paste the numbers that it comes to"
+            f"the {name} side holds '{found.group().strip()}': work it out and paste the result"
         )
     text = _sums(text)
     if not NUMBER.search(text):
@@ -382,8 +384,8 @@ def _poses(rows, name, kind, half):
     raise ValueError(
         f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
         "(angles, or a rotation vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) "
-        "or 16 (a matrix with a translation); beside a place, four that stand together and make "
-        "length 1"
+        "or 16 (a matrix with a translation); next to a position, a quaternion must be four "
+        "consecutive numbers of length 1"
     )
 
 
@@ -418,7 +420,7 @@ def _kinds(numbers, kind, doubt, name):
     if kind is not None:
         if COUNTS[kind] != count:
             raise ValueError(
-                f"the {name} side holds {count} numbers a pose; a {kind} takes {COUNTS[kind]}"
+                f"the {name} side holds {count} numbers per pose; a {kind} takes {COUNTS[kind]}"
             )
         kinds = (kind,)
     elif count == 4:
@@ -437,7 +439,7 @@ def _kinds(numbers, kind, doubt, name):
             raise ValueError(
                 f"the four numbers of the {name} side are neither a quaternion (their length is "
                 f"{size:.6g}, not 1) nor an axis and its angle (neither the first three nor the "
-                "last three make length 1)"
+                "last three have length 1)"
             )
     return kinds
 
@@ -456,7 +458,7 @@ def _demand_orthogonal(numbers, doubt, name):
         what = (
             f"row {row + 1} has length {math.sqrt(products[row, row]):.6g}, not 1"
             if row == other
-            else f"rows {row + 1} and {other + 1} have the product {products[row, other]:.6g}, not "
-            "0"
+            else f"the dot product of rows {row + 1} and {other + 1} is "
+            f"{products[row, other]:.6g}, not 0"
         )
-        raise ValueError(f"matrix {which} of the {name} side is no rotation: {what}")
+        raise ValueError(f"matrix {which} of the {name} side is not a rotation: {what}")

@@ -166,7 +166,7 @@ def read_content(
     )
     if counted and said and not rate:
         rate = float(said[1])
-        clock += f", at {rate:g} per second as the lines above the numbers say"
+        clock += f", at {rate:g} per second according to the lines above the numbers"
     if counted:  # the samples of the first instrument are the clock, one by one
         ticks = first.time
         kinds = {
@@ -195,7 +195,7 @@ def _told(table: Table, columns: str) -> Table:
         first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
         if not told or not 1 <= first <= last <= len(names):
             raise RecordingError(
-                f"{entry!r} names none of the {len(names)} columns: write an entry such as "
+                f"{entry!r} does not name any of the {len(names)} columns: write an entry such as "
                 "gyroscope=2-4 or gyroscope=2-4:rad/s"
             )
         axes = {
@@ -269,7 +269,7 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     if not candidates:
         back = (np.diff(table.values, axis=0) < 0).sum(axis=0)
         words = "there is no column of time" + "".join(
-            f": {column} goes back {times} times"
+            f": {column} runs backwards {times} times"
             for column, times in zip(table.columns, back, strict=True)
             if re.search(TIME, column.lower()) and times
         )
@@ -497,7 +497,7 @@ def unit_of_gravity(values: Array) -> tuple[str, float, float]:
 def unit_of_field(length: float) -> str:
     """The unit in which vectors of this length have that of the Earth's field."""
     units = [unit for unit, (low, high) in FIELD.items() if low <= length <= high]
-    return units[0] if units else "a unit of its own"
+    return units[0] if units else "an unknown unit"
 
 
 def unit_of_rates(names: Sequence[str]) -> str:

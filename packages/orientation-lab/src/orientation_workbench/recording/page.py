@@ -99,7 +99,7 @@ def judged(
     no recording yet
     """
     if convention not in CONVENTIONS:
-        raise ValueError(f"there is no convention {convention!r}: it is {', '.join(CONVENTIONS)}")
+        raise ValueError(f"unknown convention {convention!r}: choose {', '.join(CONVENTIONS)}")
     import matplotlib  # noqa: F401 - a page that does not hold it is asked for it here, not in the middle of the work
 
     path = Path(source)

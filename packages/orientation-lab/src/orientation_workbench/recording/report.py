@@ -45,7 +45,7 @@ def as_csv(examined: Examined, convention: str = "wxyz") -> str:
         If the convention is another.
     """
     if convention not in CONVENTIONS:
-        raise ValueError(f"there is no convention {convention!r}: it is {', '.join(CONVENTIONS)}")
+        raise ValueError(f"unknown convention {convention!r}: choose {', '.join(CONVENTIONS)}")
     from orientation import body_fixed_from_dcm, quaternion_from_dcm
 
     names, columns = ["time (s)"], [examined.time[:, None]]
@@ -140,7 +140,7 @@ def _in_short(examined: Examined) -> str:
         for light, about in lit.items()
         if about
     )
-    return " ".join(lines) or "All is as it should be."
+    return " ".join(lines) or "Everything is as it should be."
 
 
 def as_html(examined: Examined, fragment: str | None = None) -> str:
@@ -209,7 +209,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     if examined.rates is not None:
         still = sum(stretch.still for stretch in examined.still)
         words = (
-            f"How fast it turns. Shaded: {still} stretches in which it lies still, "
+            f"How fast it rotates. Shaded: {still} stretches in which it lies still, "
             f"{len(examined.still) - still} in which it is held."
         )
         with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
@@ -252,17 +252,17 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
             for values in (examined.field[few] @ inverse.T + offset, examined.field[few])
         )
         words = (
-            "Length of the magnetic field, as a share of its usual one. Dashed: as it came; solid: "
-            "corrected."
+            "Strength of the magnetic field, relative to its usual strength. Dashed: as recorded; "
+            "solid: corrected."
         )
-        with drawing(2.4, words, "time (s)", "length of the field") as axes:
+        with drawing(2.4, words, "time (s)", "strength of the field") as axes:
             axes.plot(examined.time[few], before, "--", color=red, linewidth=thin)
             axes.plot(examined.time[few], now, color=blue, linewidth=thin)
             axes.set_ylim(0, None)
     if examined.judgements:
         words = (
-            "Solid: by how much the filter run forwards and backwards differ in tilt. "
-            "Dashed: how much they should by their own claims."
+            "Solid: how much the forward and backward runs of the filter differ in tilt. "
+            "Dashed: how much they should differ by their own claims."
         )
         with drawing(2.6, words, "time (s)", "tilt (°)") as axes:
             for judgement in examined.judgements:

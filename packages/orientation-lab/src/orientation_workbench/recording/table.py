@@ -32,18 +32,18 @@ if TYPE_CHECKING:
 
 DELIMITERS = (",", ";", "\t", "|", None)  # None stands for blanks
 TEXTS = (".csv", ".txt", ".tsv", ".log", ".json", ".dat", ".gz", ".zip")
-EXCEL = "a workbook of Excel: save it as CSV; phyphox offers CSV when it exports"
+EXCEL = "an Excel workbook: save it as CSV (phyphox can export CSV directly)"
 #: How formats begin that are no text, and what writes them as text.
 ELSEWHERE = {
-    b"ULog": "a log of PX4: ulog2csv of its package pyulog writes tables",
-    b"\xa3\x95": "a log of ArduPilot: mavlogdump.py --format csv --types IMU writes a table",
-    b"#ROSBAG": "a bag of ROS: rostopic echo -b FILE -p TOPIC writes a table",
-    b"SQLite format 3": "a bag of ROS 2: play it, and ros2 topic echo --csv TOPIC writes a table",
-    b"\x89MCAP": "a bag of ROS 2: play it, and ros2 topic echo --csv TOPIC writes a table",
-    b"H Product:Blackbox": "a blackbox log: blackbox_decode writes a table",
+    b"ULog": "a PX4 log: convert it to tables with ulog2csv, from the package pyulog",
+    b"\xa3\x95": "an ArduPilot log: convert it with mavlogdump.py --format csv --types IMU",
+    b"#ROSBAG": "a ROS bag: export a topic with rostopic echo -b FILE -p TOPIC",
+    b"SQLite format 3": "a ROS 2 bag: play it, and save a topic with ros2 topic echo --csv TOPIC",
+    b"\x89MCAP": "a ROS 2 bag: play it, and save a topic with ros2 topic echo --csv TOPIC",
+    b"H Product:Blackbox": "a blackbox log: convert it with blackbox_decode",
     b"\xd0\xcf\x11\xe0": EXCEL,
-    b"\x89HDF": "HDF5: export its tables as CSV",
-    b"MATLAB 5.0": "a file of MATLAB: writetable or writematrix makes CSV of it",
+    b"\x89HDF": "an HDF5 file: export its tables as CSV",
+    b"MATLAB 5.0": "a MATLAB file: convert it to CSV with writetable or writematrix",
 }
 MISSING = {"", "nan", "null", "none", "na", "n/a", "-", "--"}
 MOST_BROKEN = 0.02  # share of the rows that may not fit before a file is refused
@@ -120,7 +120,7 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     files: dict[Path, None] = {}
     for path in paths:
         if not path.exists():
-            raise RecordingError(f"there is no file {path}")
+            raise RecordingError(f"no such file: {path}")
         inside = sorted(path.rglob("*")) if path.is_dir() else [path]
         files |= {
             one: None
@@ -158,8 +158,7 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
     elif b"\0" in content[:4096]:
         raise RecordingError(
             f"{name} is not a text file: byte {content.index(0) + 1} is zero. "
-            "Many loggers write a format of their own; export it as CSV with the maker's program "
-            "first."
+            "Many loggers use their own format: first export it as CSV with the maker's program."
         )
     else:
         try:
@@ -197,8 +196,8 @@ def _from_text(text: str, name: str) -> list[Table]:
     lines = text.splitlines()
     if sum(line.startswith("---") for line in lines) > 8:
         raise RecordingError(
-            f"{name} holds messages of ROS: rostopic echo -p, or ros2 topic echo --csv, "
-            "writes a table of them"
+            f"{name} holds ROS messages: save them as a table with rostopic echo -p or ros2 topic "
+            "echo --csv"
         )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
@@ -339,8 +338,9 @@ def _table(
     if len(numeric) < 3 or len(full) < 8:
         line, row = (sample or there)[0]
         raise RecordingError(
-            f"{name} is no table of numbers: it has {len(full)} rows alike with {len(numeric)} "
-            "columns of numbers, where a recording has eight rows and three columns at least. "
+            f"{name} is not a table of numbers: it has {len(full)} rows of one form with "
+            f"{len(numeric)} columns of numbers, and a recording needs at least eight rows and "
+            "three columns. "
             f"Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
@@ -368,8 +368,8 @@ def _table(
         if None in found:
             column = numeric[found.index(None)]
             broken.append(
-                f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is no "
-                "number"
+                f"line {line}, column {column + 1} ({columns[column]}): {row[column][:30]!r} is "
+                "not a number"
             )
         elif inf in found or -inf in found:
             broken.append(f"line {line} holds an infinite number")
@@ -482,7 +482,7 @@ def _from_json(text: str, name: str) -> list[Table]:
         with suppress(RecordingError):
             tables.append(_table(rows, kind, False, None, columns))
     if not tables:
-        raise RecordingError(f"{name} is JSON without a list of measurements in it")
+        raise RecordingError(f"{name} is JSON, but holds no list of measurements")
     return tables
 
 

@@ -54,8 +54,8 @@ function rowsOf(given, name, spelling) {
   if (has(spelling.number, bare)) text = bare;   // what stands in comments alone was meant
   text = withoutPlaces(decimalPoints(text), spelling);
   const wrong = firstOf(spelling['not a number'], text), arithmetic = firstOf(spelling.arithmetic, text);
-  if (wrong) throw new Error(`the ${name} side holds '${wrong}', which is no number`);
-  if (arithmetic) throw new Error(`the ${name} side holds '${arithmetic}': paste the numbers that it comes to`);
+  if (wrong) throw new Error(`the ${name} side holds '${wrong}', which is not a number`);
+  if (arithmetic) throw new Error(`the ${name} side holds '${arithmetic}': work it out and paste the result`);
   text = sums(text, spelling);
   const found = text.match(spelling.number);
   if (!found) {
@@ -207,7 +207,7 @@ function posesOf(rows, name, kind, half) {
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
   throw new Error(`the ${name} side holds ${total} number${total === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
     + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
-    + 'beside a place, four that stand together and make length 1');
+    + 'next to a position, a quaternion must be four consecutive numbers of length 1');
 }
 
 // The nine entries of a matrix, as printed, out of those of one with a place.
@@ -231,7 +231,7 @@ const isUnit = (vectors, doubt) => vectors.every((vector) => Math.abs(length(vec
 
 function kindsOf(numbers, kind, doubt, name) {
   const count = numbers[0].length;
-  if (kind !== null && COUNT[kind] !== count) throw new Error(`the ${name} side holds ${count} numbers a pose; a ${kind} takes ${COUNT[kind]}`);
+  if (kind !== null && COUNT[kind] !== count) throw new Error(`the ${name} side holds ${count} numbers per pose; a ${kind} takes ${COUNT[kind]}`);
   const four = count === 4 && isUnit(numbers, doubt + NORMALISED / 2) ? ['quaternion'] : ['axis and angle'];
   const kinds = kind !== null ? [kind] : { 9: ['matrix'], 3: ['Euler angles', 'rotation vector'] }[count] ?? four;
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
@@ -241,7 +241,7 @@ function kindsOf(numbers, kind, doubt, name) {
   }
   if (kinds[0] === 'axis and angle' && ![[0, 3], [1, 4]].some(([from, to]) => isUnit(numbers.map((pose) => pose.slice(from, to)), doubt))) {
     throw new Error(`the four numbers of the ${name} side are neither a quaternion (their length is ${short(length(numbers[0]))}, not 1) nor `
-      + 'an axis and its angle (neither the first three nor the last three make length 1)');
+      + 'an axis and its angle (neither the first three nor the last three have length 1)');
   }
   return kinds;
 }
@@ -252,8 +252,8 @@ function demandOrthogonal(numbers, doubt, name) {
     if (gaps[worst] <= 6 * doubt + 2 * SLACK) return;
     const row = Math.floor(worst / 3), other = worst % 3;
     const what = row === other ? `row ${row + 1} has length ${short(length(dcm[row]))}, not 1`
-      : `rows ${row + 1} and ${other + 1} have the product ${short(dot(dcm[row], dcm[other]))}, not 0`;
-    throw new Error(`matrix ${which + 1} of the ${name} side is no rotation: ${what}`);
+      : `the dot product of rows ${row + 1} and ${other + 1} is ${short(dot(dcm[row], dcm[other]))}, not 0`;
+    throw new Error(`matrix ${which + 1} of the ${name} side is not a rotation: ${what}`);
   });
 }
 
@@ -444,7 +444,7 @@ function sideOf(poses, declared, table, noise) {
   const some = side.filter(({ moves, doubt }) => moves >= MOTION * (doubt + noise));
   // That refuses all where it holds of a reading that is no mix-up, or none if both sides have it.
   if (!side.some((one) => !some.includes(one) && (one.reading.faults === 0 || (one.reading.kind === 'quaternion' && one.reading.shared.length)))) return some;
-  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, and the thing moves by ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} only: too little to judge by`);
+  throw new Error(`the numbers may differ by ${short(noise / DEGREE, 3)} degrees, but they describe a rotation of only ${short(Math.min(...side.map(({ moves }) => moves)) / DEGREE, 3)} degrees: too small to judge by`);
 }
 
 // Radians of the largest turn in some poses, whatever their hand.
@@ -717,9 +717,9 @@ function relationWords({ second, relation: whole }, swapped, table, inverse = (w
   const relation = whole.said ?? whole, said = inverse ? [`one is ${table.inverse[second.kind]}`] : [];
   if (whole.inside) return [insideWords(whole.inside), ...said];
   for (const whose of ['body', 'world']) {
-    if (relation[`${whose} turn`]) said.push(`a constant turn on the ${whose}'s side, as of an instrument that is mounted askew`);
+    if (relation[`${whose} turn`]) said.push(`a constant rotation on the ${whose}'s side, as if an instrument were mounted askew`);
   }
-  if (relation.hand) return [...said, `the other hand: ${/-(.)/.exec(relation.body)[1]} is reversed in the world and on the body`];
+  if (relation.hand) return [...said, `opposite handedness: ${/-(.)/.exec(relation.body)[1]} is reversed in the world and on the body`];
   return [...said, ...namedAxes(relation, swapped, table).map(({ words }) => words).filter(Boolean)];
 }
 
@@ -868,7 +868,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   if (asked.names.length) verdict = 'undecided';
   const remarks = sides.flatMap(({ kinds: [kind], numbers, half }, k) => {
     const worst = numbers.map(length).reduce((held, size) => (Math.abs(size - 1) > Math.abs(held - 1) ? size : held), 1);
-    return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion of the ${['first', 'second'][k]} side has length ${short(worst)}: it was taken for one of length 1.`] : [];
+    return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion of the ${['first', 'second'][k]} side has length ${short(worst)}: it was normalised to length 1.`] : [];
   });
   return { ...asked, remarks, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,

@@ -9,7 +9,7 @@ const UNKNOWN = 'not known', OFFERED_SEQUENCES = ['zyx', 'xyz', 'zxy', 'yxz', 'x
 const KINDS = [UNKNOWN, 'matrix', 'quaternion', 'Euler angles', 'rotation vector', 'axis and angle'];
 // Of one engine and its prose: what the answer is called.
 const HEADINGS = { same: 'Both give the same.', named: 'They differ, and this is how:', undecided: 'These numbers do not determine the cause.',
-  unrelated: 'Nothing that was tried explains these numbers.' };
+  unrelated: 'No explanation was found.' };
 
 const ONE_QUESTION = 'One question decides.';
 const LANGUAGES = { 'NumPy and SciPy': mendingLine, 'A formula': formulaOf };
@@ -205,9 +205,9 @@ function answer(found, table, declare) {
   const best = found.chains[0], parts = [element('p', { class: 'heading' }, headingOf(found))];
   if (found.verdict === 'unrelated') {
     const poses = found.poses === 1 ? 'this pose' : `these ${found.poses} poses`;
-    const more = found.poses < 3 ? ' An instrument that is mounted askew shows in three poses or more: paste them.' : '';
-    return [...parts, element('p', {}, `No mix-up of up to ${table['most faults']} faults explains ${poses}.${more}${
-      found.mirrored && ` The ${found.mirrored} side's matrix has the determinant −1: a mirror image, and no rotation.`}`)];
+    const more = found.poses < 3 ? ' Only three or more poses can show whether an instrument is mounted askew: paste them.' : '';
+    return [...parts, element('p', {}, `No combination of up to ${table['most faults']} mix-ups fits ${poses}.${more}${
+      found.mirrored && ` The ${found.mirrored} side's matrix has determinant −1: it is a mirror image, not a rotation.`}`)];
   }
   if (found.names.length) {
     const told = ({ condition, faults, declare: known }) => [`${condition ? `If ${condition}: ` : ''}${faults.join('; ')}. `,
@@ -221,7 +221,7 @@ function answer(found, table, declare) {
     parts.push(element('ul', {}, ...found.faults.map((fault, k) => element('li', {}, `${capital(fault)}. `,
       ...(links[k] ? linked(links[k]) : [])))));
   }
-  if (found.residual > 1e-3) parts.push(element('p', {}, `What is left then is ${Number(found.residual.toPrecision(2))} degrees.`));
+  if (found.residual > 1e-3) parts.push(element('p', {}, `After that, ${Number(found.residual.toPrecision(2))} degrees remain.`));
   if (found.furtherPose) {
     parts.push(element('p', { class: 'further' }, `To decide, ${found.furtherPose}, and paste that pose as well, on a line of its own.`));
   }
