@@ -51,20 +51,19 @@
   });
 }
 
-// When a telephone is turned or a window made narrower, the page is laid out anew. What the reader has in hand, or else
-// the first line that is seen, stays where it was.
+// When a telephone is turned or a window made narrower, what the reader has in hand, or else the first line that is seen,
+// stays where it was. Lines are looked for at a few heights, because to measure all of them would lay out the whole page.
 {
   const LINE = ".bd-article :is(h1, h2, h3, p, li, tr, pre, .cm-line, .math):not(figure *)";
-  let kept, place, timer;
-  let width = innerWidth;
-  const seen = (line) => {
-    const { left, top, height } = line.getBoundingClientRect();
-    return height && top > 0 && top < innerHeight && line.contains(document.elementFromPoint(left + 9, top + 9));
-  };
+  let kept, place, timer, width = innerWidth;
+  const topOf = (line) => line.getBoundingClientRect().top;
+  const begins = (line) => line && topOf(line) > 0 && topOf(line) < innerHeight;
   const remember = () => {
     if (innerWidth !== width) return;
-    kept = scrollY && [...document.querySelectorAll(".bd-article :focus:not(figure *)"), ...document.querySelectorAll(LINE)].find(seen);
-    place = kept && kept.getBoundingClientRect().top;
+    const { left } = document.querySelector(".bd-article").getBoundingClientRect();
+    const lines = Array.from({ length: 40 }, (_, k) => document.elementFromPoint(left + 60, innerHeight * k / 40)?.closest(LINE));
+    kept = scrollY && [document.querySelector(".bd-article :focus:not(figure *)"), ...lines].find(begins);
+    place = kept && topOf(kept);
   };
   const soon = () => {
     clearTimeout(timer);
@@ -75,7 +74,7 @@
     if (innerWidth === width) return; // only the keyboard or the bar of addresses has come
     width = innerWidth;
     if (kept?.isConnected && !document.documentElement.classList.contains("lecture"))
-      scrollBy({ top: kept.getBoundingClientRect().top - Math.min(place, innerHeight / 2), behavior: "instant" });
+      scrollBy({ top: topOf(kept) - Math.min(place, innerHeight / 2), behavior: "instant" });
     soon();
   });
 }
