@@ -30,10 +30,10 @@ CAPITALS = {
 }
 BOLD = {ord(sign): 0x1D400 + k for k, sign in enumerate(ascii_uppercase + ascii_lowercase)}
 BOLD |= {ord(sign): 0x1D7CE + k for k, sign in enumerate(digits)}
-#: Elements that need a script or a form.
-ALIVE = (
+#: Elements that need a script or a form, styles, which book.css has, and lines that a script draws.
+LEFT_OUT = (
     "input, select, textarea, button, .dial, .number, .actions, label.done, .cover-note, "
-    ".progress-bar"
+    ".progress-bar, style, path:not([d]), path[d='']"
 )
 PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml" xmlns:epub="http://www.idpf.org/2007/ops" lang="en"
@@ -110,16 +110,8 @@ def written_out(styles):
 
 def in_xml(text):
     """Turn HTML that XML does not allow into XML."""
-    for element in text.find_all(ALIVE.split(", ")[:5]):
+    for element in text.select(LEFT_OUT):
         element.decompose()
-    for element in text.select(ALIVE):
-        element.decompose()
-    for style in text.find_all("style"):
-        style.decompose()  # book.css has it
-    for path in text.find_all("path"):
-        if not path.get("d"):
-            # Only a script would draw this line.
-            path.decompose()
     for label in text.find_all("label"):
         label.name, label.attrs = "span", {}
     for element in text.find_all(True):
@@ -130,15 +122,11 @@ def in_xml(text):
         for name, value in element.attrs.items():
             words = " ".join(value) if isinstance(value, list) else value
             # These attributes are used only by scripts and by the site's styles.
-            if name.startswith(("data-", "on")) or name in (
-                "tabindex",
-                "translate",
-                "valign",
-                "align",
-                "focusable",
+            if (
+                name.startswith(("data-", "on"))
+                or name in ("tabindex", "translate", "valign", "align", "focusable")
+                or (name in ("width", "height") and element.name in ("col", "table", "td", "th"))
             ):
-                continue
-            if name in ("width", "height") and element.name in ("col", "table", "td", "th"):
                 continue
             attributes[CAPITALS.get(name, name)] = words
         element.attrs = attributes

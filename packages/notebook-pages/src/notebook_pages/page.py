@@ -115,7 +115,17 @@ PROGRAM = re.compile(r"<pre\b.*?</pre>", re.DOTALL)
 TOKEN = re.compile(r'<span class="(\w{1,3})">([^<]*)</span>')
 #: All kinds of numbers have one colour, and so do all kinds of strings.
 KIND = re.compile(r"(?<=<i class=[ms])\w+")
-STILL = re.compile(r"(<figure\b[^>]*\bdata-stop=[^>]*>)(.*?)(</figure>)", re.DOTALL)
+#: A still of a page that animates its own figure: its name, its style sheet, and the drawing with
+#: its width, height, own style and words.
+STILL = re.compile(
+    r'(?<=data-stop=")([^"]*)"><style>([^<]*)</style>'
+    r'<svg (viewBox="\S+ \S+ (\S+) (\S+)" style="([^"]*)" role="img" aria-label="([^"]*)")>'
+    r"(.*?</svg>)",
+    re.DOTALL,
+)
+DARK = re.compile(r'html\[data-theme="dark"\] ([^,{]*)[^{]*(\{[^}]*\})')
+#: The colour of a face of a drawing, which its class has in the style sheet of the page, too.
+COLOUR = re.compile(r'(<path class="\w+ tone-\d"[^>]*?) fill="[^"]*" stroke="none"')
 
 
 #: A path in one of the book's drawings, whose points are relative to one corner.
@@ -220,20 +230,16 @@ def lighten(body):
     notebook it is alone. There a screen reader needs its role, too; here it is inside an element
     with a name, or its drawing has one. Names, brackets, spaces and operators of a program have the
     colour of the text around them and need no element each. Neither does a single word within an
-    element, nor a part of a string. The stills of a page that animates its own figure
-    (``data-stop``) are seen on paper and without scripts, so a browser with scripts need not parse
-    them.
+    element, nor a part of a string. A face of a drawing has the colour of its class.
     """
-    seen = set()
+    first = {}
 
     def first_only(style):
-        known = style[0] in seen
-        seen.add(style[0])
-        return "" if known else style[0]
+        return style[0] if first.setdefault(style[0], style) is style else ""
 
     body = re.sub(r"<style>\.orientation-figure[^<]*</style>", first_only, body)
     body = re.sub(r'<figure (?=class="orientation-figure)', '<figure role="none" ', body)
-    body = STILL.sub(r"\1<noscript>\2</noscript>\3", body)
+    body = COLOUR.sub(r"\1", body)
     body = NAME.sub(r"\1\2", LITERAL.sub(r'<code class="\1">\2</code>', body))
     body = re.sub(r'<span class="(?:n|p|w|nn|o)">([^<]*)</span>', r"\1", body)
 
@@ -247,20 +253,42 @@ def lighten(body):
     return share_outlines(PROGRAM.sub(in_colour, body))
 
 
-def trim_page(app, pagename, templatename, context, doctree):
-    def is_used(script):
-        name = getattr(script, "filename", None) or ""
-        body = getattr(script, "attributes", {}).get("body") or ""
-        return not any(word in name or word in body for word in UNUSED_SCRIPTS)
+def move_stills_out(body, site, address_of):
+    """Replace the stills of a page that animates its own figure by pictures that are files.
 
-    context["script_files"][:] = filter(is_used, context["script_files"])
-    names = [
-        str(getattr(script, "filename", None)).removeprefix("_static/")
-        for script in context["script_files"]
-    ]
-    context["script_files"][:] = [
-        script for script, name in zip(context["script_files"], names) if name not in PAGE_SCRIPTS
-    ]
+    They are seen on paper, without scripts and where the figure has no room, and are heavier than
+    the rest of the page. The browser fetches them where they are shown. A picture does not have the
+    colours of its page, so it follows the colour scheme that the page sets for it.
+    """
+
+    def as_picture(still):
+        name, style, start, width, height, size, words, marks = still.groups()
+        style = re.sub(r"\.orientation-figure(?:\.painted)?(?: svg)?", ":root", style)
+        style = DARK.sub(r"@media (prefers-color-scheme:dark){\1\2}", style)
+        (site / "stills").mkdir(exist_ok=True)
+        (site / "stills" / f"{name}.svg").write_text(
+            f'<svg xmlns="http://www.w3.org/2000/svg" {start}><style>{style}:root{{margin:0;'
+            f"color-scheme:light dark;--pst-color-background:Canvas}}</style>{marks}",
+            "utf8",
+        )
+        return (
+            f'{name}"><img loading="lazy" src="{address_of(f"stills/{name}.svg", 1)}" '
+            f'width="{width}" height="{height}" style="{size}" alt="{words}">'
+        )
+
+    return STILL.sub(as_picture, body)
+
+
+def trim_page(app, pagename, templatename, context, doctree):
+    scripts = context["script_files"]
+    names = [str(getattr(script, "filename", None)).removeprefix("_static/") for script in scripts]
+
+    def is_used(script, name):
+        body = getattr(script, "attributes", {}).get("body") or ""
+        unused = any(word in name or word in body for word in UNUSED_SCRIPTS)
+        return not unused and name not in PAGE_SCRIPTS
+
+    scripts[:] = [script for script, name in zip(scripts, names) if is_used(script, name)]
     joined = "-".join(["page", *(name for name in SOMETIMES if f"{name}.js" in names)])
     app.add_js_file(f"{joined}.js", priority=100)
     for script in context["script_files"]:
@@ -268,7 +296,9 @@ def trim_page(app, pagename, templatename, context, doctree):
         script.attributes.setdefault("defer", "defer")
     context["styles"] = [STYLE]
     if "body" in context:
-        context["body"] = lighten(context["body"])
+        context["body"] = lighten(
+            move_stills_out(context["body"], Path(app.outdir), context["pathto"])
+        )
 
 
 def theme_styles(static):
@@ -316,8 +346,8 @@ def sorted_out(site, name, rules, *others):
     result is cached under ``name``, because the pages nearly always contain the same names as in
     the last build.
     """
-    inputs = [PURGE, NODE_MODULES / ".package-lock.json", names_of(site)]
-    inputs += [path for path in others if isinstance(path, Path)]
+    files = (path for path in others if isinstance(path, Path))
+    inputs = [PURGE, NODE_MODULES / ".package-lock.json", names_of(site), *files]
     inputs_as_text = "\0".join(
         [rules, *map(str, others), *(path.read_text("utf8") for path in inputs)]
     )
@@ -430,8 +460,7 @@ def join_scripts(site):
         parts = [(static / name).read_text("utf8") for name in PAGE_SCRIPTS if name not in left_out]
         (static / file).write_text(begin + "\n;".join(parts), "utf8")
     lecture = static / "lecture.js"
-    text = as_script(static / "lecture.css") + lecture.read_text("utf8")
-    lecture.write_text(text, "utf8")
+    lecture.write_text(as_script(static / "lecture.css") + lecture.read_text("utf8"), "utf8")
     make_small(static, [lecture, *(static / file for file in files)], "error")
     for name in PAGE_SCRIPTS:
         (static / name).unlink()

@@ -39,7 +39,7 @@ LONG = 14  # lines of code that need not stay on one page
 # empty answer.
 ONLY_ON_SCREEN = (
     "a.headerlink, script, template, details.hide, button, [hidden], .sd-container-fluid, "
-    ".whole-book, .output:has([data-outcome='not attempted'])"
+    ".whole-book, .output:has([data-outcome='not attempted']), [data-stop] style"
 )
 WIDTH = 612  # of the text, in pixels; print.css sets the margins that leave it
 # Attributes that name other elements.
@@ -182,8 +182,9 @@ def article(site, page, set_formula=as_picture):
     """Return the text of a page, ready to be combined with the others in one document."""
     soup = BeautifulSoup((site / f"{page}.html").read_text("utf8"), "lxml")
     text = soup.select_one("article")
-    for still in text.select("noscript"):
-        still.unwrap()
+    for still in text.select("[data-stop] > img"):
+        file = (site / page).parent / still["src"]
+        still.replace_with(BeautifulSoup(file.read_bytes(), "html.parser").svg)
     for element in text.select(ONLY_ON_SCREEN):
         element.decompose()
     for heading in text.select("section > :is(h2, h3):only-child"):

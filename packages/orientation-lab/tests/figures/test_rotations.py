@@ -369,13 +369,13 @@ def test_the_camera_is_thrown_and_the_small_turns_add_up(open_essay):
 
 
 def test_where_scripts_run_the_stills_wait_to_be_printed(browser):
-    page = browser.new_page()
+    page, asked = browser.new_page(), []
+    page.on("request", lambda request: asked.append(request.url))
     page.goto((HTML / "rotations.html").resolve().as_uri())
-    stills = page.locator("[data-stop] svg")
-    assert stills.count() == 0
     page.locator(".world:is([data-ready], [data-stills])").wait_for()
-    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-    assert stills.count() == len(STILLS)
+    assert "/stills/" not in "".join(asked)
+    page.pdf()
+    assert "".join(asked).count("/stills/") == len(STILLS)
     page.close()
 
 

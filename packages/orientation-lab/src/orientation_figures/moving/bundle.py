@@ -29,24 +29,15 @@ OWN |= {
 # Figures that use npm packages. This script is the source of what their page loads when they come
 # into view, and each has its own style sheet.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
-# This loads that script when the page is complete and the figure is in sight. Where scripts run,
-# the stills are stored as text until they are needed: on paper, and where figure and text do not
-# fit beside each other (as in essay.css).
+# This loads that script when the page is complete and the figure is in sight. The browser fetches
+# the stills where they are shown: on paper, without scripts, and where figure and text do not fit
+# beside each other (as in essay.css). Before printing, the page asks for all of them.
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
-const unfold = () => {
-  const folded = document.querySelectorAll('[data-stop] > noscript');
-  for (const still of folded) still.outerHTML = still.textContent;
-};
-addEventListener('beforeprint', unfold);
-const small = matchMedia('(max-width: 599px) and (max-height: 420px)');
-small.addEventListener('change', unfold);
+addEventListener('beforeprint', () => {
+  for (const still of document.querySelectorAll('[data-stop] > img')) still.loading = 'eager';
+});
 const begin = () => {
-  if (small.matches) {
-    unfold();
-    // The page has grown.
-    document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: 'instant' });
-  }
   const seen = new IntersectionObserver((entries) => {
     if (!entries.some((entry) => entry.isIntersecting)) return;
     seen.disconnect();

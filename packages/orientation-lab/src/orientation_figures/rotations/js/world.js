@@ -706,11 +706,10 @@ for (const figure of document.querySelectorAll('.world:not([data-ready], [data-s
     if (error.message !== 'WebGL') throw error;
     // Without WebGL the stills take turns in the place of the figure.
     figure.dataset.stills = '';
-    for (const folded of document.querySelectorAll('[data-stop] > noscript')) folded.outerHTML = folded.textContent;
     const still = figure.querySelector('.still');
     const show = () => {
       const line = 0.55 * innerHeight, now = sections.filter(({ place }) => place.getBoundingClientRect().top <= line).at(-1) ?? sections[0];
-      const drawing = now?.still.querySelector('svg');
+      const drawing = now?.still.querySelector('img, svg');
       if (drawing && still.dataset.shown !== now.id) {
         still.replaceChildren(drawing.cloneNode(true));
         still.dataset.shown = now.id;
