@@ -51,16 +51,15 @@ const parsed = (text) => {
 export class Painter {
   // Throws where the browser has nothing to paint with.
   constructor(canvas) {
-    const test = document.createElement('canvas'), able = test.getContext('webgl2') ?? test.getContext('webgl');
-    if (!able) throw new Error('WebGL');
+    const wanted = { alpha: true, antialias: true, premultipliedAlpha: true };
+    const gl = canvas.getContext('webgl2', wanted) ?? canvas.getContext('webgl', wanted);
+    if (!gl) throw new Error('WebGL');
     this.canvas = canvas;
     // Where the processor stands in, it has enough to do with one point for each of the page.
-    const told = able.getExtension('WEBGL_debug_renderer_info');
-    const soft = /swiftshader|llvmpipe|software|basic render/i.test(able.getParameter(told?.UNMASKED_RENDERER_WEBGL ?? able.RENDERER));
-    able.getExtension('WEBGL_lose_context')?.loseContext();
+    const told = gl.getExtension('WEBGL_debug_renderer_info');
+    const soft = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(told?.UNMASKED_RENDERER_WEBGL ?? gl.RENDERER));
     this.finest = soft ? 1 : Math.min(2, globalThis.devicePixelRatio || 1);
-    this.renderer = new Renderer({ canvas, alpha: true, antialias: true, premultipliedAlpha: true, dpr: this.finest });
-    const { gl } = this.renderer;
+    this.renderer = new Renderer({ canvas, ...wanted, dpr: this.finest });   // in the same context
     gl.clearColor(0, 0, 0, 0);
     this.camera = new Camera(gl, { near: 3, far: 16 });
     this.camera.matrixAutoUpdate = false;

@@ -5,7 +5,7 @@
 // z-x-y: the first motor turns about a_z, the second about b_x, the third about c_y, and the lens looks along d_y. So
 // the three angles are longitude, height and roll.
 import { AXES, IDENTITY, SEQUENCES, add, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dot, length, multiply, quaternionFromAxisAngle, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
+  dcmFromQuaternion, dot, length, multiply, quaternionFromDcm, scale, simpleDcm, slerp, subtract,
   times, transpose, unit } from '../../moving/js/mathematics.js';
 import { quaternionAt } from '../../moving/js/belt_picture.js';
 import { STOPS } from './stops.js';
