@@ -196,6 +196,7 @@ def test_the_example_of_a_manual_that_cannot_be_run():
         ("quaternion", "2, 0, 0, 0", "length 2.0000, not 1"),
         ("matrix", "1 0 0 0 1 0 0 0 -1", "left-handed"),
         ("matrix", "nothing", "0 numbers"),
+        ("body fixed angles", "0,5 0 0", "Write 0.5 for a half: a comma separates two numbers."),
     ],
 )
 def test_what_means_no_orientation_is_refused_in_the_readers_terms(form, text, message):
@@ -209,7 +210,7 @@ def test_rounded_numbers_are_taken_and_said_to_be():
     side = {"program": "this book", "sequence": "zyx"}
     quaternion, matrix, degrees = converted(
         [
-            {"side": side | {"form": "quaternion"}, "text": "q = [0.97, 0, 0, 0.26]"},
+            {"side": side | {"form": "quaternion"}, "text": "0,97; 0,0; 0,0; 0,26"},
             {
                 "side": side | {"form": "matrix"},
                 "text": "[[0.87, 0.5, 0], [\u22120.5, 0.87, 0], [0, 0, 1]]",

@@ -1,5 +1,5 @@
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, dcmFromSpaceFixed, degrees, determinant, dot, gimbalLockMargin, IDENTITY,
+  dcmFromQuaternion, dcmFromSpaceFixed, decimalPoints, degrees, determinant, dot, gimbalLockMargin, IDENTITY,
   length, multiply, nearestDcm, quaternionFromDcm, radians, reversed, scale, SEQUENCES,
   spaceFixedFromDcm, transpose, unit } from './mathematics.js';
 import { picture, SIZE } from './converter_picture.js';
@@ -33,8 +33,9 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 
 // The orientation that the numbers in a text describe, and what was put right; a text that means none is an error.
 export function read(side, text) {
-  const numbers = (text.replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
-  if (numbers.length !== wanted) throw new Error(`There are ${numbers.length} numbers here, but ${side.form} needs ${wanted}.`);
+  const numbers = (decimalPoints(text).replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
+  const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for a half: a comma separates two numbers.' : '';
+  if (numbers.length !== wanted) throw new Error(`There are ${numbers.length} numbers here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
   if (side.form === 'matrix') {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));

@@ -176,3 +176,10 @@ export function slerp(from, to, part) {
   if (angle < 1e-9) return unit(add(scale(1 - part, from), scale(part, to)));
   return unit(add(scale(Math.sin((1 - part) * angle), from), scale(Math.sin(part * angle), to)));
 }
+
+// Points where there are decimal commas: one in each of three numbers or more, and no point.
+export function decimalPoints(text) {
+  const groups = (text.match(/\d[\d,]*\d|\d/g) ?? []).filter((group) => group.includes(','));
+  if (/\d\.|\.\d/.test(text) || groups.length < 3 || groups.some((group) => group.split(',').length > 2)) return text;
+  return text.replace(/(?<=\d),(?=\d)/g, '.');
+}

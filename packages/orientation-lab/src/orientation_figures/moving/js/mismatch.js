@@ -3,7 +3,7 @@
 // comes with the figure; here are the reader of text and the loops, held to the same cases by
 // tests/test_mismatch_in_the_page.py.
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
-  dcmFromQuaternion, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
+  dcmFromQuaternion, decimalPoints, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
   SEQUENCES, transpose, unit } from './mathematics.js';
 
 const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, DEARER_CROSSED = 1.7, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
@@ -118,13 +118,6 @@ function namedColumns(names, spelling) {
 
 function rowsOfLines(text, spelling) {
   return text.split(/[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/).map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
-}
-
-// Points where there are decimal commas: one in each of three numbers or more, and no point.
-function decimalPoints(text) {
-  const groups = (text.match(/\d[\d,]*\d|\d/g) ?? []).filter((group) => group.includes(','));
-  if (/\d\.|\.\d/.test(text) || groups.length < 3 || groups.some((group) => group.split(',').length > 2)) return text;
-  return text.replace(/(?<=\d),(?=\d)/g, '.');
 }
 
 // Names in the place of i, j and k, where quaternions are written as sums.
