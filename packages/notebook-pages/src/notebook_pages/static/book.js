@@ -16,7 +16,7 @@
     if (later.length && root.classList.contains("in-parts")) whenIdle(goOn, { timeout: 200 });
     else whole();
   };
-  // The typefaces of the whole page come first: each that came later would have its text laid out once more.
+  // The typefaces of the whole page come first: a later one would have its text laid out once more.
   const faces = () => Promise.all(allFaces.map((face) => document.fonts.load(face))).catch(() => {});
   const aWhile = () => new Promise((resolve) => setTimeout(resolve, 3000));
   const frame = () => new Promise(requestAnimationFrame);
@@ -99,7 +99,7 @@ const watch = new ResizeObserver((entries) => {
 window.watchWidth = (box) => watch.observe(box); // also for the theme's boxes, and what a page puts out later
 document.querySelectorAll(".math-box, figure.orientation-figure").forEach(watchWidth);
 
-// A formula is copied as its TeX. The browser would copy its drawing and its words for the ear, each in many lines.
+// A formula is copied as its TeX, not as its drawing and its words for the ear, and a number as programs read it.
 document.addEventListener("copy", (event) => {
   const chosen = getSelection();
   if (event.defaultPrevented || chosen.isCollapsed) return;
@@ -111,13 +111,14 @@ document.addEventListener("copy", (event) => {
   const copy = document.createElement("div");
   copy.append(range.cloneContents());
   const formulas = copy.querySelectorAll(".katex");
-  if (!formulas.length) return;
+  if (!formulas.length && !/[\u2007\u2212]/.test(chosen)) return;
   for (const formula of formulas) {
     const fence = formula.parentElement.matches(".katex-display") ? "$$" : "$";
     formula.replaceWith(fence + (formula.dataset.tex ?? formula.querySelector("annotation").textContent) + fence);
   }
   document.body.append(copy); // so that the browser knows where its lines end
-  event.clipboardData.setData("text/plain", copy.innerText);
+  const shown = (formulas.length ? copy.innerText : String(chosen)).replaceAll("\u2007", " ");
+  event.clipboardData.setData("text/plain", shown.replace(/\u2212(?=[\d.])/g, "-"));
   event.clipboardData.setData("text/html", copy.innerHTML);
   copy.remove();
   event.preventDefault();
