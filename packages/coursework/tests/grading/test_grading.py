@@ -588,7 +588,7 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     assert "b" not in points and (points["somebody"], points["another"]) == ("5.5", "6")
     assert (
         "'b' is now 'somebody'" in shown.getvalue()
-        and "1 decisions to the new name" in shown.getvalue()
+        and "1 decision to the new name" in shown.getvalue()
     )
     handed_on = {one.student: one for one in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")

@@ -342,7 +342,7 @@ def test_a_course_comes_to_a_page_for_each_student_and_a_table(out, rules):
     now = datetime.datetime(2026, 12, 1, tzinfo=UTC)
     said = write_course(Store(out), rules(roster=out.parent / "roster.csv"), now=now)
     assert said == [
-        "axes: 1 notebooks came at an unknown time, so lateness cost them nothing. Give a table of "
+        "axes: 1 notebook came at an unknown time, so lateness cost them nothing. Give a table of "
         "times from your system: "
         'times = "worksheet.csv" in [assignments.axes].'
     ]
@@ -460,7 +460,7 @@ def test_the_rules_of_the_term_reach_the_system(late, tmp_path, capsys):
     said = capsys.readouterr().out
     assert (
         "Not filled in, because excused in term.toml" in said
-        and "1 notebooks came at an unknown time" in said
+        and "1 notebook came at an unknown time" in said
     )
     main(["export", str(late.folder), "--nbgrader", str(tmp_path / "n.csv")])
     assert '"6","1.2","4.8"' in (tmp_path / "n.csv").read_text()
@@ -470,7 +470,7 @@ def test_a_decision_is_handed_on_once_it_is_in_the_marks(late, tmp_path, capsys)
     (late.folder / "term.toml").unlink()
     Journal(late.folder).add(late.read("ann", "turns"), "turns/sum", 0.5, who="Ann")
     assert filled(late)[0] == "6" and "are not in the marks yet" in capsys.readouterr().out
-    with pytest.raises(SystemExit, match="Decisions about 1 records are not in the pages yet"):
+    with pytest.raises(SystemExit, match="Decisions about 1 record are not in the pages yet"):
         main(["export", str(late.folder), "--feedback", str(tmp_path / "pages.zip")])
     bring_in_decisions(late.folder)
     assert filled(late)[0] == "3"

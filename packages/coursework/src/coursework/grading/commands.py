@@ -436,7 +436,7 @@ def merge(out: str, files: Sequence[str], grader: str | None, dry_run: bool, yes
 
 def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> None:
     from .judging.journal import Decision, digest_of_answer
-    from .tables import in_a_line
+    from .tables import in_a_line, number_of
 
     new, differing = journal.merge(Path(path))
     decisions = [entry for entry in new if isinstance(entry, Decision)]
@@ -446,8 +446,8 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         else ""
     )
     print(
-        f"New in {path}{' (dry run: not imported)' * dry_run}: {len(decisions)} "
-        f"{'decision' if len(decisions) == 1 else 'decisions'}{others}."
+        f"New in {path}{' (dry run: not imported)' * dry_run}: "
+        f"{number_of(len(decisions), 'decision')}{others}."
     )
     foreign = [
         one
@@ -523,8 +523,7 @@ def export(
         return
     marks = gradebooks.Marks(store, assignment, as_of=as_of)
     if feedback:
-        written = gradebooks.write_feedback(feedback, marks, store)
-        print(f"{written} {'page' if written == 1 else 'pages'} of feedback: {feedback}")
+        print(gradebooks.write_feedback(feedback, marks, store))
     if nbgrader:
         print(gradebooks.write_nbgrader(nbgrader, marks))
 

@@ -46,7 +46,7 @@ from .running import Finished, Jobs, Progress, Running, key_of, record_of, run
 from .store import REFUSED, Store, as_text, write
 from .submissions.intake import Refused
 from .submissions.roster import BadRoster
-from .tables import in_a_line, number
+from .tables import in_a_line, number, number_of
 
 #: What moves marks, where it is not work that was handed in anew.
 REJUDGED = "the questions or the software have changed"
@@ -291,8 +291,8 @@ def grade(
         waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)
         desk.tell(
-            f"{len(keys)} to grade, {kept} of them graded before, {refused} "
-            f"{'file' if refused == 1 else 'files'} refused."
+            f"{len(keys)} to grade, {kept} of them graded before, "
+            f"{number_of(refused, 'file')} refused."
         )
         said = {"graded": 0 if dry_run else len(waiting), "kept": kept, "refused": refused}
         if dry_run:

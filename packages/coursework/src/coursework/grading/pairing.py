@@ -19,7 +19,7 @@ from .store import Store, write
 from .submissions import intake
 from .submissions.intake import Notebook, Refused
 from .submissions.roster import Roster
-from .tables import in_a_line, lines
+from .tables import in_a_line, lines, number_of
 
 WHOSE = "whose.csv"
 MOST_SHOWN = 40  # lines of a table on the screen; the whole of it is in a file
@@ -200,11 +200,10 @@ def say(
     say that they are of somebody else. Who was graded before is not missing.
     """
     for name, number in sorted(handed_in.left_alone.items()):
-        are = ("notebook is", "is") if number == 1 else ("notebooks are", "are")
         print(
-            f"{number} {are[0]} of {name}, and {are[1]} left alone"
+            f"We leave {number_of(number, 'notebook')} of {name} alone"
             + (
-                f": to grade this, add [assignments.{name}] to term.toml."
+                f": to grade it, add [assignments.{name}] to term.toml."
                 if term.assignments and name not in term.assignments
                 else "."
             ),
@@ -445,7 +444,7 @@ def put_renamed_aside(
             ]
             if decisions and len(names) == 1:
                 journal.hand_on(student, assignment, names[0])
-                said += f" We also moved {len(decisions)} decisions to the new name."
+                said += f" We also moved {number_of(len(decisions), 'decision')} to the new name."
             elif decisions:
-                said += f" Whose are the {len(decisions)} decisions? They no longer count."
+                said += f" Whose are its decisions ({len(decisions)})? They no longer count."
             yield said

@@ -44,6 +44,15 @@ def number(value: float) -> str:
     return f"{value:.4f}".rstrip("0").rstrip(".") if value != int(value) else str(int(value))
 
 
+def number_of(count: int, noun: str) -> str:
+    """A number of things in words.
+
+    >>> number_of(1, "file"), number_of(0, "file")
+    ('1 file', '0 files')
+    """
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
 def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     """A table as CSV, every text in quotation marks."""
     return "".join(lines(header, rows))

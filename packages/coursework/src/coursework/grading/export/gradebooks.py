@@ -28,7 +28,7 @@ from ..store import Store, file_name, write
 from ..submissions.intake import refused_of
 from ..submissions.languages import LANGUAGES, in_english
 from ..submissions.roster import local_parts, turned
-from ..tables import in_a_line, number, table
+from ..tables import in_a_line, number, number_of, table
 
 NBGRADER = (
     "assignment",
@@ -475,8 +475,8 @@ def fill(
     said += marks.unknown
     if marks.behind:
         said.append(
-            f"Decisions about {marks.behind} students are not in the marks yet. Run `coursework "
-            f"regrade {marks.store.folder}`."
+            f"Decisions about {number_of(marks.behind, 'student')} are not in the marks yet. Run "
+            f"`coursework regrade {marks.store.folder}`."
         )
     if strangers := sorted(set(overwrite) - set(students.values())):
         raise CannotExport(
@@ -703,7 +703,7 @@ def _keys_of_student(system: System, student: str, identity: Identity) -> Iterat
         yield "name", called["name"].lower()
 
 
-def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
+def write_feedback(path: str | Path, marks: Marks, store: Store) -> str:
     """Write an archive of the pages of feedback, named so that the system which
     handed the work out takes them back.
 
@@ -711,7 +711,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     numbers between underscores, of the student and of the file, takes no page whose last part
     begins with "link", and looks at no folders. Moodle reads the number of the participant and
     ``assignsubmission_file``, in the first folder that has them. Brightspace knows its own folders.
-    Give the number of pages.
+    Say how many pages there are.
 
     Raises
     ------
@@ -720,8 +720,8 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
     """
     if marks.behind:
         raise CannotExport(
-            f"Decisions about {marks.behind} records are not in the pages yet. Run `coursework "
-            f"regrade {store.folder}`."
+            f"Decisions about {number_of(marks.behind, 'record')} are not in the pages yet. Run "
+            f"`coursework regrade {store.folder}`."
         )
     pages: dict[str, Path] = {}
     for record in marks.records:
@@ -752,7 +752,7 @@ def write_feedback(path: str | Path, marks: Marks, store: Store) -> int:
         os.replace(half, path)
     finally:
         half.unlink(missing_ok=True)
-    return len(pages)
+    return f"{number_of(len(pages), 'page')} of feedback: {path}"
 
 
 def write_nbgrader(path: str | Path, marks: Marks) -> str:
@@ -771,7 +771,10 @@ def write_nbgrader(path: str | Path, marks: Marks) -> str:
             points = (raw, lost, round(raw * (1 - result.penalty), 4), worth)
             rows.append((assignment, "", "", student, "", "", "", *points))
     write(path, table(NBGRADER, rows), private=True)
-    return f"{len(rows)} marks: {path}. Left out, because a decision is pending: {pending}."
+    return (
+        f"{number_of(len(rows), 'mark')}: {path}. "
+        f"Left out, because a decision is pending: {pending}."
+    )
 
 
 def write_gradescope(path: str | Path, marks: Marks, student: str) -> None:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..record import Case, Mark, Record
 from ..store import Store
-from ..tables import in_a_line, number
+from ..tables import in_a_line, number, number_of
 from .journal import Given, Journal, Part
 
 PAGE = "regrade.html"
@@ -364,8 +364,7 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
 
 
 def _students(moves: Sequence[Move]) -> str:
-    many = len({move.student for move in moves})
-    return f"{many} student{'s' if many > 1 else ''}"
+    return number_of(len({move.student for move in moves}), "student")
 
 
 def _about(moves: Sequence[Move]) -> str:

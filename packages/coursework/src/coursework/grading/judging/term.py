@@ -21,6 +21,7 @@ from ..reading import from_table
 from ..record import Mark, Record
 from ..submissions.intake import Notebook, as_time
 from ..submissions.roster import Roster
+from ..tables import number_of
 from .journal import Part
 from .laboratory import Policies
 
@@ -811,9 +812,9 @@ def unknown_times(results: Iterable[Result], term: Term) -> list[str]:
             "[late], or give a table of times."
         )
     return [
-        f"{name}: {unknown.count(name)} notebooks came at an unknown time, so lateness cost them "
-        f'nothing. Give a table of times from your system: times = "worksheet.csv" in '
-        f"[assignments.{name}]."
+        f"{name}: {number_of(unknown.count(name), 'notebook')} came at an unknown time, so "
+        "lateness cost them nothing. Give a table of times from your system: "
+        f'times = "worksheet.csv" in [assignments.{name}].'
         for name in sorted(set(unknown))
     ]
 
