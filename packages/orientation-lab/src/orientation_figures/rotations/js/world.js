@@ -78,8 +78,9 @@ class World {
   }
 
   resize() {
-    const { clientWidth, clientHeight } = this.stage;
-    if (!clientWidth || !clientHeight) return;
+    const { clientWidth, clientHeight } = this.stage, { wide, high } = this.painter;
+    // An observer calls also when it begins to observe, and would have the first picture drawn twice.
+    if (!clientWidth || !clientHeight || (clientWidth === wide && clientHeight === high)) return;
     this.half = Math.min(clientWidth, clientHeight) / 2;
     this.painter.resize(clientWidth, clientHeight);
     if (this.picture) this.draw();   // a new size empties the canvas
