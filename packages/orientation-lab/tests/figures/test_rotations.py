@@ -189,7 +189,7 @@ def test_no_rounding_is_seen():
 
 
 def test_a_stop_that_there_is_not():
-    with pytest.raises(ValueError, match="'loock' is no stop"):
+    with pytest.raises(ValueError, match="'loock' is not a stop"):
         Stop("loock")
 
 
