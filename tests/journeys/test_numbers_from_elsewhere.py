@@ -60,6 +60,15 @@ def test_yaw_pitch_roll_against_roll_pitch_yaw_is_asked_about():
     assert code == 0 and "the same orientation" in answer
 
 
+def test_two_sequences_are_asked_about_since_axes_may_be_renamed():
+    angles = "-56.523 -7.955 58.222", "-14.216 -55.698 46.402"
+    code, answer = explained(*angles)
+    assert code == 2 and "Which sequence of rotations does the first program use?" in answer
+    assert "--first-is zyx --second-is yzx" in answer and "--first-is yxz --second-is xyz" in answer
+    code, answer = explained("--first-is", "zyx", *angles)
+    assert code == 1 and "in the second numbers the sequence of rotations is y-z-x" in answer
+
+
 #: A camera-to-world matrix in OpenCV's axes and in OpenGL's: the camera's axes are the columns.
 OPENCV = "0.86869 -0.47475 0.14141\n0.31313 0.74748 0.58586\n-0.38384 -0.46465 0.79798"
 OPENGL = "0.86869 0.47475 -0.14141\n0.31313 -0.74748 -0.58586\n-0.38384 0.46465 -0.79798"

@@ -240,15 +240,17 @@ _ORDERS = {"wxyz": "first", "xyzw": "last"}
 
 
 def _names(best, others, ways):
-    """Descriptions of one relation that differ in the axes that they name, or in the side whose
-    angles are space fixed; none if all agree.
+    """Descriptions of one relation that differ in the axes that they name, in sequences, or in the
+    side whose angles are space fixed; none if all agree.
     """
     names, seen = [], set()
+    group, choices = _of_angles(best)
     near = [
         chain
         for chain in others
         if _dearness(chain) - _dearness(best) <= _limit(chain, best) + 1e-6
-        and set(_turns(chain)) == set(_turns(best))
+        and _of_angles(chain)[0] == group
+        and len(_of_angles(chain)[1]) == len(choices)
     ]
     for chain in [best, *near]:
         swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
@@ -256,7 +258,7 @@ def _names(best, others, ways):
             faults = tuple(chain.words(ways, which))
             upright = chain.relation.get("said", chain.relation) | {"inverse": False}
             axes = tuple(table.words_of(upright, chain.kinds, second_inverse))
-            meant = axes, _turns(chain)
+            meant = axes, _of_angles(chain)
             if meant in seen:
                 continue
             seen.add(meant)
@@ -274,10 +276,20 @@ def _usual_order(chain, known):
     )
 
 
-def _turns(chain):
-    """Whether each side's Euler angles are body fixed or space fixed, if the two differ."""
-    turns = [reading["choices"].get(TURNS) for reading in (chain.first, chain.second)]
-    return tuple(turns) if None not in turns and turns[0] != turns[1] else ()
+def _both(chain, group):
+    """What both sides choose in a group, if they differ in it."""
+    chosen = [reading["choices"].get(group) for reading in (chain.first, chain.second)]
+    return tuple(chosen) if None not in chosen and chosen[0] != chosen[1] else ()
+
+
+def _of_angles(chain):
+    """The group in which two triples of Euler angles differ and only a reader can choose, and both
+    choices: their sequences, unless one is declared, because the numbers stay the same if the axes
+    of both sides are renamed alike; else which of them is space fixed.
+    """
+    declared = chain.first["codes"][-1] or chain.second["codes"][-1]
+    sequences = () if declared else _both(chain, "sequence")
+    return ("sequence", sequences) if sequences else (TURNS, _both(chain, TURNS))
 
 
 def _limit(chain, best):
@@ -317,16 +329,22 @@ def _name(chain, inverses, faults, by_way, best):
             else f"the {'first' if inverses[0] else 'second'} side gives the world as seen from "
             "the body"
         )
-    for side, turns in zip(declare, _turns(chain)):
-        side[TURNS] = turns
-    if turns := _turns(chain):
-        conditions.append(f"the first side's angles are {turns[0]} and the second's {turns[1]}")
+    group, choices = _of_angles(chain)
+    for side, chosen in zip(declare, choices):
+        side[group] = chosen
+    if choices and group == TURNS:
+        conditions.append(f"the first side's angles are {choices[0]} and the second's {choices[1]}")
+    elif choices:
+        first, second = ("-".join(letters) for letters in choices)
+        conditions.append(f"the first side's sequence is {first}")
+        faults = (f"the second side's sequence is {second}",)
     return Name(" and ".join(conditions), faults, declare)
 
 
 def _question(names, best):
-    order, way, turns = (
-        len({name.declare[0].get(what) for name in names}) > 1 for what in ("order", "way", TURNS)
+    order, way, turns, sequence = (
+        len({name.declare[0].get(what) for name in names}) > 1
+        for what in ("order", "way", TURNS, "sequence")
     )
     asked = {
         "Did angles or a quaternion pass from one program to the other?": any(
@@ -339,6 +357,8 @@ def _question(names, best):
         and "matrix" not in best.kinds,
         "Which side's turns are about axes that turn with the body (body fixed), and which side's "
         "about axes that stay (space fixed)?": turns,
+        "Which sequence of rotations does the first program use? The numbers stay the same if the "
+        "axes of both programs are renamed alike.": sequence,
     }
     return " ".join(question for question, still_open in asked.items() if still_open)
 

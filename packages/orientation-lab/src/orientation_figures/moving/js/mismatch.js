@@ -750,21 +750,27 @@ const limitOf = (chain, best) => {
 const orderShared = ({ first, second }) => first.choices.order === second.choices.order;
 const dearness = (chain) => costOf(chain) / 1e6 - (chain.relation.inverse && (chain.first.kind === 'matrix') !== (chain.second.kind === 'matrix'));
 
-// Which side's Euler angles are body fixed and which space fixed, if the sides differ in this.
-const turnsOf = ({ first, second }) => {
-  const turns = [first, second].map(({ choices }) => choices[TURNS]);
-  return turns.every(Boolean) && turns[0] !== turns[1] ? turns : [];
+// What both sides choose in a group, if they differ in it.
+const bothOf = ({ first, second }, group) => {
+  const chosen = [first, second].map(({ choices }) => choices[group]);
+  return chosen.every(Boolean) && chosen[0] !== chosen[1] ? chosen : [];
+};
+// The group in which two triples of Euler angles differ and only a reader can choose, and both choices.
+const ofAngles = (chain, known) => {
+  const sequences = known.some(({ sequence }) => sequence) ? [] : bothOf(chain, 'sequence');
+  return sequences.length ? ['sequence', sequences] : [TURNS, bothOf(chain, TURNS)];
 };
 
 // Descriptions of one relation that differ in axes or turns, none if all agree; and the question that decides.
 function namesOf(best, others, known, ways, table) {
-  const names = [], seen = new Set();
-  const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || order === known[k] || (!known[k] && order in ORDERS))
-    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6 && turnsOf(chain).length === turnsOf(best).length);
+  const names = [], seen = new Set(), [group, choices] = ofAngles(best, known);
+  const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || (known[k].order ? order === known[k].order : order in ORDERS))
+    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6
+    && ofAngles(chain, known)[0] === group && ofAngles(chain, known)[1].length === choices.length);
   for (const chain of [best, ...usual]) {
     const swaps = secondIsInverse(chain, ways);
     swaps.forEach((swapped, which) => {
-      const turns = turnsOf(chain), meant = [...relationWords(chain, swapped, table, false), ...turns].join('; ');
+      const [, chosen] = ofAngles(chain, known), meant = [...relationWords(chain, swapped, table, false), ...chosen].join('; ');
       if (seen.has(meant)) return;
       seen.add(meant);
       const inverses = [swapped !== chain.relation.inverse, swapped], declare = [{}, {}], conditions = [];
@@ -780,9 +786,12 @@ function namesOf(best, others, known, ways, table) {
         conditions.push(matrix ? `the body's axes are the ${inverses[0] ? 'columns' : 'rows'} of the first matrix`
           : `the ${inverses[0] ? 'first' : 'second'} side gives the world as seen from the body`);
       }
-      turns.forEach((axes, k) => { declare[k][TURNS] = axes; });
-      if (turns.length) conditions.push(`the first side's angles are ${turns[0]} and the second's ${turns[1]}`);
-      names.push({ condition: conditions.join(' and '), faults: wordsOf(chain, table, ways, which), declare });
+      chosen.forEach((value, k) => { declare[k][group] = value; });
+      const sequences = group === 'sequence' ? chosen.map((letters) => [...letters].join('-')) : [];
+      if (sequences.length) conditions.push(`the first side's sequence is ${sequences[0]}`);
+      else if (chosen.length) conditions.push(`the first side's angles are ${chosen[0]} and the second's ${chosen[1]}`);
+      names.push({ condition: conditions.join(' and '), declare,
+        faults: sequences.length ? [`the second side's sequence is ${sequences[1]}`] : wordsOf(chain, table, ways, which) });
     });
   }
   if (names.length < 2) return { names: [], question: '' };
@@ -794,6 +803,7 @@ function namesOf(best, others, known, ways, table) {
       : 'Which side gives the inverse, the world as seen from the body?');
   }
   if (differ(TURNS)) asked.push('Which side\'s turns are about axes that turn with the body (body fixed), and which side\'s about axes that stay (space fixed)?');
+  if (differ('sequence')) asked.push('Which sequence of rotations does the first program use? The numbers stay the same if the axes of both programs are renamed alike.');
   return { names, question: asked.join(' ') };
 }
 
@@ -857,7 +867,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   let verdict = chains.length > 1 || special || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
   // Of a special pose some sequence nearly always says the same.
   if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE) && !(special && wordsOf(best, table, ways).length)) verdict = 'same';
-  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], declared.map(({ order }) => order), ways, table);
+  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], declared, ways, table);
   if (asked.names.length) verdict = 'undecided';
   const remarks = sides.flatMap(({ kinds: [kind], numbers, half }, k) => {
     const worst = numbers.map(length).reduce((held, size) => (Math.abs(size - 1) > Math.abs(held - 1) ? size : held), 1);
