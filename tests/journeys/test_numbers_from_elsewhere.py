@@ -53,7 +53,7 @@ def test_yaw_pitch_roll_against_roll_pitch_yaw_is_asked_about():
     """Either side may be the one whose turns are about axes that stay, as in ROS."""
     angles = "yaw 30 pitch 20 roll 10", "10 20 30"
     code, answer = explained(*angles)
-    assert code == 2 and "which side's about axes that stay (space fixed)?" in answer
+    assert code == 2 and "which side's about axes that stay fixed (space fixed)?" in answer
     known = ("--first-is", "body fixed", "--second-is", "space fixed")
     assert '--first-is "body fixed" --second-is "space fixed"' in answer
     code, answer = explained(*known, *angles)

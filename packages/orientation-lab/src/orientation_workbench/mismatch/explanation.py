@@ -355,8 +355,8 @@ def _question(names, best):
         and "matrix" in best.kinds,
         "Which side gives the inverse, the world as seen from the body?": way
         and "matrix" not in best.kinds,
-        "Which side's turns are about axes that turn with the body (body fixed), and which side's "
-        "about axes that stay (space fixed)?": turns,
+        "Which side's rotations are about axes of the body (body fixed), and which side's about "
+        "axes that stay fixed (space fixed)?": turns,
         "Which sequence of rotations does the first program use? The numbers stay the same if the "
         "axes of both programs are renamed alike.": sequence,
     }

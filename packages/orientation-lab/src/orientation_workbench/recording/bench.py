@@ -1032,12 +1032,12 @@ class _Bench:
         squares = {
             name: float(np.mean([run.squares[name] for run in runs])) for name in runs[0].squares
         }
-        # Forwards against backwards, in tilt and heading, and what each sensor contradicts.
+        # Forwards against backwards, in tilt and heading, and the errors that each sensor shows.
         pairs = ((claimed, differ), *(() if heading is None else (heading,)))
-        worst, high = max(found / max(own, 1e-6) for own, found in pairs), max(squares.values())
-        light, advice = _light(max(worst, high), 3, 5), ""
+        times = [*(found / max(own, 1e-6) for own, found in pairs), *np.sqrt([*squares.values()])]
+        light, advice = _light(max(times), 3, 5), ""
         if light == RED:
-            advice = f"Its errors are {max(worst, np.sqrt(high)):.0f} times what it claims. " + (
+            advice = f"Its errors are {max(times):.0f} times what it claims. " + (
                 f"First correct what is wrong above: {', '.join(sorted(trouble))}."
                 if trouble
                 else "First rule out lost samples, delays and a wrong clock; only then raise its "

@@ -802,7 +802,7 @@ function namesOf(best, others, known, ways, table) {
     asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Which way does the first matrix lead: are the body\'s axes its rows or its columns?'
       : 'Which side gives the inverse, the world as seen from the body?');
   }
-  if (differ(TURNS)) asked.push('Which side\'s turns are about axes that turn with the body (body fixed), and which side\'s about axes that stay (space fixed)?');
+  if (differ(TURNS)) asked.push('Which side\'s rotations are about axes of the body (body fixed), and which side\'s about axes that stay fixed (space fixed)?');
   if (differ('sequence')) asked.push('Which sequence of rotations does the first program use? The numbers stay the same if the axes of both programs are renamed alike.');
   return { names, question: asked.join(' ') };
 }
