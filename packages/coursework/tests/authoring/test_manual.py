@@ -87,14 +87,26 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     blocks[0] = blocks[0].replace("REPOSITORY", shlex.quote(str(PROJECT.parents[1])))
     # Nothing below opens JupyterLab, and to install it takes longer than all the rest.
     blocks[0] = blocks[0].removesuffix(" jupyterlab\n")
-    assert "jupyterlab" not in blocks[0]
     (tmp_path / "solve.py").write_text(SOLVE)
+    # What the manual says to do before questions are exported.
+    (tmp_path / "choice.py").write_text(
+        next(cells[0] for about, cells, _ in examples() if about == "a choice").replace(
+            "manual/", "first-steps/"
+        )
+    )
+    adding = (
+        'python -c "import nbformat; from nbformat.v4 import new_code_cell, new_markdown_cell\n'
+        "notebook = nbformat.read('solutions/first-steps.ipynb', 4)\n"
+        "choice = new_code_cell(open('../choice.py').read())\n"
+        "notebook.cells += [new_markdown_cell('Which unit?'), choice]\n"
+        "nbformat.write(notebook, 'solutions/first-steps.ipynb')\"\n"
+    )
     handing_in = (
         "mkdir -p handed-in/ada handed-in/ben\n"
         "python ../solve.py solutions/first-steps.ipynb handed-in/ada/first-steps.ipynb\n"
         "cp exercises/first-steps.ipynb handed-in/ben\n"
     )
-    script = "\n".join(["set -e", *blocks[:3], handing_in, *blocks[3:]])
+    script = "\n".join(["set -e", *blocks[:3], handing_in, *blocks[3:-1], adding, blocks[-1]])
     environment = {
         name: value for name, value in os.environ.items() if name != "PYTHONPATH"
     } | PINNED
@@ -112,7 +124,8 @@ def test_every_command_of_the_manual_runs_in_the_order_in_which_it_stands(tmp_pa
     assert (course / "feedback.zip").is_file() and (
         course / "marks" / "course" / "course.csv"
     ).is_file()
-    with (course / "marks" / "grades.csv").open(encoding="utf-8-sig", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["assignment"] == "first-steps"]
-    points = {row["student"]: float(row["points"]) for row in rows}
+    rows = csv.DictReader((course / "marks" / "grades.csv").read_text("utf-8-sig").splitlines())
+    points = {
+        row["student"]: float(row["points"]) for row in rows if row["assignment"] == "first-steps"
+    }
     assert points["ada"] > 0 == points["ben"]

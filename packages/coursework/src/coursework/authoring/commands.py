@@ -234,8 +234,8 @@ def bank(out: Path, format: str, questions: Sequence[str]) -> None:
     exported, left = write(_course(), out, format, questions)
     print(*left, sep="\n", end="\n" * bool(left))
     print(
-        f"{out} has {len(exported)} questions in {sum(map(len, exported.values()))} variants; "
-        f"{len(left)} questions cannot be exported."
+        f"We wrote {out}. Questions: {len(exported)}. Their variants: "
+        f"{sum(map(len, exported.values()))}. Questions left out: {len(left)}."
     )
     print(f"{out} HOLDS ALL ANSWERS AND SOLUTIONS. It is for instructors only: never publish it.")
 
