@@ -143,6 +143,12 @@ def test_a_page_calls_nothing_right_that_no_longer_stands_there(reader):
     assert "reply to an earlier answer" in run()  # the answer's cell fails, and no check runs
     reply = run()
     assert "Correct" not in reply and "The cell that sets B_C_N stopped" in reply
+    for slip in (right.replace("B_C_N", "B_C_n"), f"# {right}"):
+        write(right)
+        assert "Correct" in run()
+        write(slip)
+        reply = run()
+        assert "Correct" not in reply and "The cell that set B_C_N no longer sets it" in reply
     write(right)
     reply = run()
     assert "Correct" in reply and "earlier answer" not in reply

@@ -1,17 +1,34 @@
-"""Find the names that a failed cell was supposed to set.
+"""Find the names whose value is no longer in the notebook.
 
-After a cell has failed, each name that it was supposed to set still has its former value. A check
-of that value would approve an answer that is no longer in the notebook, and the grader, who runs
-the notebook from top to bottom, would disagree.
+After a cell has failed, each name that it was supposed to set still has its former value. So has a
+name that a cell set before the student changed the cell. A check of that value would approve an
+answer that is no longer in the notebook, and the grader, who runs the notebook from top to bottom,
+would disagree.
 """
 
 import re
 import sys
 
-# The names that a line of code sets: a function, or names on the left of an equals sign. It is
-# parsed as text, since a cell may have failed because it is not valid Python.
-SETS = re.compile(r"^\s*(?:def\s+(\w+)|([\w\s,()]+?)(?::[^=\n]+)?\s*[-+*/@]?=(?!=))", re.M)
-_failed: set[str] = set()
+# The names that a line of code sets: what follows a keyword, or names on the left of an equals
+# sign. It is parsed as text, since a cell may have failed because it is not valid Python.
+SETS = re.compile(
+    r"\b(?:def|class|for|as|import)\s+(\w+)|(\w+)\s*:=|"
+    r"(?:^|;)(?![^=\n]*\w\()([\w\s,()]+?)(?::[^=\n]+)?\s*[-+*/@]?=(?!=)",
+    re.M,
+)
+# What a check says in place of a verdict.
+STOPPED = (
+    "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
+    "an earlier value. We checked nothing. Fix that cell, run it, and then run this check "
+    "again."
+)
+CHANGED = (
+    "The cell that set `{0}` no longer sets it, so `{0}` still has an earlier value. We checked "
+    "nothing. Set `{0}` in that cell, run it, and then run this check again."
+)
+# The message about each name whose value is an earlier one, and the cell that last set each name.
+_outdated: dict[str, str] = {}
+_setters: dict[str, str] = {}
 _running = [""]
 
 
@@ -27,18 +44,26 @@ def names_set_by(code: str) -> set[str]:
 def begins(info: object) -> None:
     """Record that a cell begins: it may call a check of a value that it has just set."""
     _running[0] = getattr(info, "raw_cell", None) or ""
-    _failed.difference_update(names_set_by(_running[0]))
+    names = names_set_by(_running[0])
+    for name in names:
+        _outdated.pop(name, None)
+    # Not every program that runs notebooks says which cell it is.
+    if cell := getattr(info, "cell_id", None):
+        left = {name for name, setter in _setters.items() if setter == cell} - names
+        _outdated.update(dict.fromkeys(left, CHANGED))
+        _setters.update(dict.fromkeys(names, cell))
 
 
 def ends(result: object) -> None:
     """Record the names that a cell has not set, or only before an error."""
     if not getattr(result, "success", True):
-        _failed.update(names_set_by(_running[0]))
+        _outdated.update(dict.fromkeys(names_set_by(_running[0]), STOPPED))
 
 
 def outdated() -> list[str]:
-    """Return the names in the running cell whose own cell failed when it last ran."""
-    return sorted(_failed.intersection(re.findall(r"\w+", _running[0])))
+    """Return what there is to say of names in the running cell whose value is an earlier one."""
+    names = sorted(_outdated.keys() & set(re.findall(r"\w+", _running[0])))
+    return [_outdated[name].format(name) for name in names]
 
 
 def watch() -> None:

@@ -42,12 +42,6 @@ MOST_TOLD, DIGITS = 20, 6
 NO_HELP = ("", "rounded too far", OTHER_NUMBERS)
 # The length of the TeX of an answer up to which a reply typesets it.
 LONGEST_SHOWN = 1_500
-# The message in place of a verdict on a value that is no longer in the notebook.
-OUTDATED = (
-    "The cell that sets `{0}` stopped before its end when it last ran, so `{0}` may still have "
-    "an earlier value. We checked nothing. Fix that cell, run it, and then run this check "
-    "again."
-)
 
 watch()
 
@@ -80,8 +74,8 @@ def check(name: str, answer: object) -> Reply:
     """
     student = identity()
     sealed = find_question(name, student)
-    if names := outdated():
-        return Reply(name, "invalid", "outdated", [OUTDATED.format(names[0])])
+    if messages := outdated():
+        return Reply(name, "invalid", "outdated", messages[:1])
     try:
         plain = to_plain(answer, calls_for(sealed.question), raise_missing=True)
         reply = judge(name, sealed, plain, student)

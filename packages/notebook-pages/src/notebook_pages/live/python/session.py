@@ -296,7 +296,7 @@ class Shell:
         """
         linecache.cache[name] = (len(code), None, code.splitlines(keepends=True), name)
         plain_numpy.begin()
-        self.events.trigger("pre_run_cell", types.SimpleNamespace(raw_cell=code))
+        self.events.trigger("pre_run_cell", types.SimpleNamespace(raw_cell=code, cell_id=name))
         with self.printing():
             try:
                 await self.execute(code, name)
