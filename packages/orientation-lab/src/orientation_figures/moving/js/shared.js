@@ -321,6 +321,17 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
       put(field, 'aria-invalid', String(!valid));
       if (valid) change(value);
     },
+    // Whoever writes half a degree as 0,5 gets it, too.
+    beforeinput(event) {
+      if (event.data !== ',') return;
+      event.preventDefault();
+      document.execCommand('insertText', false, '.');
+    },
+    // What is outside stands for the angle within a turn, or for the nearest number.
+    change() {
+      const value = field.valueAsNumber, whole = max - min === 360;
+      if (value < min || value > max) change(whole ? value - 360 * Math.round(value / 360) : Math.min(Math.max(value, min), max));
+    },
     blur() {
       field.value = field.dataset.value;
       put(field, 'aria-invalid', 'false');
