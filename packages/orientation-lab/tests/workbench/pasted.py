@@ -109,7 +109,7 @@ PASTED = [
         SQUAD,
         "same",
     ),
-    pasted("rbdl/rbdl 107 Eigen", RBDL, EIGEN, "named", "the conjugate"),
+    pasted("rbdl/rbdl 107 Eigen", RBDL, EIGEN, "named", "columns of the matrix"),
     pasted("rbdl/rbdl 107 RBDL", RBDL, OWN, "named", "scalar part stands last"),
     pasted("rbdl/rbdl 107 both", EIGEN, OWN, "named", "scalar part stands last", "the conjugate"),
     pasted(
@@ -136,7 +136,7 @@ PASTED = [
         "  -0.2857143,  0.8571429, -0.4285714 ]",
         "w[ 0.3780]\nx [ 0.3780]\ny [ 0.7559]\nz [ 0.3780]",
         "undecided",
-        "the conjugate",
+        "columns of the matrix",
     ),
     pasted(
         "nv-tlabs/ASE 73",
@@ -163,7 +163,7 @@ PASTED = [
         KORNIA,
         "ans =\n    0.9990    0.0146   -0.0372   -0.0194",
         "named",
-        "the conjugate",
+        "columns of the matrix",
     ),
     pasted("scipy/scipy 17464", EXTRINSIC, "[30, 20, 45] degrees", "undecided", "space fixed"),
     pasted("facebookresearch/pytorch3d 155", AFTER, BEFORE, "unrelated"),
@@ -226,6 +226,6 @@ PASTED = [
         " [ 0.          0.12269009  0.99244503  0.        ]\n"
         " [ 0.          0.          0.          1.        ]]",
         "undecided",
-        "the transpose",
+        "columns of the matrix",
     ),
 ]

@@ -160,11 +160,13 @@ SHARED = (
 
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
-    "matrix": TRANSPOSE,
-    "quaternion": f"{CONJUGATE} (so is a JPL quaternion)",
-    "Euler angles": "the inverse, the orientation the other way round",
-    "rotation vector": "the rotation in the opposite sense",
-    "axis and angle": "the rotation in the opposite sense",
+    "matrix": f"one is {TRANSPOSE}",
+    "one matrix": "the columns of the matrix are the body's axes, as in SciPy, where in this book "
+    "its rows are; or the other numbers are the inverse, as in a JPL quaternion",
+    "quaternion": f"one is {CONJUGATE} (so is a JPL quaternion)",
+    "Euler angles": "one is the inverse, the orientation the other way round",
+    "rotation vector": "one is the rotation in the opposite sense",
+    "axis and angle": "one is the rotation in the opposite sense",
 }
 
 
@@ -385,7 +387,8 @@ def words_of(relation, kinds, swapped=False):
     ``swapped`` says that the second side's numbers are the inverse of what is meant: then the rows
     of its matrix are the world's axes, and body and world change places.
     """
-    said = [f"one is {INVERSE[kinds[1]]}"] if relation.get("said", relation)["inverse"] else []
+    kind = "one matrix" if kinds.count("matrix") == 1 else kinds[1]
+    said = [INVERSE[kind]] if relation.get("said", relation)["inverse"] else []
     if inside := relation.get("inside"):
         return [_words_inside(*inside), *said]
     relation = relation.get("said", relation)

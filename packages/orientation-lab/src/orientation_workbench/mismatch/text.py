@@ -118,7 +118,7 @@ def _rows_of_text(text, name):
     for pattern, words in _PAIRS["cut out"]:
         if pattern.search(text):
             raise ValueError(f"the {name} side is {words}")
-    if columns := _columns(text):
+    if columns := _columns(_decimal_points(text)):
         return columns
     text = _replaced(text, _PAIRS["cleaning"])
     parts = [more for pattern, more in _PAIRS["orders of parts"] if pattern.search(text)]
@@ -245,6 +245,9 @@ def _named_columns(names):
 
 
 def _rows_of_lines(text):
+    # Where one number stands between semicolons, they part columns, as in a spreadsheet's file.
+    if ";" in text and all(len(NUMBER.findall(piece)) < 2 for piece in re.split("[\n;]", text)):
+        text = text.replace(";", " ")
     pieces = re.split(r"[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{", text)
     return [list(map(float, numbers)) for piece in pieces if (numbers := NUMBER.findall(piece))]
 

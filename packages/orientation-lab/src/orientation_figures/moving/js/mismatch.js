@@ -45,7 +45,7 @@ export function readPoses(given, name, table, kind = null, noise = 0) {
 }
 
 function rowsOf(given, name, spelling) {
-  const whole = spelling.whole.find(([pattern]) => pattern.test(given)), columns = columnsOf(given, spelling);
+  const whole = spelling.whole.find(([pattern]) => pattern.test(given)), columns = columnsOf(decimalPoints(given), spelling);
   if (whole) throw new Error(`the ${name} side is ${whole[1]}`);
   if (columns) return columns;
   let text = spelling.cleaning.reduce((cleaned, [pattern, replacement]) => cleaned.replace(pattern, replacement), given);
@@ -117,7 +117,9 @@ function namedColumns(names, spelling) {
 }
 
 function rowsOfLines(text, spelling) {
-  return text.split(/[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/).map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
+  // Where one number stands between semicolons, they part columns, as in a spreadsheet's file.
+  const columns = text.split(/[\n;]/).every((piece) => (piece.match(spelling.number) ?? []).length < 2);
+  return (columns ? text.replaceAll(';', ' ') : text).split(/[\n;]|\]\s*,?\s*\[|\)\s*,?\s*\(|\}\s*,?\s*\{/).map((piece) => (piece.match(spelling.number) ?? []).map(Number)).filter((row) => row.length);
 }
 
 // Names in the place of i, j and k, where quaternions are written as sums.
@@ -706,8 +708,8 @@ function furtherPose(chains, readings, poses, special, table) {
 // ---- the answer ----------------------------------------------------------------------------------------
 
 // The faults; swapped says that the second side gives the inverse of what is meant: then body and world change places.
-function relationWords({ second, relation: whole }, swapped, table, inverse = (whole.said ?? whole).inverse) {
-  const relation = whole.said ?? whole, said = inverse ? [`one is ${table.inverse[second.kind]}`] : [];
+function relationWords({ first, second, relation: whole }, swapped, table, inverse = (whole.said ?? whole).inverse) {
+  const relation = whole.said ?? whole, said = inverse ? [table.inverse[(first.kind === 'matrix') === (second.kind === 'matrix') ? second.kind : 'one matrix']] : [];
   if (whole.inside) return [insideWords(whole.inside), ...said];
   for (const whose of ['body', 'world']) {
     if (relation[`${whose} turn`]) said.push(`a constant rotation on the ${whose}'s side, as if an instrument were mounted askew`);
