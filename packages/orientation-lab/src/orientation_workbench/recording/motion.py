@@ -165,14 +165,14 @@ def stretches(time: Array, rates: Array, seconds: float = 0.5) -> list[Stretch]:
     blocks = rates[: count * size].reshape(count, size, 3)
     spread = np.sqrt(blocks.var(axis=1, ddof=1).mean(axis=1))
     calm = spread < min(QUIET, max(6 * np.percentile(spread, 5), np.radians(0.3)))
-    # A bias may drift: calm blocks are compared with those within ten seconds, and less closely
-    # with all.
+    # A bias may drift: calm blocks are compared with those within ten seconds that are as calm, and
+    # less closely with all. Where it is held, a mean is motion.
     means, places = blocks.mean(axis=1), np.flatnonzero(calm)
     near = round(10 / seconds)
     for k in places:
-        others = means[places[np.abs(places - k) <= near]]
+        alike = places[(np.abs(places - k) <= near) & (spread[places] <= 2 * spread[k])]
         usual = max(3 * spread[k], np.radians(1.0))
-        calm[k] &= np.linalg.norm(means[k] - np.median(others, axis=0)) < usual
+        calm[k] &= np.linalg.norm(means[k] - np.median(means[alike], axis=0)) < usual
         calm[k] &= np.linalg.norm(means[k] - np.median(means[places], axis=0)) < QUIET
     # A stretch ends where it gets restless, and also where it gets much less calm.
     runs: list[list[int]] = []
