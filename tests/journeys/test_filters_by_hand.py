@@ -65,13 +65,13 @@ def test_a_reader_moves_the_steel_and_the_gate(browser, site):
     slider, gate = figure.get_by_role("slider"), figure.get_by_role("combobox")
     slider.focus()
     stage = figure.locator(".stage").first
-    worst = lambda: float(stage.inner_text().partition("the worst ")[2].partition("°")[0])
+    worst = lambda: float(stage.inner_text().partition("the worst is ")[2].partition("°")[0])
     without = worst()
     assert without > 35
     gate.select_option("0.01")
     page.wait_for_function(
         "was => !document.querySelector('.moving[data-figure=gate]')"
-        ".innerText.includes(`the worst ${was}°`)",
+        ".innerText.includes(`the worst is ${was}°`)",
         arg=without,
     )
     strong = worst()
@@ -82,7 +82,7 @@ def test_a_reader_moves_the_steel_and_the_gate(browser, site):
     assert slider.input_value() == "2"
     page.wait_for_function(
         "was => !document.querySelector('.moving[data-figure=gate]')"
-        ".innerText.includes(`the worst ${was}°`)",
+        ".innerText.includes(`the worst is ${was}°`)",
         arg=strong,
     )
     assert worst() > strong  # weak steel passes the gate

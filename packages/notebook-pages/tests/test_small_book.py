@@ -97,7 +97,7 @@ def test_a_number_is_read_as_one_writes_it(built, browser, typed, read):
     page.goto((built / "triangles.html").as_uri())
     box = page.locator("#predict-halves")
     box.locator(".number input").press_sequentially(f"{typed}\n")
-    assert ("number first" in box.get_by_role("status").inner_text()) != read
+    assert ("First type a number" in box.get_by_role("status").inner_text()) != read
     page.close()
 
 

@@ -178,7 +178,7 @@ def test_an_order_that_is_right_in_part_earns_its_share():
     assert share(question, PLANETS)[0] == 10
     points, said = share(question, ["Venus", "Mercury", *PLANETS[2:]])
     # 0.9 beyond one half.
-    assert points == 8 and said[-1] == "9 of 10 pairs stand in the right order."
+    assert points == 8 and said[-1] == "9 of 10 pairs are in the right order."
     assert share(question, PLANETS[::-1])[0] == 0
     alone = make("order", PLANETS, options=sorted(PLANETS), worth=10)
     assert share(alone, ["Venus", "Mercury", *PLANETS[2:]])[0] == 0

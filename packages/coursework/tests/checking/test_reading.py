@@ -239,8 +239,18 @@ OPTIONS = "`-i`, `1`, `+x`, `none`, `- 2 -`, `B`"
         (FUNCTION, returned(FIRST, ["printed", "1"]), "printed", "The function prints its result"),
         (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "In call 1 of 2 the"),
         (FUNCTION, returned(["raised", "E: e"], FIRST), "raised an error", "raised `E: e`."),
-        (FUNCTION, returned(FIRST), "raised an error", "The function did not answer all calls."),
-        (FUNCTION, returned(FIRST, FIRST, FIRST), "raised an error", "did not answer all calls."),
+        (
+            FUNCTION,
+            returned(FIRST),
+            "raised an error",
+            "The function did not return a result for every call.",
+        ),
+        (
+            FUNCTION,
+            returned(FIRST, FIRST, FIRST),
+            "raised an error",
+            "did not return a result for every call.",
+        ),
         (
             FUNCTION,
             returned(FIRST, ["truth", True]),

@@ -173,7 +173,7 @@ def test_a_submission_reaches_neither_the_solutions_nor_its_results(machine):
 @needs_a_machine
 def test_what_cannot_be_graded_is_told_to_the_student(machine):
     assert (
-        "not on the list of this course"
+        "on the list of this course"
         in graded(machine, handed_in(), "stranger@uni.example")["output"]
     )
     results = graded(machine, "{")

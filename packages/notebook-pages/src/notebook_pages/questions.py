@@ -95,7 +95,9 @@ class QuestionDirective(SphinxDirective):
             names = [item[0].astext().strip() for item in items]
             box["tolerance"] = self.options.get("tolerance", 0.0)
             if ANY_OTHER not in names:
-                return self.fault(f"a question for a number needs a last reply, to `{ANY_OTHER}`")
+                return self.fault(
+                    f"a question that asks for a number needs a last reply, for `{ANY_OTHER}`"
+                )
         rights = [self.is_right(box, name) for name in names]
         if sum(rights) != 1:
             return self.fault(

@@ -201,7 +201,7 @@ def assert_convention(
         wrong.append(
             "the inverse, transposed or conjugate"
             if found.inverse
-            else "not the inverse, which was expected"
+            else "the inverse was expected, but this is not the inverse"
         )
     for name, axes, wanted in (("body", found.body, body), ("world", found.world, world)):
         if " ".join(axes) != wanted:

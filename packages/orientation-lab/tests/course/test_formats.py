@@ -101,6 +101,6 @@ def test_two_mistakes_never_have_one_short_name(monkeypatch):
     catalogue._by_short_name.cache_clear()
     numbers = itertools.cycle([b"same"])
     monkeypatch.setattr(catalogue, "short_name", lambda note, details: next(numbers))
-    with pytest.raises(RuntimeError, match="one short name"):
+    with pytest.raises(RuntimeError, match="the same short name"):
         by_short_name(Question("expression"))
     catalogue._by_short_name.cache_clear()

@@ -106,7 +106,7 @@ def test_chain_refuses(attributes, message):
     [
         ({"angle": 360}, "radians, not degrees"),
         ({"angle": -0.5}, "from 0 to 4 pi"),
-        ({"axis": (0, 0, 0)}, "points nowhere"),
+        ({"axis": (0, 0, 0)}, "a zero vector has no direction"),
         ({"first": (0, 100, 0)}, "radians, not degrees"),
         ({"unit_vector": "w"}, "unit_vector"),
         ({"share": 2.0}, "share is 2.0"),

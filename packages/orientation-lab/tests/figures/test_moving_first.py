@@ -56,9 +56,9 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
 
 
 def test_no_challenge_without_turns_and_no_more_turns_than_fit():
-    with pytest.raises(TraitError, match="given is .*: one to three pairs"):
+    with pytest.raises(TraitError, match="given is .*: expected one to three pairs"):
         ChallengeFigure(given=())
-    with pytest.raises(TraitError, match="turns is .*: no to twenty pairs"):
+    with pytest.raises(TraitError, match="turns is .*: expected no to twenty pairs"):
         ChallengeFigure(turns=[("x", 0.1)] * 21)
 
 
@@ -131,7 +131,7 @@ def test_a_tree_has_each_frame_once_and_its_reference_before(edges):
 
 
 def test_the_ends_of_a_path_are_frames_of_the_tree():
-    with pytest.raises(TraitError, match="target is C, and the frames are N, A"):
+    with pytest.raises(TraitError, match="target is C, but the frames are N, A"):
         GraphFigure(edges=TREE[:1], target="C", source="N")
 
 

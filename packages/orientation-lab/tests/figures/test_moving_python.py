@@ -132,7 +132,7 @@ def test_the_pictures_are_what_python_describes():
 
 def test_what_the_page_takes_in_order_is_not_named():
     """JavaScript has no arguments by name: a colour would be an object there, and no colour."""
-    with pytest.raises(ValueError, match="line is given stands in order"):
+    with pytest.raises(ValueError, match="pass the arguments of line by position"):
         javascript.expression(ast.parse("sheet.line(points, colour='N')", mode="eval").body)
 
 

@@ -701,7 +701,7 @@ def _demand_rubric(name: str, rubric: object, worth: float) -> None:
     if earned < worth:
         raise AuthorError(
             f"{name}: the lines of its rubric add up to {earned} of {worth} points, so nobody "
-            "could earn all."
+            "could earn full marks."
         )
 
 

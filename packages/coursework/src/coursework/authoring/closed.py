@@ -114,8 +114,8 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
         fixed = {name: one for name, one in exercises.items() if one.variants == 1}
         lines.append(
             f"{sum(one.worth for one in fixed.values()):g} of "
-            f"{sum(one.worth for one in exercises.values()):g} points in exercise notebooks have "
-            "one answer for everybody."
+            f"{sum(one.worth for one in exercises.values()):g} points in exercise notebooks are "
+            "for questions with one answer for everybody."
         )
         lines += [
             f"  {name} ({one.worth:g}): "

@@ -54,7 +54,7 @@ NEARLY = 3
 # The note of an answer that is right for another variant, here and in the marks, and its message.
 OTHER_NUMBERS = "other numbers"
 FOR_OTHERS = (
-    "This is right for other numbers than yours: the default ones, or another student's. Run "
+    "This is right for numbers other than yours: the default ones, or another student's. Run "
     "the question's cell to see yours in its text."
 )
 # The distance within which this applies if the locker has opened nevertheless, because its cell is

@@ -320,5 +320,5 @@ def _read_function(question: Question, plain: Plain) -> Reading:
                 f"{which} did not return what the question asks for. {fault_of_result.message}",
             ) from None
     if len(numbers) != len(question.calls):
-        raise Fault("raised an error", "The function did not answer all calls.")
+        raise Fault("raised an error", "The function did not return a result for every call.")
     return Reading(numbers)

@@ -281,8 +281,8 @@ def call(node):
     if node.keywords and not (isinstance(node.func, ast.Name) and node.func.id == "zip"):
         if isinstance(node.func, ast.Attribute) and node.func.attr in _IN_ORDER:
             raise ValueError(
-                f"{ast.unparse(node)!r}: what {node.func.attr} is given stands in order, without "
-                "names"
+                f"{ast.unparse(node)!r}: pass the arguments of {node.func.attr} by position, "
+                "not by name"
             )
         arguments.append(entries((keyword.arg, keyword.value) for keyword in node.keywords))
     if isinstance(node.func, ast.Name) and node.func.id in ("min", "max"):

@@ -365,8 +365,8 @@ class _Bench:
                 self.say(
                     "axes of the accelerometer",
                     RED,
-                    "gyroscope and magnetometer agree; along their axes it measures "
-                    f"{written(back)}, or the opposite",
+                    "the gyroscope and magnetometer agree; along their axes the accelerometer "
+                    f"measures {written(back)}, or the opposite",
                     {},
                     f"Use ({written(back)}) of the accelerometer as its x, y, z, or the opposite.",
                 )
@@ -517,9 +517,9 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 RED,
-                f"the {axis} axis needs a scale of its own: with {factor:.3f} {carries} with an "
-                f"error of {np.degrees(left):.1f}°, and with one scale for all axes "
-                f"{np.degrees(fitted.left_alike):.1f}°",
+                f"the {axis} axis needs its own scale, {factor:.3f}: {carries} with an "
+                f"error of {np.degrees(left):.1f}°, but {np.degrees(fitted.left_alike):.1f}° "
+                "with one scale for all axes",
                 {"axis": axis, "scale": round(factor, 4)},
                 f"Multiply {axis} by {factor:.3f}.",
             )
@@ -609,7 +609,7 @@ class _Bench:
                 f". As the temperature goes from {warmth:.0f} to {warmer:.0f} °C, it changes by "
                 f"{np.degrees(slope):.2f} °/s per degree"
             )
-            advice = "subtract a line over the temperature, or let it warm up first."
+            advice = "subtract a straight-line fit against temperature, or let it warm up first."
         self.say(
             "drift of the bias",
             RED,

@@ -217,8 +217,8 @@ def _question(tables: Sequence[Table], chosen: Mapping[str, Group]) -> str:
     rows = [" ".join(f"{value:.6g}" for value in row[:16]) for row in table.values[:3]]
     shown = "\n".join(f"    {row}" for row in [" ".join(table.columns[:16]), *rows])
     trajectory = (
-        "It holds orientations, as a trajectory does. They are computed from a sensor's values, "
-        "and the file has none of those. "
+        "It contains orientations, like a trajectory, but not the sensor's values from which they "
+        "were computed. "
         if "quaternion" in chosen
         else ""
     )
@@ -268,7 +268,7 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
             candidates.append((float(precise + 0.5 * even - counts - 0.01 * k), k))
     if not candidates:
         back = (np.diff(table.values, axis=0) < 0).sum(axis=0)
-        words = "there is no column of time" + "".join(
+        words = "there is no time column" + "".join(
             f": {column} runs backwards {times} times"
             for column, times in zip(table.columns, back, strict=True)
             if re.search(TIME, column.lower()) and times

@@ -373,7 +373,7 @@ class Sandbox:
     def connection(self) -> socket.socket:
         """The way to the warm parent, which is there."""
         if self.control is None:
-            raise WorkerDied("the warm parent is gone")
+            raise WorkerDied("the parent process of the sandbox has exited")
         return self.control
 
     def send(self, message: Mapping[str, object], handles: Sequence[int] = ()) -> None:
@@ -392,7 +392,7 @@ class Sandbox:
         except OSError as error:
             raise WorkerDied(str(error)) from None
         if not data:
-            raise WorkerDied("the warm parent is gone")
+            raise WorkerDied("the parent process of the sandbox has exited")
         message: Message = json.loads(data)
         return message
 

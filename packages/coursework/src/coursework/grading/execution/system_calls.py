@@ -172,7 +172,7 @@ def program(own_number: int, machine: str | None = None) -> bytes:
     """The filter for the process `own_number`, as the kernel's bytes (8 for each instruction)."""
     machine = machine or platform.machine()
     if machine not in MACHINES:
-        raise OSError(errno.ENOSYS, f"the filter of system calls is not written for {machine}")
+        raise OSError(errno.ENOSYS, f"there is no system-call filter for {machine}")
     architecture, column = MACHINES[machine]
     code: list[bytes] = []
 

@@ -197,7 +197,8 @@ def run(home: Path = HOME) -> None:
         )
         if found is None:
             return _say(
-                results, f"You are not on the list of this course ({why}) Ask your instructor."
+                results,
+                f"We cannot find you on the list of this course. {why} Ask your instructor.",
             )
         student = found
     with tempfile.TemporaryDirectory() as out:

@@ -377,9 +377,7 @@ def _mark(name: str, question: Asked, answer: Answer, finished: bool, limited: b
     if reply.outcome == "wrong" and contract.partial and reply.note != OTHER_NUMBERS:
         right, parts, beyond_chance = parts_right(contract, text)
         share = max(share, beyond_chance)
-        pairs = (
-            "pairs stand in the right order" if contract.question.kind == "order" else "are right"
-        )
+        pairs = "pairs are in the right order" if contract.question.kind == "order" else "are right"
         reply.messages.append(f"{right} of {parts} {pairs}.")
     return Mark(
         reply.outcome,

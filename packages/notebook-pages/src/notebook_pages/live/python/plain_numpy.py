@@ -1538,7 +1538,7 @@ def eliminated(rows, right, careful=True):
             determinant = -determinant
         pivot = rows[k][k]
         if careful and 0 < abs(pivot) < 1e-10 * largest_entry:
-            raise ArithmeticError("next to singular: all digits are rounding's")
+            raise ArithmeticError("nearly singular: every digit is rounding error")
         determinant *= pivot
         for i in range(k + 1, n):
             if not pivot:
