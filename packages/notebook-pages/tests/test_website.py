@@ -212,7 +212,7 @@ FAULTS = {
     ),
     "a number has no other": (
         chapter(GOOD_TEXT.replace("anything else", "0.7")),
-        "to `anything else`",
+        "for `anything else`",
     ),
     "an exercise is too hard": (
         chapter(GOOD_TEXT.replace("difficulty: 2", "difficulty: 4")),
