@@ -458,11 +458,22 @@ def test_nine_numbers_leaves_alone_what_is_being_typed(open_figure):
     field.type("-0.25")
     settle(page)
     assert field.input_value() == "-0.25" and field.get_attribute("aria-invalid") == "false"
-    field.fill("99")
-    settle(page)
+
+
+@pytest.mark.parametrize(
+    "kind, label, typed, used",
+    [
+        ("nine_numbers", "row x, column y", "99", "10"),
+        ("simple", "theta in degrees", "270", "-90"),
+        ("simple", "theta in degrees", "", "35"),
+    ],
+)
+def test_after_enter_a_field_shows_what_the_figure_uses(open_figure, kind, label, typed, used):
+    field = open_figure(kind).get_by_label(label)
+    field.fill(typed)
     assert field.get_attribute("aria-invalid") == "true"
-    field.blur()
-    assert field.input_value() != "99"
+    field.press("Enter")
+    assert (field.input_value(), field.get_attribute("aria-invalid")) == (used, "false")
 
 
 # What makes a dragged figure fast is tested here.

@@ -56,9 +56,9 @@ def test_the_turn_that_remains_is_that_of_scipy(seed):
 
 
 def test_no_challenge_without_turns_and_no_more_turns_than_fit():
-    with pytest.raises(TraitError, match="given is .*: expected one to three pairs"):
+    with pytest.raises(TraitError, match="given is .*: expected 1 to 3 pairs"):
         ChallengeFigure(given=())
-    with pytest.raises(TraitError, match="turns is .*: expected no to twenty pairs"):
+    with pytest.raises(TraitError, match="turns is .*: expected at most 20 pairs"):
         ChallengeFigure(turns=[("x", 0.1)] * 21)
 
 

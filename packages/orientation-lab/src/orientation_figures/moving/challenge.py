@@ -27,7 +27,7 @@ class ChallengeFigure(MovingFigure):
     given : tuple of one to three pairs
         The turns of the challenge, each an axis 'x', 'y' or 'z' and an angle in radians: of the
         goal in 'match' and 'ghost', and in 'undo' those that are to be undone.
-    turns : tuple of no to twenty pairs
+    turns : tuple of at most 20 pairs
         The reader's own turns, each about a unit vector of the box (body fixed).
     goal : array_like, shape (3, 3)
         Direction cosine matrix of the goal with respect to N. In 'match' it can be set, which makes

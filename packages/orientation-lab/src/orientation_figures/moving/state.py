@@ -62,9 +62,6 @@ class Direction(Numbers):
         return _unit(vector)
 
 
-COUNTS = {0: "no", 1: "one", 3: "three", 4: "four", 20: "twenty"}
-
-
 class Turns(traitlets.TraitType):
     """A few rotations, each an axis and an angle in radians."""
 
@@ -73,19 +70,17 @@ class Turns(traitlets.TraitType):
         self.fewest, self.most = fewest, most
 
     def validate(self, obj, value):
-        turns = (
-            tuple(tuple(turn) for turn in value)
-            if isinstance(value, (list, tuple))
+        if not (
+            isinstance(value, (list, tuple))
             and self.fewest <= len(value) <= self.most
             and all(isinstance(turn, (list, tuple)) and len(turn) == 2 for turn in value)
-            else None
-        )
-        if turns is None:
+        ):
+            least = f"{self.fewest} to" if self.fewest else "at most"
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: expected {COUNTS[self.fewest]} to {COUNTS[self.most]} "
-                "pairs, each an axis and an angle in radians, such as (('z', 0.7), ('x', 0.5))"
+                f"{self.name} is {value!r}: expected {least} {self.most} pairs, each an "
+                "axis and an angle in radians, such as (('z', 0.7), ('x', 0.5))"
             )
-        return tuple((self._axis(axis), self._angle(angle)) for axis, angle in turns)
+        return tuple((self._axis(axis), self._angle(angle)) for axis, angle in value)
 
     def _axis(self, axis):
         if axis not in ("x", "y", "z"):

@@ -330,12 +330,11 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
     // What is outside stands for the angle within a turn, or for the nearest number.
     change() {
       const value = field.valueAsNumber, whole = max - min === 360;
-      if (value < min || value > max) change(whole ? value - 360 * Math.round(value / 360) : Math.min(Math.max(value, min), max));
+      if (value >= min && value <= max) return;
+      field.value = Number.isNaN(value) ? field.dataset.value : plain(whole ? value - 360 * Math.round(value / 360) : Math.min(Math.max(value, min), max), digits);
+      field.dispatchEvent(new Event('input'));
     },
-    blur() {
-      field.value = field.dataset.value;
-      put(field, 'aria-invalid', 'false');
-    } });
+    blur: () => { field.value = field.dataset.value; } });
   return { element: field, show(value) {
     field.dataset.value = plain(value, digits);
     if (!field.matches(':focus') && field.value !== field.dataset.value) field.value = field.dataset.value;
