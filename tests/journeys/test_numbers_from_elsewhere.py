@@ -207,8 +207,14 @@ def test_a_trajectory_is_taken_for_no_instrument_and_the_answer_to_the_question_
     code, answer = bench(file, "--quick")
     assert code == 3 and "which columns come from which sensor" in answer and "--columns" in answer
     assert "1.3405 0.6266 1.6575" in answer  # the answer shows its first rows
-    code, answer = bench(file, "--quick", "--columns", "time=1 gyroscope=2-6")
-    assert code == 3 and "a vector has three" in answer
+    for columns, words in (
+        ("time=1 gyroscope=2-6", "a vector has three"),
+        ("time=1 gyrscope=2-4", "'gyrscope' is not one of time, gyroscope, accelerometer"),
+        ("time=1 gyroscope=7-9", "does not fit the 8 columns"),
+        ("gyroscope=2,3,4", "write an entry such as gyroscope=2-4"),
+    ):
+        code, answer = bench(file, "--quick", "--columns", columns)
+        assert code == 3 and words in answer
 
 
 def test_of_a_walking_leg_no_axes_are_named_that_are_not_its_own():

@@ -182,9 +182,9 @@ def read_content(
 
 
 #: One entry of what a reader says the columns are.
-_TOLD = re.compile(
-    r"(time|gyroscope|accelerometer|magnetometer|gravity|linear|quaternion|angles)=(\d+)(?:-(\d+))?(?::(\S+))?"
-)
+_TOLD = re.compile(r"(\w+)=(\d+)(?:-(\d+))?(?::(\S+))?")
+#: What an entry can name.
+_NAMED = ("time", *SENSORS, "gravity", "linear", "quaternion", "angles")
 
 
 def _told(table: Table, columns: str) -> Table:
@@ -192,10 +192,12 @@ def _told(table: Table, columns: str) -> Table:
     names = list(table.columns)
     for entry in columns.split():
         told = _TOLD.fullmatch(entry)
+        if told and told[1] not in _NAMED:
+            raise RecordingError(f"{told[1]!r} is not one of {', '.join(_NAMED)}")
         first, last = (int(told[2]), int(told[3] or told[2])) if told else (0, 0)
         if not told or not 1 <= first <= last <= len(names):
             raise RecordingError(
-                f"{entry!r} does not name any of the {len(names)} columns: write an entry such as "
+                f"{entry!r} does not fit the {len(names)} columns: write an entry such as "
                 "gyroscope=2-4 or gyroscope=2-4:rad/s"
             )
         axes = {
