@@ -1,4 +1,4 @@
-"""A user pipes a command into `head`, or runs one that is not installed."""
+"""A user pipes a command into `head`, pipes numbers in, or runs one that is not installed."""
 
 import os
 import shutil
@@ -25,17 +25,29 @@ def run(script, **environment):
 @pytest.mark.parametrize(
     "command",
     [
-        "orientation_workbench.command explain '0.1 0.2 0.3' '0.1 0.2 -0.3'",
+        "orientation_workbench explain '0.1 0.2 0.3' '0.1 0.2 -0.3'",
         "orientation_workbench.command explain --help",
         "coursework grade --help",
     ],
 )
 def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):
-    call = command if command.startswith("coursework") else None
-    module, _, rest = command.partition(" ")
-    program = call and f"-m {call}" or f"-c 'from {module} import main; main()' {rest}"
-    output = run(f'("$PYTHON" {program} | true) 2>&1', PYTHONUNBUFFERED=unbuffered)
+    output = run(f'("$PYTHON" -m {command} | true) 2>&1', PYTHONUNBUFFERED=unbuffered)
     assert output == ""
+
+
+@pytest.mark.parametrize(
+    "numbers, command, words",
+    [
+        ("echo 1 0 0 0", "explain - '1 0 0 0'", "the same orientation"),
+        (
+            "seq -f '%g 1 2 3 4 5 6' 50",
+            "recording --quick -",
+            "which columns come from which sensor",
+        ),
+    ],
+)
+def test_a_dash_stands_for_what_another_command_prints(numbers, command, words):
+    assert words in run(f'{numbers} | "$PYTHON" -m orientation_workbench {command}')
 
 
 def test_a_student_who_asks_for_an_author_s_command_is_told_what_to_install(tmp_path):

@@ -8,6 +8,7 @@ import math
 import re
 import signal
 import sys
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
@@ -61,7 +62,10 @@ def _add_explain(commands):
         epilog="Exit codes: 0 if both agree, 1 if a mix-up is named, 2 if no mix-up fits or the "
         "numbers do not determine the cause, 3 if the input cannot be read.",
     )
-    parser.add_argument("first", help="a file, or the numbers themselves, one pose per line")
+    parser.add_argument(
+        "first",
+        help="a file, - for standard input, or the numbers themselves, one pose per line",
+    )
     parser.add_argument("second", help="the same poses, from the other program")
     parser.add_argument(
         "--json", action="store_true", help="print the answer as JSON, with a format number"
@@ -110,7 +114,8 @@ def _add_recording(commands):
         "files",
         nargs="+",
         metavar="FILE",
-        help="a table of numbers, or a zip or folder of tables; several files must share a clock",
+        help="a table of numbers, - for standard input, or a zip or folder of tables; several "
+        "files must share a clock",
     )
     parser.add_argument("--rate", type=float, help="samples per second, if the file has no times")
     parser.add_argument(
@@ -147,12 +152,11 @@ def _add_recording(commands):
 
 
 def _given(argument):
-    try:
-        path = Path(argument)
-        if path.is_file():
-            return path.read_text(encoding="utf-8")
-    except (OSError, ValueError):
-        pass  # too long for the name of a file: the numbers themselves
+    if argument == "-":
+        return sys.stdin.read()
+    # What is no file, or too long for the name of one, is the numbers themselves.
+    with suppress(OSError, ValueError):
+        return Path(argument).read_text(encoding="utf-8")
     if _NAME_OF_A_FILE.fullmatch(argument):
         raise ValueError(f"no such file: {argument}")
     return argument.replace("\\n", "\n")
@@ -213,10 +217,7 @@ def _explain(chosen):
 
 def as_data(explanation):
     """An explanation as plain data: what ``--json`` prints, in format 1."""
-
-    def line(write):
-        return write(explanation.chains[0]) if explanation.has_line else ""
-
+    mended = explanation.chains[0] if explanation.has_line else None
     return {
         "format": 1,
         "verdict": explanation.verdict,
@@ -231,6 +232,6 @@ def as_data(explanation):
         "further pose": explanation.further_pose,
         "question": explanation.question,
         "descriptions": [name._asdict() for name in explanation.names],
-        "mended by": line(mend.python_line),
-        "formula": line(mend.formula),
+        "mended by": mend.python_line(mended) if mended else "",
+        "formula": mend.formula(mended) if mended else "",
     }

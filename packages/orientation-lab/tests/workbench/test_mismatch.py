@@ -517,6 +517,12 @@ BAD = {
     "no rotation": ("1 0 0\n0 2 0\n0 0 1", "row 2 has length 2"),
     "not at right angles": ("1 0 0\n0.6 0.8 0\n0 0 1", "rows 1 and 2"),
     "no length 1": ("0.5 0.5 0.5 0.9", "neither a quaternion"),
+    "minutes and seconds": (
+        "12\u00b030'15\" 5\u00b010'20\" 3\u00b00'5\"",
+        "degrees, minutes and seconds",
+    ),
+    "minutes with colons": ("12:30:15 5:10:20 3:00:05", "degrees, minutes and seconds"),
+    "minutes without signs": ("12 30 15 5 10 20 3 0 5", "looks like three angles in degrees, min"),
 }
 
 

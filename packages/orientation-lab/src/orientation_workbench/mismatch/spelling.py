@@ -9,6 +9,11 @@ NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 #: What names of angles say: these are turns about z, y and x.
 YAW_PITCH_ROLL = {"sequence": "zyx", "axes of the turns": "body fixed", "places": "123"}
 
+_MINUTES = (
+    "degrees, minutes and seconds. Write each angle as one number: 12\u00b030'15\" is 12.504167 "
+    "degrees, which is 12 + 30/60 + 15/3600"
+)
+
 #: By its name each pattern, or a list of patterns, each with what it stands for or is replaced by.
 SPELLING = {
     # A number as it stands in a text: no part of a name, with a unit
@@ -61,6 +66,19 @@ SPELLING = {
             r"^\s*HIERARCHY\b[\s\S]*^\s*MOTION\b",
             "a whole BVH file. From a line below MOTION, paste only the three angles of one joint, "
             "and give their sequence, which is that of the joint's CHANNELS",
+        ),
+        (
+            r"\d\s*(?:[\u00b0\u00ba\u02da]|d(?:eg(?:rees)?)?\b)\s*[0-5]?\d(?:[.,]\d+)?\s*"
+            r"(?:['\u2032\u2019]|min)"
+            r"|\dd[0-5]?\dm"
+            r"|(?:\b\d{1,3}:[0-5]?\d:[0-5]?\d(?:\.\d+)?[\s,;]+){2}",
+            f"in {_MINUTES}",
+        ),
+        # The same without signs: numbers that are too large for a matrix.
+        (
+            r"^(?=.*\b(?:[2-9]|\d\d+)\b)"
+            r"(?:[ \t]*-?\d{1,3}[ \t]+[0-5]?\d[ \t]+[0-5]?\d(?:\.\d+)?\b[,;]?){3}[ \t]*$",
+            f"no matrix, and looks like three angles in {_MINUTES}",
         ),
     ),
     # In this order: pattern and what takes its place; the first four before tables too.

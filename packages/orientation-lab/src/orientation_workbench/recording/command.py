@@ -27,10 +27,13 @@ def run(chosen: Namespace) -> int:
         )
 
     try:
-        source = chosen.files if len(chosen.files) > 1 else chosen.files[0]
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
-        name = ", ".join(Path(file).name for file in chosen.files)
+        source, name = (
+            (sys.stdin.buffer.read(), "standard input")
+            if chosen.files == ["-"]
+            else (chosen.files, ", ".join(Path(file).name for file in chosen.files))
+        )
         examined = examine(
             source, name, chosen.rate, chosen.columns, not chosen.quick, progress if shown else None
         )

@@ -119,5 +119,8 @@ def as_text(examined: Examined) -> str:
 
 def as_data(examined: Examined) -> dict[str, object]:
     """The report as plain data: what ``--json`` prints, in format 1."""
-    verdicts = [verdict._asdict() for verdict in examined.verdicts]
-    return {"format": 1, "recording": examined.name, "verdicts": verdicts}
+    return {
+        "format": 1,
+        "recording": examined.name,
+        "verdicts": [verdict._asdict() for verdict in examined.verdicts],
+    }
