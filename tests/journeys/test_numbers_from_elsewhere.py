@@ -132,6 +132,14 @@ FILES = {
         f"2 {P} -0.741434 1.01973 3.71354 1 P1180142.JPG\n\n",
         f"{Q}\n{P}",
     ),
+    "a German spreadsheet": (
+        f"w;x;y;z\n{Q.replace(' ', ';')}\n{P.replace(' ', ';')}".replace(".", ","),
+        f"{Q}\n{P}",
+    ),
+    "a German spreadsheet without names": (
+        f"{Q.replace(' ', ';')}\n{P.replace(' ', ';')}".replace(".", ","),
+        f"{Q}\n{P}",
+    ),
     "a joint of URDF": (
         '<joint name="camera_joint" type="fixed">\n  <parent link="base_link"/>\n'
         '  <origin xyz="0.12 -0.03 0.4" rpy="0.1 -0.35 1.57"/>\n</joint>',

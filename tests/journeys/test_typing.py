@@ -38,6 +38,33 @@ def test_every_character_stands_in_a_cell_as_it_was_typed(engine, site, address)
     assert WRITTEN in engine.run(CODE)
 
 
+# The middle of the first field for a number in a figure, once it is in view and alive.
+FIELD = """() => {
+  const field = document.querySelector('.moving input[type=number]');
+  const shown = field || document.querySelector('.moving');
+  shown.scrollIntoView({ block: 'center', behavior: 'instant' });
+  if (!field) return null;
+  const box = field.getBoundingClientRect();
+  return [box.left + box.width / 3, box.top + box.height / 2];
+}"""
+
+
+def test_a_field_takes_a_decimal_comma_and_an_angle_of_more_than_half_a_turn(engine, site):
+    engine.go(site + CELL)
+    # While figures above come alive, the field still moves; a reader clicks again.
+    while engine.run("() => document.activeElement.type") != "number":
+        engine.click(*engine.wait(FIELD))
+    for typed, kind, shown in (
+        ("12,5", "number", "12.5"),
+        ("270\n", "range", "-90"),
+        ("-181\n", "range", "179"),
+    ):
+        engine.run("() => document.activeElement.select()")
+        engine.type(typed)
+        value = f"() => document.querySelector('.moving input[type={kind}]').value"
+        engine.wait(f"() => ({value})() === '{shown}'")
+
+
 @pytest.fixture
 def page(browser):
     context = browser.new_context(viewport={"width": 1300, "height": 900})

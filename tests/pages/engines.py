@@ -18,6 +18,7 @@ import pytest
 from places import BROWSER_REQUIRED
 
 PATIENCE = 600  # seconds, for a busy machine; nothing waits longer than it must
+ENTER = "\ue007"  # as WebDriver writes this key
 
 
 def absent(reason):
@@ -42,7 +43,8 @@ class Engine:
         self.perform({"type": "pointer", "id": "mouse", "actions": [place, *press]})
 
     def type(self, text):
-        strokes = [{"type": kind, "value": key} for key in text for kind in ("keyDown", "keyUp")]
+        keys = text.replace("\n", ENTER)
+        strokes = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
         self.perform({"type": "key", "id": "keyboard", "actions": strokes})
 
     def wait(self, function, *arguments):

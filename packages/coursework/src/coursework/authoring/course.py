@@ -92,7 +92,8 @@ def course_around(start: str | Path) -> Course | None:
 
 def gives_by_name(folder: str | Path) -> bool:
     """Whether the course of a folder gives variants by their names."""
-    return getattr(course_around(folder), "variants", "") == BY_NAME
+    course = course_around(folder)
+    return course is not None and course.variants == BY_NAME
 
 
 def links_of(folder: str | Path) -> dict[str, str]:

@@ -37,6 +37,8 @@ def names_set_by(code: str) -> set[str]:
 
     >>> sorted(names_set_by('a, b = 1, 2\\ndef area(side):\\n    return side**2\\nc =\\na == b'))
     ['a', 'area', 'b', 'c']
+    >>> sorted(names_set_by('import math; angle = math.pi\\n# axis = 2\\nprint(angle, end="")'))
+    ['angle', 'math']
     """
     return {name for sets in SETS.findall(code) for name in re.findall(r"\w+", " ".join(sets))}
 

@@ -53,7 +53,8 @@ class Course:
         only: Collection[str] = (),
     ) -> None:
         folder = self.folder = Path(solutions or find_course().sources)
-        self.edition = getattr(course_around(folder), "edition", "")
+        course = course_around(folder)
+        self.edition = course.edition if course else ""
         self.sources = {path.stem: path for path in sorted(folder.glob("*.ipynb"))}
         if not self.sources:
             raise NothingToGrade(f"There is no notebook with solutions in {folder}.")

@@ -244,13 +244,11 @@ def _names(best, others, ways):
     side whose angles are space fixed; none if all agree.
     """
     names, seen = [], set()
-    group, choices = _of_angles(best)
     near = [
         chain
         for chain in others
         if _dearness(chain) - _dearness(best) <= _limit(chain, best) + 1e-6
-        and _of_angles(chain)[0] == group
-        and len(_of_angles(chain)[1]) == len(choices)
+        and _of_angles(chain)[0] == _of_angles(best)[0]
     ]
     for chain in [best, *near]:
         swaps = table.second_is_inverse(chain.relation, chain.kinds, ways)
@@ -285,11 +283,14 @@ def _both(chain, group):
 def _of_angles(chain):
     """The group in which two triples of Euler angles differ and only a reader can choose, and both
     choices: their sequences, unless one is declared, because the numbers stay the same if the axes
-    of both sides are renamed alike; else which of them is space fixed.
+    of both sides are renamed alike; else which of them is space fixed. Both are empty if there is
+    nothing to choose.
     """
     declared = chain.first["codes"][-1] or chain.second["codes"][-1]
-    sequences = () if declared else _both(chain, "sequence")
-    return ("sequence", sequences) if sequences else (TURNS, _both(chain, TURNS))
+    for group in (TURNS,) if declared else ("sequence", TURNS):
+        if choices := _both(chain, group):
+            return group, choices
+    return "", ()
 
 
 def _limit(chain, best):
@@ -332,9 +333,9 @@ def _name(chain, inverses, faults, by_way, best):
     group, choices = _of_angles(chain)
     for side, chosen in zip(declare, choices):
         side[group] = chosen
-    if choices and group == TURNS:
+    if group == TURNS:
         conditions.append(f"the first side's angles are {choices[0]} and the second's {choices[1]}")
-    elif choices:
+    elif group:
         first, second = ("-".join(letters) for letters in choices)
         conditions.append(f"the first side's sequence is {first}")
         faults = (f"the second side's sequence is {second}",)

@@ -133,7 +133,7 @@ def read_content(
     clocks: list[tuple[str, bool]] = []
     unused: list[str] = []
     remarks: list[str] = []
-    warmth = np.zeros(1), np.zeros(1)
+    warmth: tuple[Array, Array] | None = None
     for table in tables:
         remarks += [
             f"{table.name}: {remark}" if len(tables) > 1 else remark for remark in table.remarks
@@ -144,7 +144,7 @@ def read_content(
         groups += found
         unused += left
         warm = [k for k, name in enumerate(table.columns) if "temp" in name.lower()]
-        if warm and len(warmth[0]) == 1 and np.isfinite(table.values[:, warm[0]]).all():
+        if warm and warmth is None and np.isfinite(table.values[:, warm[0]]).all():
             warmth = time, table.values[:, warm[0]]
     chosen = _roles(groups)
     remarks += [
@@ -177,7 +177,8 @@ def read_content(
         }
     start = min(group.time[0] for group in kinds.values())
     kinds = {kind: group._replace(time=group.time - start) for kind, group in kinds.items()}
-    temperature = warmth[0] / (rate or 1.0 if counted else 1.0) - start, warmth[1]
+    times, values = warmth or (np.zeros(1), np.zeros(1))
+    temperature = times / (rate or 1.0 if counted else 1.0) - start, values
     return Content(kinds, clock, counted and not rate, remarks, unused, temperature)
 
 

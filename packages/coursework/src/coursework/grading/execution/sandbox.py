@@ -386,7 +386,9 @@ class Sandbox:
         waiting = select.poll()
         waiting.register(self.connection, select.POLLIN)
         if not waiting.poll(seconds * 1000):
-            raise WorkerDied(f"the warm parent did not answer for {seconds} seconds")
+            raise WorkerDied(
+                f"the parent process of the sandbox did not answer for {seconds} seconds"
+            )
         try:
             data = self.connection.recv(1 << 20)
         except OSError as error:

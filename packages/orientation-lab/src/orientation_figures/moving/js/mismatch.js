@@ -757,18 +757,17 @@ const bothOf = ({ first, second }, group) => {
   const chosen = [first, second].map(({ choices }) => choices[group]);
   return chosen.every(Boolean) && chosen[0] !== chosen[1] ? chosen : [];
 };
-// The group in which two triples of Euler angles differ and only a reader can choose, and both choices.
+// The group in which two triples of Euler angles differ and only a reader can choose, and both choices; else nothing.
 const ofAngles = (chain, known) => {
-  const sequences = known.some(({ sequence }) => sequence) ? [] : bothOf(chain, 'sequence');
-  return sequences.length ? ['sequence', sequences] : [TURNS, bothOf(chain, TURNS)];
+  const group = (known.some(({ sequence }) => sequence) ? [TURNS] : ['sequence', TURNS]).find((name) => bothOf(chain, name).length);
+  return [group, group ? bothOf(chain, group) : []];
 };
 
 // Descriptions of one relation that differ in axes or turns, none if all agree; and the question that decides.
 function namesOf(best, others, known, ways, table) {
-  const names = [], seen = new Set(), [group, choices] = ofAngles(best, known);
+  const names = [], seen = new Set(), [group] = ofAngles(best, known);
   const usual = others.filter((chain) => [chain.first, chain.second].every(({ choices: { order } }, k) => !order || (known[k].order ? order === known[k].order : order in ORDERS))
-    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6
-    && ofAngles(chain, known)[0] === group && ofAngles(chain, known)[1].length === choices.length);
+    && dearness(chain) <= dearness(best) + limitOf(chain, best) + 1e-6 && ofAngles(chain, known)[0] === group);
   for (const chain of [best, ...usual]) {
     const swaps = secondIsInverse(chain, ways);
     swaps.forEach((swapped, which) => {
@@ -789,11 +788,11 @@ function namesOf(best, others, known, ways, table) {
           : `the ${inverses[0] ? 'first' : 'second'} side gives the world as seen from the body`);
       }
       chosen.forEach((value, k) => { declare[k][group] = value; });
-      const sequences = group === 'sequence' ? chosen.map((letters) => [...letters].join('-')) : [];
-      if (sequences.length) conditions.push(`the first side's sequence is ${sequences[0]}`);
-      else if (chosen.length) conditions.push(`the first side's angles are ${chosen[0]} and the second's ${chosen[1]}`);
+      const [one, other] = chosen.map((value) => (group === TURNS ? value : [...value].join('-')));
+      if (group === TURNS) conditions.push(`the first side's angles are ${one} and the second's ${other}`);
+      else if (group) conditions.push(`the first side's sequence is ${one}`);
       names.push({ condition: conditions.join(' and '), declare,
-        faults: sequences.length ? [`the second side's sequence is ${sequences[1]}`] : wordsOf(chain, table, ways, which) });
+        faults: group === 'sequence' ? [`the second side's sequence is ${other}`] : wordsOf(chain, table, ways, which) });
     });
   }
   if (names.length < 2) return { names: [], question: '' };

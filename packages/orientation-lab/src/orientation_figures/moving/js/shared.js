@@ -321,13 +321,13 @@ export function numberField({ name, step = 0.1, min = -Infinity, max = Infinity,
       put(field, 'aria-invalid', String(!valid));
       if (valid) change(value);
     },
-    // Whoever writes half a degree as 0,5 gets it, too.
+    // A decimal comma is written as a point, because many browsers leave it out without a word.
     beforeinput(event) {
       if (event.data !== ',') return;
       event.preventDefault();
       document.execCommand('insertText', false, '.');
     },
-    // What is outside stands for the angle within a turn, or for the nearest number.
+    // Outside the range, an angle is brought into the turn, and any other number to the nearest end.
     change() {
       const value = field.valueAsNumber, whole = max - min === 360;
       if (value >= min && value <= max) return;

@@ -31,7 +31,7 @@ export function takenUp(content, programs = []) {
   return 'first' in state && !('second' in state) ? { ...state, second: '' } : state;
 }
 
-// What a reader answers is known of these numbers alone.
+// A reader's answers hold for the numbers that were asked about, and not for the next ones.
 const UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
 const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, ...UNANSWERED };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
