@@ -1,5 +1,8 @@
-"""The printed results of the practical cases, against formulas for small errors."""
+"""The printed results of the practical cases, against formulas for small errors, and the stored
+answers of the convention card, which ``python -m tools.programs`` asks for again.
+"""
 
+import ast
 import json
 import re
 
@@ -7,6 +10,7 @@ import numpy as np
 from places import REPOSITORY
 from scipy.spatial.transform import Rotation
 
+from orientation import dcm_from_body_fixed
 from orientation_recordings import bright_stars
 
 
@@ -138,3 +142,27 @@ def test_the_attitude_of_an_aircraft_for_a_robot():
             np.abs(robot.as_euler("ZYX", degrees=True) - numbers(line.partition(":")[2])).max()
             < 1e-6
         )
+
+
+# --- the convention card --------------------------------------------------------------------------
+
+
+def stored():
+    """The table of the card: library, line of code, answer."""
+    notebook = json.loads((REPOSITORY / "chapters" / "convention-card.ipynb").read_text("utf8"))
+    source = next(
+        "".join(cell["source"])
+        for cell in notebook["cells"]
+        if "ASKED = [" in "".join(cell["source"])
+    )
+    assigned = next(node for node in ast.parse(source).body if isinstance(node, ast.Assign))
+    return ast.literal_eval(assigned.value)
+
+
+def test_the_stored_answers_are_of_the_orientation_that_the_card_is_about():
+    D_C_A = dcm_from_body_fixed((0.4, 0.7, -0.3), "zxy")
+    for _, _, answer in stored():
+        if len(answer) == 3:
+            assert np.allclose(np.transpose(answer), D_C_A, atol=6e-5)
+        else:
+            assert sorted(np.round(answer, 4)) == [0, 0, 0.2588, 0.9659]

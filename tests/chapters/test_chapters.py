@@ -11,6 +11,7 @@ import pytest
 from places import REPOSITORY
 
 import orientation_course
+from coursework import check
 from coursework.authoring.source import read_source
 from coursework.checking.kinds import KINDS
 from tools import chapters, new
@@ -210,3 +211,15 @@ def test_docstrings_name_equations_of_the_book():
         len(EQUATIONS) >= 20
         and [label for label in EQUATIONS if f"$$ ({label})" not in texts] == []
     )
+
+
+def test_the_page_quotes_the_reply_to_the_numbers_as_they_stand(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = nbformat.read(REPOSITORY / "appendix" / "with-a-language-model.ipynb", as_version=4)
+    (quoted,) = [
+        line.removeprefix("> ")
+        for cell in page.cells
+        for line in cell.source.splitlines()
+        if line.startswith("> ")
+    ]
+    assert quoted in str(check("chapters/scalar-last", [0, 0, 0.3827, 0.9239]))

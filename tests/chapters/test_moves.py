@@ -1,6 +1,9 @@
-"""How far numbers may move on another processor, and that no cell prints mere rounding."""
+"""How notebooks are stored: run in order, by numbers that other processors repeat, without mere
+rounding.
+"""
 
 import re
+from textwrap import dedent
 
 import nbformat
 import pytest
@@ -8,7 +11,7 @@ from places import REPOSITORY
 from stored_outputs import compare_outputs
 
 from notebook_pages.moves import FREE, moves
-from notebook_pages.notebooks import all_notebooks
+from notebook_pages.notebooks import all_notebooks, normalise
 
 NOTEBOOKS = [*all_notebooks(REPOSITORY), *sorted(REPOSITORY.glob("exercises/*.ipynb"))]
 
@@ -115,3 +118,13 @@ def test_no_cell_prints_rounding(path):
             assert bound or not 0 < abs(float(number_in_text[0])) < 1e-12, (
                 f"cell {number} prints {number_in_text[0]}: {text}"
             )
+
+
+@pytest.mark.parametrize("path", all_notebooks(REPOSITORY), ids=lambda path: path.stem)
+def test_notebook_is_stored_as_make_notebooks_stores_it(path):
+    """Every cell was run in order, with normal metadata; otherwise nbval would compare nothing."""
+    notebook = nbformat.read(path, as_version=4)
+    counts = [cell.execution_count for cell in notebook.cells if cell.cell_type == "code"]
+    assert counts == list(range(1, len(counts) + 1)), "run `make notebooks`"
+    stored = dedent(path.read_text("utf8"))
+    assert nbformat.writes(normalise(notebook)) == stored.rstrip("\n"), "run `make notebooks`"

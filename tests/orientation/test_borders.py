@@ -5,16 +5,14 @@ Frames.reference_frames.)
 import numpy as np
 import pytest
 import sympy as sm
-from orientations import random_dcms, random_unit_vectors, rotation_error
+from orientations import random_dcms, rotation_error
 from scipy.spatial.transform import Rotation
 
 import orientation
 from orientation import (
     SEQUENCES,
     SymbolsNotPossible,
-    dcm_from_axis_angle,
     dcm_from_body_fixed,
-    dcm_from_quaternion,
     dcm_from_scipy_rotation,
     dcm_from_space_fixed,
     scipy_rotation_from_dcm,
@@ -38,35 +36,6 @@ def test_euler_angles_keep_their_meaning_across_the_border(sequence):
     )
     there = scipy_rotation_from_dcm(dcm_from_body_fixed(angles, sequence))
     assert (there * body.inv()).magnitude().max() < 1e-14
-
-
-def test_axis_and_angle_and_quaternions_keep_their_meaning_across_the_border():
-    axes, quaternions = random_unit_vectors(100, 2), random_unit_vectors(100, 3, size=4)
-    assert (
-        rotation_error(
-            dcm_from_scipy_rotation(Rotation.from_rotvec(0.7 * axes)),
-            dcm_from_axis_angle(axes, 0.7),
-        )
-        < 1e-14
-    )
-    assert (
-        rotation_error(
-            dcm_from_scipy_rotation(Rotation.from_quat(quaternions, scalar_first=True)),
-            dcm_from_quaternion(quaternions),
-        )
-        < 1e-14
-    )
-
-
-def test_rotation_turns_components_along_a_into_components_along_n():
-    A_C_N = simple_dcm("z", 0.3)
-    v_A = np.array((1.0, 2.0, 3.0))
-    v_N = scipy_rotation_from_dcm(A_C_N).apply(v_A)
-    np.testing.assert_allclose(A_C_N @ v_N, v_A, atol=1e-15)
-    # A's x axis, measured along N, is the first row.
-    np.testing.assert_allclose(
-        scipy_rotation_from_dcm(A_C_N).apply((1, 0, 0)), A_C_N[0], atol=1e-15
-    )
 
 
 @pytest.mark.parametrize("shape", [(), (1,), (7,), (0,), (2, 3), (2, 1, 3)])
@@ -95,16 +64,6 @@ def test_exact_numbers_cross():
     np.testing.assert_allclose(
         scipy_rotation_from_dcm(simple_dcm("z", sm.pi / 6)).as_rotvec(), (0, 0, np.pi / 6)
     )
-
-
-def test_what_the_reference_tells_users_of_scipy():
-    r, s = Rotation.random(rng=1), Rotation.random(rng=2)
-    A_C_N, B_C_A = orientation.dcm_from_scipy_rotation(r), orientation.dcm_from_scipy_rotation(s)
-    v = np.array([1.0, 2.0, 3.0])
-    np.testing.assert_allclose(r.apply(v), A_C_N.T @ v, atol=1e-14)
-    np.testing.assert_allclose(orientation.dcm_from_scipy_rotation(r.inv()), A_C_N.T, atol=1e-14)
-    both = orientation.dcm_from_scipy_rotation(r * s)
-    np.testing.assert_allclose(both, B_C_A @ A_C_N, atol=1e-14)
 
 
 def test_frames_are_oriented_by_a_scipy_rotation():

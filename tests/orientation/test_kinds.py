@@ -351,11 +351,6 @@ def test_every_way_to_hold_symbols():
         check_dcm(form)
 
 
-def test_functions_of_time():
-    angles = me.dynamicsymbols("psi, theta, varphi")
-    assert (dcm_from_body_fixed(angles, "zxy") - composed(angles, "zxy")).expand() == sm.zeros(3)
-
-
 def test_symbols_among_numbers():
     expected = composed((psi, 0.5, 2), "zxy")
     for form in (
@@ -676,11 +671,6 @@ def test_components_in_separate_arrays_are_not_guessed_at():
     with pytest.raises(ValueError, match="a sequence of 4 arrays"):
         dcm_from_quaternion(list(QUATERNIONS.T))
     assert dcm_from_body_fixed(list(ANGLES), "zxy").shape == (COUNT, 3, 3)
-
-
-def test_degrees_are_not_guessed_at():
-    check_dcm(dcm_from_body_fixed((90, 45, 30), "zxy"))
-    np.testing.assert_allclose(simple_dcm("z", 90)[0, 0], np.cos(90.0))
 
 
 # --- what the package loads -----------------------------------------------------------------------

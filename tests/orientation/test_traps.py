@@ -73,12 +73,6 @@ def test_orient_dcm_takes_a_reflection():
         check_dcm(A.dcm(N))
 
 
-def test_orient_dcm_takes_any_nine_numbers():
-    N, A = frames_of_sympy("NA")
-    A.orient_dcm(N, sm.ones(3))
-    assert A.dcm(N) == sm.ones(3)
-
-
 def test_a_quaternion_that_is_not_of_unit_length_gives_no_direction_cosines():
     N, A = frames_of_sympy("NA")
     A.orient_quaternion(N, (1, 1, 0, 0))

@@ -377,18 +377,6 @@ def test_lock_names_what_is_there(file):
         assert all(needed in lock["packages"] for needed in package["depends"])
 
 
-def test_versions_are_those_of_the_book():
-    constraints = (REPOSITORY / "constraints.txt").read_text("utf8").splitlines()
-    lines = (
-        (REPOSITORY / "packages/notebook-pages/src/notebook_pages/live/wheels.txt")
-        .read_text("utf8")
-        .splitlines()
-    )
-    pins = [line.split()[0] for line in lines if not line.startswith("#")]
-    assert {pin.split("==")[0] for pin in pins} == {"sympy", "mpmath"}
-    assert set(pins) <= set(constraints)
-
-
 # --- NumPy and Matplotlib: official, a folder, off ------------------------------------------------
 
 

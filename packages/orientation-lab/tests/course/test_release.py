@@ -1,7 +1,6 @@
 """From the notebooks with solutions to what students receive: nothing more, and always the same."""
 
 import base64
-import io
 import json
 import os
 import random
@@ -10,25 +9,21 @@ import shlex
 import shutil
 import subprocess
 import sys
-import venv
 import zipfile
 from datetime import UTC, datetime
 from pathlib import Path
 
 import nbformat
-import numpy as np
 import pytest
 from seed import SEED
 from trial_course import SETUP, SOLUTION, made_in, write_source
 
-from coursework.__main__ import main as command
-from coursework.authoring import author, release
+from coursework.authoring import release
 from coursework.authoring.author import AuthorError
 from coursework.authoring.course import find_course
-from coursework.authoring.packing import archive, write_zip
+from coursework.authoring.packing import archive
 from coursework.authoring.selftest import found_in, released_texts, secrets_of
 from coursework.checking import sealing
-from coursework.checking.update import MANIFEST, ArchiveRefused, manifest, update
 from notebook_pages import packing
 
 COURSE = find_course(Path(__file__).parent)
@@ -103,51 +98,6 @@ def test_a_release_is_the_same_each_time(trial, tmp_path):
     release.release(made_in(tmp_path, sources=trial / "sources"), run=False)
     assert release.differences(trial / "exercises", tmp_path / "exercises", "*") == []
     assert release.differences(trial / "sealed", tmp_path / "sealed", "*") == []
-
-
-@pytest.mark.sampled(2)
-@pytest.mark.parametrize(
-    "about",
-    [
-        {},
-        {"tolerance": 1e-6},
-        {"tolerance": 1e-6, "relative": 0.01},
-        {"tolerance": 5, "relative": 0.001},
-    ],
-)
-def test_what_is_sealed_does_not_follow_from_the_last_bits(about):
-    """The same on every processor: of numbers of all sizes, of simple
-    fractions, and of what should be zero.
-    """
-    random = np.random.default_rng(7)
-    sizes = 10.0 ** random.uniform(-3, 5, 12)
-    for right in (
-        *random.normal(size=12) * sizes,
-        0.5,
-        -1 / 3,
-        1 / 4096,
-        0.00012345,
-        1000,
-        np.pi / 4,
-        12345.678905,
-    ):
-        sealed = [
-            author.question("trial/one", "vector", [right * (1 + noise), noise, 7], **about)
-            for noise in (0, 3e-16, -3e-16, 2e-15)
-        ]
-        sealed_forms = [
-            [
-                form.public.as_json(),
-                {
-                    text: [known.as_json() for known in e.answers]
-                    for text, e in form.entries.items()
-                },
-            ]
-            for form in sealed
-        ]
-        assert len({json.dumps(form, sort_keys=True) for form in sealed_forms}) == 1, right
-        for known in (known for entry in sealed[0].entries.values() for known in entry.answers):
-            assert all(len(number.strip("-")) < 17 for number in known.numbers)
 
 
 def test_a_planted_secret_is_found(trial, tmp_path):
@@ -298,89 +248,10 @@ def test_the_archive_is_the_same_each_time_and_installs_what_it_says(tmp_path):
     assert {path.name for path in COURSE.exercises.glob("*.ipynb")} < names
 
 
-def handed_out(target, **notebooks):
-    """An archive of notebooks, each with one cell of code, as the release makes it."""
-    files = {"README.txt": b"Begin here."}
-    for name, text in notebooks.items():
-        cell = nbformat.v4.new_code_cell(text, id="one")
-        files[f"{name}.ipynb"] = nbformat.writes(nbformat.v4.new_notebook(cells=[cell])).encode()
-    files[MANIFEST] = manifest(files).encode()
-    return write_zip(target, {f"exercises/{name}": content for name, content in files.items()})
-
-
 def unpacked(archive_file, folder):
     with zipfile.ZipFile(archive_file) as box:
         box.extractall(folder)
     return folder / "exercises"
-
-
-def code_in(folder):
-    paths = sorted(folder.glob("*.ipynb"))
-    return {path.stem: nbformat.read(path, as_version=4).cells[0].source for path in paths}
-
-
-def changed(path, code, outputs=()):
-    """A notebook as somebody leaves it: with other code, or only run."""
-    notebook = nbformat.read(path, as_version=4)
-    notebook.cells[0].source = code
-    notebook.cells[0].outputs = list(outputs)
-    notebook.cells[0].execution_count = 7
-    nbformat.write(notebook, path)
-
-
-def test_an_update_never_writes_over_what_a_student_wrote(tmp_path):
-    """Nor does it ask anybody to look at what nobody has changed."""
-    work = unpacked(handed_out(tmp_path / "one.zip", a="a", b="b", c="c", d="d"), tmp_path)
-    changed(work / "a.ipynb", "my answer")
-    changed(work / "b.ipynb", "b", [nbformat.v4.new_output("stream", text="Not attempted")])
-    changed(work / "d.ipynb", "my answer")
-    two = handed_out(
-        tmp_path / "two.zip", a="a, mended", b="b, mended", c="c, mended", d="d", e="e"
-    )
-    report = "\n".join(update(two, work))
-    there = {
-        "a": "my answer", "a-new-1": "a, mended", "b": "b, mended", "c": "c, mended",
-        "d": "my answer", "e": "e",
-    }  # fmt: skip
-    assert code_in(work) == there
-    assert (
-        "kept yours  a.ipynb, and put the new one in a-new-1.ipynb" in report
-        and "replaced    c.ipynb" in report
-    )
-    update(two, work)
-    assert code_in(work) == there
-    # What was put beside is replaced, too, as long as nobody has written into it.
-    update(
-        handed_out(tmp_path / "three.zip", a="a, mended twice", b="b", c="c", d="d", e="e"), work
-    )
-    assert code_in(work) == there | {"a-new-1": "a, mended twice", "b": "b", "c": "c"}
-    changed(work / "a-new-1.ipynb", "my second answer")
-    update(handed_out(tmp_path / "four.zip", a="a, mended thrice"), work)
-    assert code_in(work) == there | {
-        "a-new-1": "my second answer", "a-new-2": "a, mended thrice", "b": "b", "c": "c",
-    }  # fmt: skip
-
-
-def test_without_a_manifest_everything_is_the_student_s(tmp_path):
-    """As in a folder that was unpacked before there were manifests,
-    or where somebody has spoilt it.
-    """
-    for number, spoilt in enumerate((None, "", "[]", "{}", '{"format": 1, "files": 3}')):
-        work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path / str(number))
-        (work / MANIFEST).unlink() if spoilt is None else (work / MANIFEST).write_text(spoilt)
-        update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
-        assert code_in(work) == {"a": "a", "a-new-1": "a, mended"}
-        update(handed_out(tmp_path / "three.zip", a="a, mended twice"), work)
-        assert code_in(work) == {"a": "a", "a-new-1": "a, mended twice"}
-
-
-def test_a_manifest_of_a_newer_format_is_refused_in_words(tmp_path):
-    work = unpacked(handed_out(tmp_path / "one.zip", a="a"), tmp_path)
-    (work / MANIFEST).write_text('{"format": 2, "files": {}}')
-    before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(ArchiveRefused, match="has format 2.*reads 1.*We changed nothing"):
-        update(handed_out(tmp_path / "two.zip", a="a, mended"), work)
-    assert {path: path.read_bytes() for path in work.iterdir()} == before
 
 
 def fake_wheel(folder, version, digest, package="sealed_trial"):
@@ -401,96 +272,6 @@ def fake_wheel(folder, version, digest, package="sealed_trial"):
             f"{package}.py,,\n{about}/METADATA,,\n{about}/WHEEL,,\n{about}/RECORD,,\n",
         )
     return folder / name
-
-
-def test_an_update_brings_the_new_package_and_says_how_to_install_it(tmp_path, monkeypatch):
-    """Followed to the letter, in an environment of its own: pip takes the new
-    questions and nobody's work is lost.
-    """
-    python = tmp_path / "venv" / "bin" / "python"
-    venv.create(tmp_path / "venv", symlinks=True)
-    work = tmp_path / "my work"
-    work.mkdir()
-
-    def pack(version, notebook):
-        wheel = fake_wheel(tmp_path, version, f"sealed in {version}")
-        with zipfile.ZipFile(tmp_path / f"{version}.zip", "w") as box:
-            box.write(wheel, f"exercises/{wheel.name}")
-            box.writestr("exercises/requirements.txt", f"./{wheel.name}\njupyterlab\n")
-            box.writestr("exercises/a.ipynb", notebook)
-        return tmp_path / f"{version}.zip"
-
-    def install(report):
-        (line,) = [
-            line.strip() for line in "\n".join(report).splitlines() if " -m pip install " in line
-        ]
-        arguments = shlex.split(line)[3:]
-        pip = [
-            sys.executable,
-            "-m",
-            "pip",
-            "--python",
-            python,
-            *arguments,
-            "--quiet",
-            "--no-deps",
-            "--no-index",
-        ]
-        subprocess.run([*pip, "--disable-pip-version-check"], check=True, cwd=tmp_path)
-        return subprocess.check_output(
-            [python, "-c", "import sealed_trial; print(sealed_trial.DIGEST)"], text=True
-        )
-
-    old, new = pack("1.1.0.dev20261122093000", "first"), pack("1.1.0.dev20261201080000", "second")
-    assert install(update(old, work)) == "sealed in 1.1.0.dev20261122093000\n"
-    (work / "a.ipynb").write_text("my answer")
-    (work / "requirements.txt").write_text((work / "requirements.txt").read_text() + "pandas\n")
-    report = update(new, work)
-    assert install(report) == "sealed in 1.1.0.dev20261201080000\n"
-    assert {path.name for path in work.iterdir()} == {
-        "sealed_trial-1.1.0.dev20261201080000-py3-none-any.whl", "requirements.txt", "a.ipynb",
-        "a-new-1.ipynb", MANIFEST,
-    }  # fmt: skip
-    assert (work / "a.ipynb").read_text() == "my answer"
-    assert (work / "requirements.txt").read_text().splitlines() == [
-        "./sealed_trial-1.1.0.dev20261201080000-py3-none-any.whl", "jupyterlab", "pandas",
-    ]  # fmt: skip
-    # Nothing new: nothing to install. An older archive: refused before anything is written.
-    # Not in the Python that runs this.
-    assert any("pip install" in line for line in update(new, work))
-    monkeypatch.setattr(
-        "coursework.checking.update.version", lambda name: "1.1.0.dev20261201080000"
-    )
-    assert not any("pip install" in line for line in update(new, work))
-    before = {path: path.read_bytes() for path in work.iterdir()}
-    with pytest.raises(ArchiveRefused, match="dev20261122093000.*dev20261201080000"):
-        update(old, work)
-    assert {path: path.read_bytes() for path in work.iterdir()} == before
-
-
-def test_what_is_no_archive_of_exercises_is_refused(tmp_path):
-    """A download that broke off, a page that was saved in its place, another archive, none."""
-    whole = io.BytesIO()
-    with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as box:
-        box.writestr("exercises/a.ipynb", "an exercise " * 1000)
-    damaged = bytearray(whole.getvalue())
-    damaged[60] ^= 255
-    photos = io.BytesIO()
-    with zipfile.ZipFile(photos, "w") as box:
-        box.writestr("beach.jpg", "sand")
-    data = {"page": b"<html>", "cut": whole.getvalue()[:-30], "damaged": damaged, "empty": b""}
-    data["photos"] = photos.getvalue()
-    work = tmp_path / "work"
-    work.mkdir()
-    for name in (*data, "absent"):
-        if name in data:
-            (tmp_path / f"{name}.zip").write_bytes(data[name])
-        with pytest.raises(SystemExit) as refusal:
-            command(["update", str(tmp_path / f"{name}.zip"), "--folder", str(work)])
-        assert str(refusal.value).startswith("coursework update:") and f"{name}.zip" in str(
-            refusal.value
-        )
-        assert "Errno" not in str(refusal.value) and list(work.iterdir()) == []
 
 
 def in_bash(text, prompt):
