@@ -132,7 +132,7 @@ def place_of(path, number):
 
 def in_words(place, number_moves):
     if number_moves is None:
-        return [(place, "other outputs than stored", math.inf)]
+        return [(place, "outputs that differ from the stored ones", math.inf)]
     # Releases are compared byte by byte.
     exact = place.startswith(STORED)
     return [(place, str(move), math.inf if exact else move.share) for move in number_moves]

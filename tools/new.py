@@ -155,8 +155,8 @@ def chapter_cells(name, title):
             "from orientation import simple_dcm\n"
             "from orientation_figures.drawing import Drawing\n"
             "\n"
-            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for who does not see "
-            "it.')\n"
+            f"drawing = Drawing('{TO_BE_WRITTEN}: the picture in words, for readers who "
+            "cannot see it.')\n"
             "drawing.triad('N', np.eye(3)).triad('A', simple_dcm('z', np.radians(30)))",
             tags=["hide-input"],
             mystnb={
@@ -225,7 +225,7 @@ def add_line(path, after, line):
 ASKED_ALOUD = (
     f"\n### {{number}}. {TO_BE_WRITTEN}\n\n{TO_BE_WRITTEN}: a question that takes a minute, "
     f"without a formula.\n\n**A good answer**: {TO_BE_WRITTEN}: what it contains.\n\n"
-    + f'- **"{TO_BE_WRITTEN}: a usual wrong answer."** The idea that is missing.\n'
+    + f'- **"{TO_BE_WRITTEN}: a common wrong answer."** The idea that is missing.\n'
     * 3
 )
 

@@ -217,9 +217,9 @@ def diagnose(
     >>> angles = sm.symbols('psi, theta, varphi')
     >>> expected = dcm_from_body_fixed(angles, 'zxy')
     >>> print(diagnose(expected.T, expected))
-    Not the same orientation: it is the transpose, the orientation the other way round.
+    Not the same orientation: it is the transpose, which is the inverse orientation.
     >>> diagnose(dcm_from_space_fixed(angles, 'zxy'), expected).causes
-    ('the matrices are multiplied in the other order, which is space fixed',)
+    ('the matrices are multiplied in reverse order, which gives space fixed rotations',)
     """
     answer, truth = _read_both(given, expected, "given", "expected")
     if not (_is_one(answer) and _is_one(truth)):
@@ -293,7 +293,7 @@ def _substitutions(
         yield f"{name} has the wrong sign", with_changes(lambda p: {name: -p[name]})
     for first, second in itertools.combinations(own, 2):
         yield (
-            f"{first} and {second} have changed places",
+            f"{first} and {second} are swapped",
             with_changes(lambda p: {first: p[second], second: p[first]}),
         )
     for group in dict.fromkeys([tuple(own), *((name,) for name in own)]):
@@ -343,7 +343,7 @@ def _sequence_mixups(
         return
     back = [angles[::-1] for angles in values]
     yield (
-        "the matrices are multiplied in the other order, which is space fixed",
+        "the matrices are multiplied in reverse order, which gives space fixed rotations",
         _body_fixed(back, sequence[::-1]),
     )
     if not given and 0 in values[0]:
@@ -397,12 +397,12 @@ def _quaternion_mixups(truths: Answers) -> Iterator[Mixup]:
         return [rule(*entries) for entries in truths]
 
     yield (
-        f"{SCALAR_LAST}; in this book it stands first",
+        f"{SCALAR_LAST}; in this book it comes first",
         rearranged(lambda a, b, c, d: [b, c, d, a]),
     )
     yield (f"it is {CONJUGATE}", rearranged(lambda a, b, c, d: [a, -b, -c, -d]))
     yield (
-        f"it is the conjugate, and {SCALAR_LAST}; in this book it stands first",
+        f"it is the conjugate, and {SCALAR_LAST}; in this book it comes first",
         rearranged(lambda a, b, c, d: [-b, -c, -d, a]),
     )
     yield (

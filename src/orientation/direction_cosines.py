@@ -206,7 +206,7 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
         raise ValueError(
             f"{name}{where} is orthogonal but left-handed: its determinant is {determinant:.6g}, "
             "not +1. "
-            "One row or column has the wrong sign, or two have changed places"
+            "One row or column has the wrong sign, or two are swapped"
         )
     if p == q:
         fault = f"row {p} has length {products[p, q] ** 0.5:.12g}, not 1"
@@ -223,8 +223,8 @@ def explain_dcm(entries: Sequence[float], where: str, name: str = "dcm") -> None
         cause = "Every entry is zero"
     elif scaled:
         cause = (
-            f"The whole matrix is {max(squares) ** 0.5:.8g} times an orthogonal one, as from a "
-            f"quaternion that is not of unit length"
+            f"The whole matrix is {max(squares) ** 0.5:.8g} times an orthogonal one, as if "
+            f"from a quaternion that does not have unit length"
         )
     elif abs(worst) < 0.1:
         cause = "Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix"

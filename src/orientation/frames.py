@@ -277,7 +277,7 @@ class Frames:
         raise ValueError(
             f"{frame} and {reference} are already connected, by {self.path(frame, reference)}: a "
             "second path could contradict the first. "
-            "To change an orientation, build the frames anew"
+            "To change an orientation, build the frames again"
         )
 
     def _walk(self, target: str, source: str) -> tuple[_Edge, ...] | None:

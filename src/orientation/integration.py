@@ -76,7 +76,8 @@ def turns_from_angular_velocity(
     times = number_array(times, (), "times")
     if times.ndim != 1 or len(times) < 2:
         raise ValueError(
-            f"times must have shape (n + 1,), the ends of one interval or more, not {times.shape}"
+            "times must have shape (n + 1,), the boundaries of one or more intervals, not "
+            f"{times.shape}"
         )
     starts, steps = times[:-1], numpy.diff(times)[:, None]
 

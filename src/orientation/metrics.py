@@ -190,8 +190,8 @@ def _mean_by_angle(dcms: Array, weights: Array, average: Array) -> Array:
     apart = max(angle_between(best[0], guess) for guess in best)
     if apart > 1e-6:
         raise ValueError(
-            "these orientations have no unique mean by angle: among those that are equally good, "
-            f"two are {numpy.degrees(apart):.4g} degrees apart. "
+            "these orientations have no unique mean by angle: two equally "
+            f"good means are {numpy.degrees(apart):.4g} degrees apart. "
             "They are spread too evenly"
         )
     return best[0]

@@ -1,8 +1,8 @@
 """The names of mix-ups, for :func:`~orientation.diagnose` and comparisons of programs."""
 
-TRANSPOSE = "the transpose, the orientation the other way round"
-CONJUGATE = "the conjugate, the orientation the other way round"
-SCALAR_LAST = "the scalar part stands last"
+TRANSPOSE = "the transpose, which is the inverse orientation"
+CONJUGATE = "the conjugate, which is the inverse orientation"
+SCALAR_LAST = "the scalar part comes last"
 REVERSED = "the angles are in reverse order"
 
 

@@ -538,8 +538,8 @@ def _floats(value: object, name: str) -> object:
         return float(value)  # type: ignore[arg-type]  # whether it is one is what is asked
     except TypeError:
         raise SymbolsNotPossible(
-            f"{name} holds {value}, and this conversion needs numbers, since its branch depends "
-            "on their sizes and signs. First substitute numbers, with .subs(...)"
+            f"{name} holds {value}, and this conversion needs numbers, since it chooses "
+            "its formula by their sizes and signs. First substitute numbers, with .subs(...)"
         ) from None
 
 

@@ -16,7 +16,7 @@ from .numbers_and_symbols import number_array
 if TYPE_CHECKING:
     from ._types import Array, Numbers, Values
 
-#: Two directions count as one if the sine of their angle is below this.
+#: Two directions count as one if the sine of the angle between them is below this.
 PARALLEL = 1e-6
 #: A singular value below this fraction of the largest is rounding.
 ROUNDING = 1e-13
@@ -79,9 +79,9 @@ def _triad(pair: Array, name: str) -> Array:
     sine = numpy.linalg.norm(across, axis=-1, keepdims=True)
     if not numpy.all(sine > PARALLEL):
         raise ValueError(
-            f"the two {name} directions are parallel or opposite (the sine of their angle is "
-            f"{sine.min():.1e}), so they do not determine the rotation around them. Take a second "
-            "direction well away from the first."
+            f"the two {name} directions are parallel or opposite (the sine of the angle between "
+            f"them is {sine.min():.1e}), so they do not determine the rotation around them. Take "
+            "a second direction well away from the first."
         )
     across = across / sine
     return numpy.stack([first, across, numpy.cross(first, across)], axis=-2)

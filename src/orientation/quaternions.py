@@ -41,12 +41,13 @@ def _explain_length(components: Sequence[float], where: str, name: str = "quater
         )
     elif abs(length - 1) < 0.05:
         cause = (
-            "were its components rounded, or integrated without restoring the length? Divide by it"
+            "were its components rounded, or integrated without restoring the length? Then divide "
+            "by it"
         )
     else:
         cause = (
-            "is the angle halved in the cosine and in the sine, and the axis a unit vector? "
-            "Divide by the length only if you know where it comes from"
+            "is the angle halved in both the cosine and the sine, and is the axis a "
+            "unit vector? Divide by the length only if you know why it is not 1"
         )
     raise ValueError(f"{name}{where} has length {length:.12g}, not 1: {cause}")
 
@@ -313,8 +314,8 @@ def interpolate_quaternions(first: Values, second: Values, share: Values) -> Arr
             if _length_excess(NUMBERS, *part) > TOLERANCE:
                 _explain_length(part, where, name)
         raise ValueError(
-            f"the orientations{where} are half a turn apart, so both ways round are equally long "
-            "and neither is shorter. Interpolate through a third orientation"
+            f"the orientations{where} are half a turn apart, so the two ways "
+            "round are equally long. Interpolate through a third orientation"
         )
 
     def formula(

@@ -110,9 +110,9 @@ def rodrigues_from_dcm(dcm: Values) -> Array:
         if dcm_excess(NUMBERS, *entries) > TOLERANCE:
             explain_dcm(entries, where)
         raise ValueError(
-            f"dcm{where} is half a turn, where the Rodrigues parameters, tangents of half the "
-            "angle, are infinite. Use modified Rodrigues parameters, a quaternion or a rotation "
-            "vector"
+            f"dcm{where} is a rotation through half a turn, where the Rodrigues parameters, which "
+            "contain the tangent of half the angle, are infinite. Use modified Rodrigues "
+            "parameters, a quaternion or a rotation vector"
         )
 
     def formula(f: NumberFunctions[Number], *entries: Number) -> Sequence[Number]:
@@ -247,8 +247,8 @@ def shadow_of_modified_rodrigues(vector: Values) -> Array | Matrix:
 
     def explain(components: Sequence[float], where: str) -> None:
         raise ValueError(
-            f"vector{where} is {components}, which means no rotation, so its shadow would be "
-            "infinitely long"
+            f"vector{where} is {components}, which describes no rotation, so its shadow "
+            "would be infinitely long"
         )
 
     def formula(

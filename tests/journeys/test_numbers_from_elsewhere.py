@@ -98,7 +98,7 @@ def test_angles_that_were_read_and_built_by_two_sequences_are_named(first):
     for written in (Rotation.as_quat, Rotation.as_matrix):
         texts = [str(written(each)) for each in (turn, rebuilt)]
         code, answer = explained("--first-is", "xyzw", "--second-is", "xyzw", *texts)
-        assert "they were read off as" in answer and "(space fixed)" in answer, answer
+        assert "they were computed as" in answer and "(space fixed)" in answer, answer
 
 
 def test_one_special_pose_decides_nothing():
@@ -113,7 +113,7 @@ def test_a_quaternion_in_lines_is_read_and_one_that_is_rounded_is_said():
     code, answer = explained(
         "w 0.7304\nx 0.3604\ny 0.2402\nz 0.5284", "0.3604 0.2402 0.5284 0.7304"
     )
-    assert code == 1 and "scalar part stands last" in answer
+    assert code == 1 and "scalar part comes last" in answer
     code, answer = explained("qw: 0.782240  qx: 0.589819  qy: 0.199939  qz: 0.000000",
                              "qw: 0.000000  qx: 0.782240  qy: 0.589819  qz: 0.199939")  # fmt: skip
     assert code == 2 and "has length 0.999881: it was normalised to length 1" in answer

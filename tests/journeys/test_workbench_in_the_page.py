@@ -42,7 +42,7 @@ def test_a_click_answers_the_question_of_a_shared_order(page):
     paste(page, FLU, FRD)
     answer(page).get_by_text("One question decides.").wait_for()
     assert "scalar part of the quaternions stand first or last?" in answer(page).inner_text()
-    last = answer(page).get_by_role("listitem").filter(has_text="stands last in both")
+    last = answer(page).get_by_role("listitem").filter(has_text="comes last in both")
     click(page, last.get_by_role("button", name="So it is"))
     answer(page).get_by_text("They differ, and this is how:").wait_for()
     reply = answer(page).inner_text().lower()

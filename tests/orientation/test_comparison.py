@@ -245,7 +245,7 @@ def rebuilt(cause, angles, sequence):
 
     if cause.startswith("it is the transpose"):
         return composed(angles, sequence).T
-    if cause.startswith("the matrices are multiplied in the other order"):
+    if cause.startswith("the matrices are multiplied in reverse order"):
         return composed(angles[::-1], sequence[::-1])
     if cause == "the angles are in reverse order":
         return composed(angles[::-1], sequence)
@@ -262,7 +262,7 @@ def rebuilt(cause, angles, sequence):
             ),
             sequence,
         )
-    if match := re.fullmatch(r"(\w+) and (\w+) have changed places", cause):
+    if match := re.fullmatch(r"(\w+) and (\w+) are swapped", cause):
         order = [0, 1, 2]
         a, b = place(match[1]), place(match[2])
         order[a], order[b] = b, a
@@ -279,12 +279,12 @@ def rebuilt(cause, angles, sequence):
 
 
 SENTENCES = {
-    "transpose": "it is the transpose, the orientation the other way round",
-    "order": "the matrices are multiplied in the other order, which is space fixed",
+    "transpose": "it is the transpose, which is the inverse orientation",
+    "order": "the matrices are multiplied in reverse order, which gives space fixed rotations",
     "reverse": "the angles are in reverse order",
     **{f"sign of {name}": f"{name} has the wrong sign" for name in NAMES},
-    "psi for theta": "psi and theta have changed places",
-    "theta for varphi": "theta and varphi have changed places",
+    "psi for theta": "psi and theta are swapped",
+    "theta for varphi": "theta and varphi are swapped",
     "degrees": "psi, theta, varphi were given in degrees where radians are expected",
     "degrees of theta": "theta was given in degrees where radians are expected",
     "too often": "psi, theta, varphi were converted from degrees to radians once too often",
@@ -400,7 +400,7 @@ def test_mixups_that_are_mathematically_the_same_are_all_named():
     )
     diagnosis = diagnose(composed((phi, theta, psi), "zxz"), composed(SYMBOLS, "zxz"))
     assert diagnosis.causes == (
-        "psi and varphi have changed places",
+        "psi and varphi are swapped",
         SENTENCES["order"],
         "the angles are in reverse order",
     )
@@ -425,7 +425,7 @@ def test_expected_matrix_of_a_signed_and_reordered_sequence_is_recognised():
 
 def test_given_angles_may_be_symbols():
     causes = diagnose(composed((phi, 0, psi), "zxy"), composed((psi, 0, phi), "zxy")).causes
-    assert causes == ("psi and varphi have changed places",)
+    assert causes == ("psi and varphi are swapped",)
     for angles in ((psi, 0, phi), sm.Matrix([psi, 0, phi])):
         assert diagnose(
             composed((phi, 0, psi), "zxy"), composed((psi, 0, phi), "zxy"), angles, "zxy"
@@ -472,15 +472,15 @@ def test_symbols_that_obey_a_condition_are_not_said_to_be_at_fault():
     assert SENTENCES["transpose"] in diagnose(dcm.T, dcm).causes
     last = sm.Matrix([*quaternion[1:], quaternion[0]])
     assert diagnose(last, quaternion).causes == (
-        "the scalar part stands last; in this book it stands first",
+        "the scalar part comes last; in this book it comes first",
     )
     assert diagnose(2 * quaternion, quaternion) == (False, ())
 
 
 # --- quaternions ----------------------------------------------------------------------------------
 
-LAST = "the scalar part stands last; in this book it stands first"
-CONJUGATE = "it is the conjugate, the orientation the other way round"
+LAST = "the scalar part comes last; in this book it comes first"
+CONJUGATE = "it is the conjugate, which is the inverse orientation"
 NOT_HALVED = "the angle was not halved: a quaternion holds the cosine and sine of half the angle"
 
 
@@ -494,7 +494,7 @@ def quaternion_mixups(turn):
     return {
         LAST: [b, c, d, a],
         CONJUGATE: [a, -b, -c, -d],
-        "it is the conjugate, and the scalar part stands last; in this book it stands first": [
+        "it is the conjugate, and the scalar part comes last; in this book it comes first": [
             -b,
             -c,
             -d,

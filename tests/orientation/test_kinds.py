@@ -754,8 +754,9 @@ except ValueError as error:
 assert 'numpy' not in sys.modules
 """)
     assert [line.split(":")[-1].strip() for line in output.splitlines()] == [
-        "it is the transpose, the orientation the other way round.",
-        "the matrices are multiplied in the other order, which is space fixed.",
-        "the scalar part stands last; in this book it stands first.",
-        "a second path could contradict the first. To change an orientation, build the frames anew",
+        "it is the transpose, which is the inverse orientation.",
+        "the matrices are multiplied in reverse order, which gives space fixed rotations.",
+        "the scalar part comes last; in this book it comes first.",
+        "a second path could contradict the first. "
+        "To change an orientation, build the frames again",
     ]

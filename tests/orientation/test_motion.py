@@ -227,7 +227,7 @@ def test_steps_refuse_what_they_cannot_read():
     with pytest.raises(ValueError, match="for 3 times"):
         turns_from_angular_velocity(lambda t: np.ones((5, 3)), [0, 1, 2, 3])
     for times in ([0], [[0, 1]]):
-        with pytest.raises(ValueError, match="^times must have shape .* ends of one interval"):
+        with pytest.raises(ValueError, match="^times must have shape .* boundaries of one or more"):
             turns_from_angular_velocity(tumbling, times)
     for wrong, message in ((np.nan, r"\[0, 0\] is nan"), ("fast", " must hold real numbers")):
         with pytest.raises((ValueError, TypeError), match=rf"^angular_velocity\(times\){message}"):

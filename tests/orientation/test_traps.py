@@ -149,7 +149,7 @@ def test_scipy_returns_the_transpose():
     assert rotation_error(rotation.as_matrix().T, D_C_A) < 1e-15
     assert rotation_error(rotation.as_matrix(), D_C_A) > 0.1
     assert diagnose(rotation.as_matrix(), D_C_A).causes == (
-        "it is the transpose, the orientation the other way round",
+        "it is the transpose, which is the inverse orientation",
     )
 
 
@@ -244,7 +244,7 @@ def test_answer_of_the_exercise_on_orient_explicit_is_the_transpose_of_what_is_a
     assert F.dcm(D) == shown
     assert D.dcm(F) == asked.T != asked
     assert diagnose(D.dcm(F), asked).causes == (
-        "it is the transpose, the orientation the other way round",
+        "it is the transpose, which is the inverse orientation",
         "beta has the wrong sign",
     )
     # Right:

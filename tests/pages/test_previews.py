@@ -115,7 +115,7 @@ def test_what_is_previewed_is_whole():
         previews.element_at(text, "not-there") is None
         and previews.preview(text, "term-not-there") is None
     )
-    with pytest.raises(ValueError, match="does not end"):
+    with pytest.raises(ValueError, match="has no end tag"):
         previews.element_at('<div id="it"><div></div>', "it")
 
 

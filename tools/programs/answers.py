@@ -121,7 +121,9 @@ def colmap(axis, angle):
         model="SIMPLE_PINHOLE", width=2, height=2, params=[1, 0, 0], camera_id=1
     )
     seen = camera.img_from_cam(pose * (CORNERS @ rows + place))
-    assert np.allclose(seen, CORNERS[:, :2] / CORNERS[:, 2:]), "another camera than was thought"
+    assert np.allclose(seen, CORNERS[:, :2] / CORNERS[:, 2:]), (
+        "a different camera from the one expected"
+    )
     scene = pycolmap.Reconstruction()
     scene.add_camera_with_trivial_rig(camera)
     scene.add_image_with_trivial_frame(pycolmap.Image(name="a.png", camera_id=1, image_id=1), pose)

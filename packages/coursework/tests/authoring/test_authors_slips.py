@@ -56,12 +56,12 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"answer": changed("BEGIN SOLUTION", "BEGIN SOLUTIONS", ANSWER)},
-            "`### BEGIN SOLUTIONS` is not a mark; the",
+            "`### BEGIN SOLUTIONS` is not a marker; the",
         ),
-        ({"answer": changed("### BEGIN", "# BEGIN", ANSWER)}, "`# BEGIN SOLUTION` is not a mark"),
+        ({"answer": changed("### BEGIN", "# BEGIN", ANSWER)}, "`# BEGIN SOLUTION` is not a marker"),
         (
             {"answer": changed("BEGIN SOLUTION", "begin solution", ANSWER)},
-            "`### begin solution` is not a mark",
+            "`### begin solution` is not a marker",
         ),
         (
             {"question": QUESTION.removesuffix("### END HIDDEN TESTS")},
@@ -73,7 +73,7 @@ def changed(old, new, text=QUESTION):
         ),
         (
             {"check": "check('trial/other', answer)"},
-            "stands before its check, which belongs above it; what is checked so far: trial/other",
+            "put the question below its check; checked so far: trial/other",
         ),
         ({"question": changed("kind='expression', ", "")}, "trial/one: give its kind"),
         (

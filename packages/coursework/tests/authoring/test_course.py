@@ -327,9 +327,9 @@ def test_a_release_says_which_points_trying_or_a_copy_earns(statics, tmp_path, m
     monkeypatch.chdir(course)
     main(["release", "beam"])
     said = capsys.readouterr().out
-    assert "beam/support, 3 points: one of 2 answers, so" in said
-    assert "beam/loads, 2 points: one of 125 answers, so" in said
-    assert "5 of 8 points have an answer that a script" in said and "beam/bent, 2" not in said
+    assert "beam/support, 3 points: its answer is one of 2 answers, so" in said
+    assert "beam/loads, 2 points: its answer is one of 125 answers, so" in said
+    assert "5 of 8 points are for answers that a script" in said and "beam/bent, 2" not in said
     assert (
         "8 of 8 points in exercise notebooks are for questions with one answer for everybody."
         in said

@@ -386,9 +386,7 @@ def test_who_had_help_is_offered_a_sibling(desk):
     assert given_up.sibling == f"{SAW}/sibling-2"
     check(f"{SAW}/sibling-2", "half")
     last = check(f"{SAW}/sibling-2", "right")
-    assert last.messages[1:] == [
-        "You had help: we named your mistake. There is no further sibling."
-    ]
+    assert last.messages[1:] == ["You had help: we named your mistake. There are no more siblings."]
     assert last.sibling == ""
     Progress.read().put({f"{SAW}/sibling": Entry("wrong", help="of another kind")})
     assert "You had help: we showed it." in check(f"{SAW}/sibling", "right").messages[1]
@@ -443,7 +441,7 @@ def test_the_progress_with_several_questions(desk):
         "You have tried 3 questions, of which 1 is right.",
         "*gone*: 0 of 1 right, 0 of 1 points. Still open: `gone/a`.",
         f"*levers*: 1 of 2 right, 3 of 5 points. Still open: `{ARM}`.",
-        f"*texts*: 0 of 1 right, 0 of 4 points. Recorded, and marked later: `{WORDS}`.",
+        f"*texts*: 0 of 1 right, 0 of 4 points. Recorded, to be marked later: `{WORDS}`.",
     ]
     put(gone=Entry("correct", help="hint"), arm=Entry("correct", help="hint"))
     lines = check_module.progress().messages
@@ -466,7 +464,7 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
     assert looked(mistake="half", mistake_at=desk.now - 2.9 * DAY) == []
     assert looked(mistake="half") == looked(mistake_at=desk.now - 5 * DAY) == []
     assert looked(mistake="half", mistake_at=desk.now - 3.5 * DAY) == [
-        f"Look at these again, where you made a mistake: `{ARM}` (3 days ago: half)."
+        f"Look again at these, where you made a mistake: `{ARM}` (3 days ago: half)."
     ]
     put(saw=Entry("wrong", mistake="double", mistake_at=desk.now - 4 * DAY))
     [line] = check_module.progress().messages[2:]

@@ -392,7 +392,7 @@ REFUSED = [
     (of_module("torch", shape=(1,)), None, "type `Stranger` cannot be read"),
     (of_module("orientation.frames"), None, "type `Stranger` cannot be read"),
     (of_module("torch", tolist=list), None, "type `Stranger` cannot be read"),
-    (3 * units.bit, None, "`bit` does not consist of SI units"),
+    (3 * units.bit, None, "`bit` is not in SI units"),
     (units.meter + units.second, None, "different units"),
     (sm.sqrt(units.meter), None, "not a product of integer powers"),
     (sm.sin(units.meter), None, "not a product of integer powers"),

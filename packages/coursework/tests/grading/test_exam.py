@@ -95,7 +95,7 @@ def test_the_check_takes_an_answer_down_and_tells_nothing_of_it(exam):
     assert checks.check("trial/about-x", 2 * RIGHT).outcome == "invalid"
     assert checks.check("trial/about-x", ...).outcome == "not attempted"
     assert checks.check("trial/about-x", RIGHT).outcome == "recorded"
-    assert "Recorded, and marked later: trial/about-x" in str(checks.progress())
+    assert "Recorded, to be marked later: trial/about-x" in str(checks.progress())
     assert "no hint" in str(checks.hint("trial/about-x"))
 
 

@@ -390,9 +390,9 @@ def test_what_is_missing_is_said_with_its_remedy():
         "student code could start a program. Missing: seccomp (the container forbids it): use Linux"
     )
     [line] = isolation.lacking(
-        {"layers": layers, "not stopped": ["the layers do not work together: why"]}
+        {"layers": layers, "not stopped": ["the layers of isolation do not work together: why"]}
     )
-    assert line == "the layers do not work together: why"
+    assert line == "the layers of isolation do not work together: why"
 
 
 # ---- scratch folders on disk

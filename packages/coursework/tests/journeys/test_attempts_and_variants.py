@@ -59,7 +59,7 @@ def test_another_attempt_may_be_the_best_once_a_question_was_mended(course):
     course.grade()
     course.change("hw1", sum=(6, 4), arm=(3, 4))
     said = course.regrade(fails=True)
-    assert "'ada', hw1: 8 -> 4  (hw1/sum; another attempt is the best now)" in said
+    assert "'ada', hw1: 8 -> 4  (hw1/sum; another attempt is now the best)" in said
     assert course.points() == {"ada": 8}
     course.regrade("--yes")
     assert course.points() == {"ada": 4}
@@ -164,7 +164,7 @@ def test_a_variant_is_taken_out_before_a_late_notebook_comes(tmp_path):
         waits["student"] == cleared and "Which edition did this student have?" in waits["message"]
     )
     said = course.run("why", shown, "hw1")
-    assert "of 4, as the source stood before): correct" in said
+    assert "of 4, as the source was before): correct" in said
     assert "of 3): correct" in course.run("why", new, "hw1")
     for _ in range(2):
         assert "Marks changed: 0." in course.regrade()

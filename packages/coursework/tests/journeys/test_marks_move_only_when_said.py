@@ -109,7 +109,7 @@ def test_a_table_of_decisions_decides_only_what_it_was_written_for(course):
     unbound = course.write_table(
         "unbound.csv", [{"student": "ada", "question": "hw2/why", "credit": "1"}]
     )
-    assert "decisions are a copy of undecided.csv" in course.run(
+    assert "a table of decisions is a copy of undecided.csv" in course.run(
         "merge", "marks", unbound, fails=True
     )
 

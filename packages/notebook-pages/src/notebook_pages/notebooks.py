@@ -67,7 +67,8 @@ def main():
     paths = [Path(name) for name in sys.argv[1:]] or all_notebooks(Path())
     if missing := [str(path) for path in paths if not path.is_file()]:
         sys.exit(
-            f"There is no notebook {', '.join(missing)}. Give its path from the folder of the book."
+            f"There is no notebook {', '.join(missing)}. Give its path relative to the folder of "
+            "the book."
         )
     # Each notebook has its own kernel.
     with ThreadPoolExecutor(max_workers=2) as pool:

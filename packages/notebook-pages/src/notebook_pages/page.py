@@ -447,8 +447,8 @@ def join_scripts(site):
     text, count = MEASURES.subn(".forEach(watchWidth)", theme.read_text("utf8"))
     if count != 1:
         raise RuntimeError(
-            "The theme's script no longer finds the boxes that scroll in the way that page.py "
-            "replaces"
+            "The theme's script no longer finds the scrolling boxes with the code "
+            "that page.py replaces"
         )
     theme.write_text(text, "utf8")
     begin = take_later(site, static / STYLE)

@@ -31,7 +31,7 @@ def element_at(text, name):
         depth += -1 if tag[1] else 1
         if depth == 0:
             return text[begin.start() : tag.end()]
-    raise ValueError(f"the element {name} does not end")
+    raise ValueError(f"the element {name} has no end tag")
 
 
 def plain(shown):

@@ -85,7 +85,7 @@ class QuestionDirective(SphinxDirective):
         kinds = [kind for kind in ("answer", "number", "angle") if kind in self.options]
         if len(kinds) != 1:
             return self.fault(
-                "give the right answer by `:answer: B`, `:number: 0.5` or `:angle: 30`"
+                "give the right answer as `:answer: B`, `:number: 0.5` or `:angle: 30`"
             )
         box["kind"], box["answer"] = kinds[0], self.options[kinds[0]]
         box["covers"] = self.options.get("covers", 0)

@@ -59,7 +59,7 @@ QUESTIONS = (
     ("3  Where is the scalar?", "The quaternion of no rotation: the 1 is the scalar."),
     (
         "4  Conjugate?",
-        "The quaternion of +30 degrees about z: 0.259 beside 0.966 as here, -0.259 the conjugate.",
+        "+30 degrees about z: 0.966 and 0.259 as here, 0.966 and -0.259 conjugated.",
     ),
 )
 

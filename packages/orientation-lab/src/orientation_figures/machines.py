@@ -176,7 +176,7 @@ def leg_drawing(bend=np.radians(35)):
     """
     drawing = Drawing(
         "A leg seen from its right side, the knee bent. "
-        "The thigh and the shank each carry a plate with four reflecting balls. "
+        "The thigh and the shank each carry a plate with four reflective markers. "
         "The thigh's frame A and the shank's frame B are drawn beside the knee: x forwards, y up "
         "along the bone, z to the right, towards the reader. "
         "The angle between the two is theta.",

@@ -116,7 +116,7 @@ def convention_of(
     found = explain(np.array(asked), result, first_declared=known[0], second_declared=known[1])
     if not found.chains:
         raise ValueError(
-            f"no convention known here leads from the arguments to the answer: from "
+            f"no convention that this kit knows leads from the arguments to the answer: from "
             f"{np.round(asked[0], 4).tolist()} it made {np.round(result[0], 4).tolist()}"
         )
     best = found.chains[0]

@@ -100,7 +100,7 @@ PASTED = [
         "w=0.8875043392181396",
         SQUAD,
         "named",
-        "scalar part stands last",
+        "scalar part comes last",
     ),
     pasted(
         "moble/quaternion 118 (comment)",
@@ -110,14 +110,14 @@ PASTED = [
         "same",
     ),
     pasted("rbdl/rbdl 107 Eigen", RBDL, EIGEN, "named", "columns of the matrix"),
-    pasted("rbdl/rbdl 107 RBDL", RBDL, OWN, "named", "scalar part stands last"),
-    pasted("rbdl/rbdl 107 both", EIGEN, OWN, "named", "scalar part stands last", "the conjugate"),
+    pasted("rbdl/rbdl 107 RBDL", RBDL, OWN, "named", "scalar part comes last"),
+    pasted("rbdl/rbdl 107 both", EIGEN, OWN, "named", "scalar part comes last", "the conjugate"),
     pasted(
         "moveit/moveit_calibration 132 sxyz",
         "q=[-0.0372638, -0.0326999, 0.773564, 0.631776]",
         "(-0.09784475354668137, 0.016334569880032665, 1.7711006453446172)",
         "undecided",
-        "scalar part stands last",
+        "scalar part comes last",
     ),
     pasted(
         "moveit/moveit_calibration 132 rxyz",
@@ -156,7 +156,7 @@ PASTED = [
         "R_quat == tensor([[ 0.0146, -0.0372, -0.0194,  0.9990]])",
         "ans =\n    0.9990    0.0146   -0.0372   -0.0194",
         "named",
-        "scalar part stands last",
+        "scalar part comes last",
     ),
     pasted(
         "kornia/kornia 950 matrix",

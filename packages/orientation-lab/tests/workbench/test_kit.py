@@ -141,13 +141,13 @@ def test_what_is_found_is_said_in_words():
     assert (
         found.takes == {"order": "xyzw"}
         and found.inverse
-        and "scalar part stands last" in str(found)
+        and "scalar part comes last" in str(found)
     )
 
 
 def test_no_convention_is_told():
     fixed = np.eye(3)[[1, 2, 0]]
-    with pytest.raises(ValueError, match="no convention known here"):
+    with pytest.raises(ValueError, match="no convention that this kit knows"):
         convention_of(lambda q: fixed, "quaternion")
     with pytest.raises(ValueError, match="not a rotation"):
         convention_of(lambda q: 2 * np.eye(3), "quaternion")

@@ -383,7 +383,7 @@ SPELLED = {
 def test_numbers_as_programs_print_them(where):
     """Whatever stands around the numbers, the orientation is the one that was printed."""
     found = explain(printed([DCM], 6), SPELLED[where])
-    order = "scalar part stands last"
+    order = "scalar part comes last"
     assert (
         found.verdict == "same" or [fault for fault in found.faults if order not in fault] == []
     ), str(found)
@@ -588,7 +588,7 @@ def test_degrees_are_seen_wherever_the_angle_stands():
     ]
     known = {"kind": "axis and angle"}
     found = explain(*texts, first_declared=known, second_declared=known)
-    assert found.faults == ("in the second numbers the angle stands before the axis",)
+    assert found.faults == ("in the second numbers the angle comes before the axis",)
 
 
 def test_angles_by_name_are_put_in_order():
@@ -677,7 +677,7 @@ HANDED_IN = {
         "unit",
         "degrees to radians once too often",
     ),
-    "scalar last": (np.roll(quaternion_from_dcm(EXPECTED), -1), "order", "scalar part stands last"),
+    "scalar last": (np.roll(quaternion_from_dcm(EXPECTED), -1), "order", "scalar part comes last"),
     "conjugate": (quaternion_from_dcm(EXPECTED.T), "inverse", "conjugate"),
 }
 

@@ -296,7 +296,7 @@ class AuthoredQuestion:
         build = kinds()[self.public.kind].build
         if build is None:
             raise AuthorError(
-                f"{self.name}: an answer of the kind {self.public.kind!r} cannot have `turns`."
+                f"{self.name}: a question of the kind {self.public.kind!r} cannot have `turns`."
             )
         built = self.to_plain(build(self.turns))
         if self.fingerprint_of(built) != self.fingerprint_of(self.plain):

@@ -60,7 +60,7 @@ def item_of(question: AuthoredQuestion, above: str, notebook: NotebookNode) -> I
     """
     public, kind = question.public, kinds()[question.public.kind]
     for applies, reason in (
-        (kind.by_a_person, "a person reads its answers"),
+        (kind.by_a_person, "a person marks its answers"),
         (public.kind == "function", "its answer is a function"),
         (public.symbols, f"its answer is a formula in {', '.join(public.symbols)}"),
         (public.kind == "measurement", "its answer is a number with a unit"),

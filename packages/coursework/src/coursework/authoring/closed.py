@@ -99,16 +99,16 @@ def counted(course: Course, only: Collection[str] = ()) -> list[str]:
     asked = {name: one for some in found for name, one in some.items()}
     exercises = {name: one for name, one in asked.items() if name.partition("/")[0] != CHAPTERS}
     lines = [
-        f"{name}, {one.worth:g} points: one of {one.possible} answers, so a script can try "
-        "them all. Ask for several parts in one answer or for a function, or set exam=True."
+        f"{name}, {one.worth:g} points: its answer is one of {one.possible} answers, so a script "
+        "can try them all. Ask for several parts in one answer or for a function, or set exam=True."
         for name, one in asked.items()
         if one.possible and one.worth > 1
     ]
     closed = sum(one.worth for one in asked.values() if one.possible)
     points = sum(one.worth for one in asked.values())
     lines.append(
-        f"{closed:g} of {points:g} points have an answer that a script finds within {MOST:,} "
-        "tries. A script that builds formulas finds more."
+        f"{closed:g} of {points:g} points are for answers that a script finds within {MOST:,} "
+        "tries. A script that tries formulas finds more."
     )
     if exercises:
         fixed = {name: one for name, one in exercises.items() if one.variants == 1}

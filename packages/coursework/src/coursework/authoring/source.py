@@ -213,8 +213,8 @@ def read_source(
     def record_question(name: str, **about: Any) -> None:
         if name not in answers:
             raise author.AuthorError(
-                f"{name}: the question stands before its check, which belongs above it"
-                + (f"; what is checked so far: {', '.join(answers)}." if answers else ".")
+                f"{name}: put the question below its check"
+                + (f"; checked so far: {', '.join(answers)}." if answers else ".")
             )
         if name in questions:
             raise author.AuthorError(f"{name}: two questions have this name.")
@@ -316,7 +316,7 @@ def _demand_marks(text: str, where: str) -> None:
         if line.strip() != f"### {what} {marked}" or what != what.upper() or marked not in MARKED:
             known = ", ".join(f"`### {what.upper()} {name}`" for name in MARKED)
             raise author.AuthorError(
-                f"{where}: `{line.strip()}` is not a mark; the marks are {known}."
+                f"{where}: `{line.strip()}` is not a marker; the markers are {known}."
             )
         if what == "BEGIN" and open_one:
             raise author.AuthorError(

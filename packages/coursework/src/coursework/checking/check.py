@@ -193,7 +193,7 @@ def _offer_sibling(reply: Reply, question: Question, help_had: str) -> None:
     elif siblings:
         notice = f"You had help: {HELP.get(help_had, 'we showed it')}."
         if order == len(siblings):
-            reply.messages.append(f"{notice} There is no further sibling.")
+            reply.messages.append(f"{notice} There are no more siblings.")
             return
         reply.sibling = siblings[order]
         reply.messages.append(
@@ -290,7 +290,8 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
     )
     if taken_down:
         line += (
-            f" Recorded, and marked later: {', '.join(f'`{name}`' for name in sorted(taken_down))}."
+            " Recorded, to be marked later: "
+            f"{', '.join(f'`{name}`' for name in sorted(taken_down))}."
         )
     return line + (f" Still open: {', '.join(f'`{name}`' for name in open_)}." if open_ else "")
 
@@ -304,7 +305,7 @@ def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
         and entry.mistake
     ]
     return (
-        [f"Look at these again, where you made a mistake: {', '.join(reminders)}."]
+        [f"Look again at these, where you made a mistake: {', '.join(reminders)}."]
         if reminders
         else []
     )

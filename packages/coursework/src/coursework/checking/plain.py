@@ -754,7 +754,7 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
                 if size is None:
                     size = units.convert_to(quantity, list(base)).xreplace(base)
                 if size.has(units.Quantity):
-                    raise NotPlain(f"`{quantity}` does not consist of SI units.")
+                    raise NotPlain(f"`{quantity}` is not in SI units.")
                 plain = plain.xreplace({quantity: size})
             terms_of: dict[sympy.Expr, list[sympy.Expr]] = {}
             for term in sympy.Add.make_args(sympy.expand_mul(plain)):

@@ -180,7 +180,7 @@ ARGUMENTS = {
         ],
     ),
     "export": (
-        "export the marks and the pages of feedback",
+        "export the marks and the feedback pages",
         [
             OUT,
             argument(

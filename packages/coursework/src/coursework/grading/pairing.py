@@ -134,7 +134,7 @@ def pair(
         answered = course.assignments_of(notebook)
         graded = [name for name in answered if name in course.assignments]
         if not answered:
-            why = "It does not contain a question of any assignment."
+            why = "It contains no question of any assignment."
             refused.append(Refused(notebook.file, notebook.student, why))
         elif not graded:
             left_alone[answered[0]] += 1

@@ -175,7 +175,7 @@ def notebook_for(site, page, settings):
     ]
     if len(notes) != 1:
         raise RuntimeError(
-            f"the notebook of {page} does not say how to run it in the expected words"
+            f"the notebook of {page} does not contain the expected sentence on how to run it"
         )
     first.source = first.source.replace(notes[0], NOTE.format(title=settings["title"]))
     setting = runtime.numpy_setting(settings["sphinx"]["config"]["numpy_in_the_page"])
@@ -248,9 +248,9 @@ def bring_answers_first(target):
     # limit, because the script may ask the reader a question.
     wait = (
         f"await Promise.race([import('{script}').catch(() => import('{script}?again')), "
-        "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('it does not come')))])"
-        ".then((first) => first.prepare())"
-        ".catch((error) => console.warn(`The answers of the page are not in this notebook yet: "
+        "new Promise((_, giveUp) => setTimeout(giveUp, 10_000, new Error('no answer after ten "
+        "seconds')))]).then((first) => first.prepare())"
+        ".catch((error) => console.warn(`The answers from the page are not in this notebook yet: "
         "${error.message}`));\n"
         "        "
     )

@@ -27,7 +27,8 @@ def fetch(folder, packages, address):
             content = answer.read()
         if runtime.sha256(content) != print_:
             raise RuntimeError(
-                f"{address}{wheel.name} is not the file in Pyodide's list, so we did not keep it"
+                f"{address}{wheel.name} differs from the file in Pyodide's list, so we did not "
+                "keep it"
             )
         wheel.write_bytes(content)
         fetched.append(wheel.name)

@@ -61,7 +61,7 @@ class NeedsMore(SphinxDirective):
             "page without any other server. "
             f"{len(pages) - len(some)} pages need nothing but SymPy and this book's own packages. "
             "The table lists the cells that need more, by their numbers from the top of each page. "
-            "A cell that uses a name from one of them needs the same. "
+            "A cell that uses a name defined in one of them needs the same packages. "
             "The packages for moving figures are part of this site.",
             "",
             f"| page | run | {' | '.join(COLUMNS)} |",

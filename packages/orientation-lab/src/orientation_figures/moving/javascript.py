@@ -193,7 +193,7 @@ def statement(node, changing):
             return f"const {camel(node.name)} = ({parameters(node.args)}) => {block(node)};"
         case ast.Continue():
             return "continue;"
-    raise ValueError(f"a picture holds {ast.unparse(node)!r}, which is not translated")
+    raise ValueError(f"a picture contains {ast.unparse(node)!r}, which is not translated")
 
 
 def within(node, least=4):
@@ -264,7 +264,7 @@ def expression(node):
             if ast.unparse(first.target) == ast.unparse(node.elt):
                 return over(first)
             return f"{over(first)}.map(({expression(first.target)}) => {expression(node.elt)})"
-    raise ValueError(f"a picture holds {ast.unparse(node)!r}, which is not translated")
+    raise ValueError(f"a picture contains {ast.unparse(node)!r}, which is not translated")
 
 
 def over(part):

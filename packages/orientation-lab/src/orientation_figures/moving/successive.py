@@ -67,7 +67,7 @@ class SuccessiveFigure(MovingFigure):
     def _not_negative(self, proposal):
         if proposal["value"] < 0:
             raise traitlets.TraitError(
-                f"share is {proposal['value']!r}: a number from 0 to 1 was expected"
+                f"share is {proposal['value']!r}: expected a number from 0 to 1"
             )
         return proposal["value"]
 

@@ -78,8 +78,7 @@ class Known(traitlets.TraitType):
     def validate(self, obj, value):
         if not isinstance(value, dict) or set(value) - set(NOTHING_KNOWN):
             raise traitlets.TraitError(
-                f"{self.name} is {value!r}: expected was a dictionary with "
-                f"{', '.join(NOTHING_KNOWN)}"
+                f"{self.name} is {value!r}: expected a dictionary with {', '.join(NOTHING_KNOWN)}"
             )
         known = NOTHING_KNOWN | value
         for name, allowed in (

@@ -106,7 +106,7 @@ def explain(
     --------
     >>> from orientation_workbench import explain
     >>> explain('0.7304 0.3604 0.2402 0.5284', '0.3604 0.2402 0.5284 0.7304').faults
-    ('in the second numbers the scalar part stands last (x, y, z, w)',)
+    ('in the second numbers the scalar part comes last (x, y, z, w)',)
     """
     sides, programs = [], []
     for name, given, declared, program in (
@@ -133,7 +133,7 @@ def explain(
         counts[side] = 1
     if counts[0] != counts[1]:
         raise ValueError(
-            f"the first side holds {counts[0]} poses and the second {counts[1]}: they must be the "
+            f"the first side has {counts[0]} poses and the second {counts[1]}: they must be the "
             "same poses, in order"
         )
     one, other = (
@@ -319,7 +319,7 @@ def _name(chain, inverses, faults, by_way, best):
             for side, order in zip(("first", "second"), orders, strict=True) if order
         )  # fmt: skip
         where = f"{_ORDERS[orders[0]]} in both" if orders[0] == orders[1] else where
-        conditions.append(f"the scalar part stands {where}")
+        conditions.append(f"the scalar part comes {where}")
     if by_way:
         for side, inverse, kind in zip(declare, inverses, chain.kinds, strict=True):
             words = ("rows", "columns") if kind == "matrix" else ("body in world", "world in body")
@@ -351,15 +351,15 @@ def _question(names, best):
         "Did angles or a quaternion pass from one program to the other?": any(
             "on the way" in name.faults[0] for name in names
         ),
-        "Does the scalar part of the quaternions stand first or last?": order,
-        "Which way does the first matrix lead: are the body's axes its rows or its columns?": way
+        "Does the scalar part of the quaternions come first or last?": order,
+        "Are the body's axes the rows or the columns of the first matrix?": way
         and "matrix" in best.kinds,
         "Which side gives the inverse, the world as seen from the body?": way
         and "matrix" not in best.kinds,
         "Which side's rotations are about axes of the body (body fixed), and which side's about "
         "axes that stay fixed (space fixed)?": turns,
         "Which sequence of rotations does the first program use? The numbers stay the same if the "
-        "axes of both programs are renamed alike.": sequence,
+        "axes of both programs are renamed in the same way.": sequence,
     }
     return " ".join(question for question, still_open in asked.items() if still_open)
 

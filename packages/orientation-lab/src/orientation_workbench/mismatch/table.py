@@ -47,7 +47,7 @@ def choice(value, words, rarity, faults=1):
 def _orders():
     known = {"wxyz": 0.0, "xyzw": 0.0, "wzyx": 1.1, "zyxw": 1.1, "xywz": 1.0}
     words = {
-        "wxyz": "the scalar part stands first (w, x, y, z)",
+        "wxyz": "the scalar part comes first (w, x, y, z)",
         "xyzw": f"{SCALAR_LAST} (x, y, z, w)",
     }
     return [
@@ -131,8 +131,8 @@ KINDS = {
         {
             "group": "place of the angle",
             "choices": [
-                choice("last", "the angle stands behind the axis", 0.0),
-                choice("first", "the angle stands before the axis", 0.0),
+                choice("last", "the angle comes after the axis", 0.0),
+                choice("first", "the angle comes before the axis", 0.0),
             ],
         },
         _UNIT,
@@ -161,10 +161,10 @@ SHARED = (
 #: The inverse orientation, in the words of what is pasted.
 INVERSE = {
     "matrix": f"one is {TRANSPOSE}",
-    "one matrix": "the columns of the matrix are the body's axes, as in SciPy, where in this book "
-    "its rows are; or the other numbers are the inverse, as in a JPL quaternion",
+    "one matrix": "the columns of the matrix are the body's axes, as in SciPy (in this book "
+    "its rows are); or the other numbers are the inverse, as in a JPL quaternion",
     "quaternion": f"one is {CONJUGATE} (so is a JPL quaternion)",
-    "Euler angles": "one is the inverse, the orientation the other way round",
+    "Euler angles": "one is the inverse orientation",
     "rotation vector": "one is the rotation in the opposite sense",
     "axis and angle": "one is the rotation in the opposite sense",
 }
@@ -419,7 +419,7 @@ def _words_inside(what, read, built, places):
     if what == "quaternion":
         return (
             f"a quaternion on the way was stored as {', '.join(read)} and read as "
-            f"{', '.join(built)}, or the other way round"
+            f"{', '.join(built)}, or vice versa"
         )
     put = f"{'-'.join(built)} (body fixed), taking them in the order {', '.join(places)}"
     put = {
@@ -427,8 +427,8 @@ def _words_inside(what, read, built, places):
         "321": f"{'-'.join(built[::-1])} (space fixed)",
     }.get(places, put)
     return (
-        f"angles on the way: they were read off as {'-'.join(read)} (body fixed) and put together "
-        f"as {put}"
+        f"angles on the way: they were computed as {'-'.join(read)} (body fixed) and "
+        f"combined as {put}"
     )
 
 

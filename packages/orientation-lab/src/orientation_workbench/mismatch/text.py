@@ -94,7 +94,7 @@ def read_poses(given, name: str, kind: str | None = None, noise: float = 0.0) ->
         rows, half = _rows_of_array(given, name), 0.0
     numbers = _poses(rows, name, kind, half)
     if not np.isfinite(numbers).all():
-        raise ValueError(f"the {name} side holds a number that is not finite")
+        raise ValueError(f"the {name} side contains a number that is not finite")
     kinds = _kinds(numbers, kind, half + noise, name)
     large = bool((np.abs(numbers) > math.tau + 0.01).any())
     return Poses(kinds, numbers, half, large, declared)
@@ -127,16 +127,18 @@ def _rows_of_text(text, name):
         text = bare
     text = _without_places(_decimal_points(text))
     if found := _PATTERNS["not a number"].search(text):
-        raise ValueError(f"the {name} side holds '{found.group().strip()}', which is not a number")
+        raise ValueError(
+            f"the {name} side contains '{found.group().strip()}', which is not a number"
+        )
     if found := _PATTERNS["arithmetic"].search(text):
         raise ValueError(
-            f"the {name} side holds '{found.group().strip()}': work it out and paste the result"
+            f"the {name} side contains '{found.group().strip()}': work it out and paste the result"
         )
     text = _sums(text)
     if not NUMBER.search(text):
         shown = " ".join(text.split())[:40]
         raise ValueError(
-            f"the {name} side holds no numbers: '{shown}'"
+            f"the {name} side contains no numbers: '{shown}'"
             if shown
             else f"the {name} side is empty: paste its numbers"
         )
@@ -385,7 +387,7 @@ def _poses(rows, name, kind, half):
         return np.array([flat[which : which + 4]])
     where = "one line" if len(rows) == 1 else f"{len(rows)} lines"
     raise ValueError(
-        f"the {name} side holds {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
+        f"the {name} side contains {total} number{'s' * (total != 1)} in {where}: a pose takes 3 "
         "(angles, or a rotation vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) "
         "or 16 (a matrix with a translation); next to a position, a quaternion must be four "
         "consecutive numbers of length 1"
@@ -423,7 +425,7 @@ def _kinds(numbers, kind, doubt, name):
     if kind is not None:
         if COUNTS[kind] != count:
             raise ValueError(
-                f"the {name} side holds {count} numbers per pose; a {kind} takes {COUNTS[kind]}"
+                f"the {name} side contains {count} numbers per pose; a {kind} takes {COUNTS[kind]}"
             )
         kinds = (kind,)
     elif count == 4:

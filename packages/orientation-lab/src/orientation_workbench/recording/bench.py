@@ -432,11 +432,11 @@ class _Bench:
                 f"it is never still. From {first:.1f} to {last:.1f} s it is held: it wavers by "
                 f"{np.degrees(calmest.deviation):.1f} °/s, slowly, as a hand does",
                 {"deviation (°/s)": round(float(np.degrees(calmest.deviation)), 2)},
-                "A mean over that time is motion, not bias. Lay it down for some seconds.",
+                "A mean over that time is motion, not bias. Lay it down for a few seconds.",
             )
         else:
             self.say(
-                "stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for some seconds."
+                "stillness", UNKNOWN, "it moves all the time", {}, "Lay it down for a few seconds."
             )
         poses = [stretch for stretch in self.still if stretch.last - stretch.first > 10]
         # Where it lies still time and again, that tells whether the bias drifts; else gravity may.
@@ -467,7 +467,7 @@ class _Bench:
                 UNKNOWN,
                 "it is never still, and its rotations do not determine it",
                 {},
-                "Lay it down for some seconds.",
+                "Lay it down for a few seconds.",
             )
         else:
             most, doubt = (float(np.degrees(np.abs(each).max())) for each in (bias, spread))
@@ -502,9 +502,9 @@ class _Bench:
                 "unit of the gyroscope",
                 RED if unit_of_rates(self.content.groups["gyroscope"].names) else YELLOW,
                 f"counts, whatever the heading says: one count is {np.degrees(unit):.4g} "
-                f"± {np.degrees(uncertain * unit):.1g} °/s, for then {carries}",
+                f"± {np.degrees(uncertain * unit):.1g} °/s, because then {carries}",
                 {"rad/s": unit},
-                f"Multiply by {np.degrees(unit):.4g} to have °/s.",
+                f"Multiply by {np.degrees(unit):.4g} to get °/s.",
             )
             return common
         off = np.abs(fitted.scales / np.median(fitted.scales) - 1)
@@ -603,7 +603,7 @@ class _Bench:
             f"the bias about {'xyz'[axis]} is {bias:.2f} °/s at {time:.0f} s and {other:.2f} °/s "
             f"at {later:.0f} s"
         )
-        advice = "let the filter estimate the bias, or subtract a line between the still stretches."
+        advice = "let the filter estimate the bias, or interpolate it between the still stretches."
         if slope is not None:
             words += (
                 f". As the temperature goes from {warmth:.0f} to {warmer:.0f} °C, it changes by "
@@ -615,7 +615,7 @@ class _Bench:
             RED,
             words,
             {"°/s": np.degrees(biases).round(3).tolist()},
-            f"Subtracting a constant does not cure that: {advice}",
+            f"Subtracting a constant does not correct that: {advice}",
         )
 
     def _noise(self, longest: Stretch) -> None:
@@ -632,7 +632,7 @@ class _Bench:
                 f"it lies still for only {seconds:.0f} s, too short to separate white noise from "
                 "the rest",
                 {},
-                "Let it lie for some minutes.",
+                "Let it lie for a few minutes.",
             )
         words = f"angle random walk {walk:.2g} °/√s, {60 * walk:.2g} °/√h"
         evidence = {"°/√s": noise.angle_random_walk.round(4).tolist()}
@@ -665,7 +665,7 @@ class _Bench:
         elif wrong:
             light, why = RED, f"by gravity's length; its heading says {said}"
         self.facts["gravity"], self.forces = gravity, raw / gravity
-        advice = {RED: f"Read it as {unit}.", UNKNOWN: "Lay it down for some seconds."}
+        advice = {RED: f"Read it as {unit}.", UNKNOWN: "Lay it down for a few seconds."}
         self.say(
             "unit of the accelerometer",
             light,
@@ -738,7 +738,7 @@ class _Bench:
         uneven, useless, about = before, fit is None, "offset of the magnetometer"
         if fit is None:
             words = f"neither rotations nor lengths determine offset and shape{known}"
-            advice = "Rotate it slowly through all directions, a figure of eight."
+            advice = "Rotate it slowly through all directions, in a figure of eight."
             self.say(about, UNKNOWN, words, {}, advice)
         else:
             corrected = fit.corrected(raw) / fit.strength
@@ -768,8 +768,9 @@ class _Bench:
         )
         evidence = {"length varied by": round(before, 3), "corrected by": round(uneven, 3)}
         cause = (
-            "The cause is iron that moves with it, or iron that it passed, and the rotations do "
-            "not decide which. Do not use the field, or record a figure of eight far from iron."
+            "The cause is iron that moves with it, or iron that it passed, and the "
+            "rotations do not show which. Do not use the field, or record a figure of eight far "
+            "from iron."
             if useless
             else "There was iron nearby for a while: do not use the field there."
         )
@@ -875,8 +876,8 @@ class _Bench:
                 "missing samples",
                 RED,
                 f"at {int(leaps.sum())} places, the first at {self.time[1:][leaps][0]:.2f} s, "
-                "gravity and field jump further than any rotation between two samples: samples "
-                "are missing there, although the times run on as if none were",
+                "gravity and field jump further than a rotation between two samples could take "
+                "them: samples are missing there, although the times continue as if none were",
                 {"places": int(leaps.sum())},
                 "Record the instrument's own time with each sample: no filter can reconstruct what "
                 "was lost.",

@@ -456,7 +456,8 @@ def _with_gravity(chosen: dict[str, Group], groups: Sequence[Group]) -> list[str
     )
     chosen["accelerometer"] = felt._replace(values=felt.values + gravity, called="accelerometer")
     return [
-        f"{', '.join(felt.names)} holds no gravity; {', '.join(apart[0].names)} was added to it"
+        f"{', '.join(felt.names)} does not contain gravity; {', '.join(apart[0].names)} was added "
+        "to it"
     ]
 
 

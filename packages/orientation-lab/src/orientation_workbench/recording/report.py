@@ -223,9 +223,9 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
         noise = noise_of(times, deviations)
         words = (
             "Allan deviation of the gyroscope in its longest still stretch. "
-            "Where it falls by half for four times the time, it is noise; what that line says at "
-            "one second is the angle random walk, and the lowest point is the instability of the "
-            "bias, if the stretch is long enough to have one."
+            "Where it halves as the time quadruples, it is white noise, and the value "
+            "of that line at one second is the angle random walk. The lowest point is the bias "
+            "instability, if the stretch is long enough to reach it."
         )
         with drawing(3.2, words, "averaged over (s)", "Allan deviation (°/s)") as axes:
             for values, letter, style in zip(deviations.T, "xyz", ("-", "--", ":"), strict=True):
@@ -262,7 +262,7 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     if examined.judgements:
         words = (
             "Solid: how much the forward and backward runs of the filter differ in tilt. "
-            "Dashed: how much they should differ by their own claims."
+            "Dashed: how much they should differ according to the filter."
         )
         with drawing(2.6, words, "time (s)", "tilt (°)") as axes:
             for judgement in examined.judgements:

@@ -185,7 +185,7 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
             reasons.append(str(error))
     if not tables:
         told = "".join(f"; {reason}" for reason in broken + reasons)
-        raise RecordingError(f"{name} holds no table of numbers{told}")
+        raise RecordingError(f"{name} contains no table of numbers{told}")
     tables[0].remarks.extend(broken)
     return tables
 
@@ -196,8 +196,8 @@ def _from_text(text: str, name: str) -> list[Table]:
     lines = text.splitlines()
     if sum(line.startswith("---") for line in lines) > 8:
         raise RecordingError(
-            f"{name} holds ROS messages: save them as a table with rostopic echo -p or ros2 topic "
-            "echo --csv"
+            f"{name} contains ROS messages: save them as a table with rostopic echo -p or ros2 "
+            "topic echo --csv"
         )
     delimiter = max(DELIMITERS, key=lambda one: _numbers_per_line(lines, one))
     rows = [_split(line, delimiter) for line in lines]
@@ -372,7 +372,7 @@ def _table(
                 "not a number"
             )
         elif inf in found or -inf in found:
-            broken.append(f"line {line} holds an infinite number")
+            broken.append(f"line {line} contains an infinite number")
         else:
             kept.append(found)
     told = "; ".join(broken[:3]) + (f"; and {len(broken) - 3} more" if len(broken) > 3 else "")
@@ -482,7 +482,7 @@ def _from_json(text: str, name: str) -> list[Table]:
         with suppress(RecordingError):
             tables.append(_table(rows, kind, False, None, columns))
     if not tables:
-        raise RecordingError(f"{name} is JSON, but holds no list of measurements")
+        raise RecordingError(f"{name} is JSON, but contains no list of measurements")
     return tables
 
 

@@ -253,7 +253,7 @@ class Sandbox:
             waiting = select.poll()
             waiting.register(control, select.POLLIN)
             if not waiting.poll(WAIT_FOR_START * 1000):
-                raise WorkerDied("a copy of the warm parent said nothing")
+                raise WorkerDied("a copy of the sandbox's parent process did not start in time")
             data, ancillary, _, _ = control.recvmsg(1 << 20, socket.CMSG_SPACE(SIZE_OF_CREDENTIALS))
             self.report = json.loads(data)["ready"]
             # The kernel says who speaks, by the number that the process has here.
@@ -367,7 +367,7 @@ class Sandbox:
             errors.seek(0)
             if lines := errors.read().decode(errors="replace").strip().splitlines():
                 return lines[-1][:500]
-        return "the warm parent ended without a word"
+        return "the parent process of the sandbox exited without an error message"
 
     @property
     def connection(self) -> socket.socket:
@@ -465,7 +465,7 @@ class _Run:
         if not isinstance(job["id"], str) or not all(
             isinstance(cell["source"], str) for cell in job["cells"]
         ):
-            raise TypeError("a job has an id and cells with sources, all texts")
+            raise TypeError("the id of a job and the sources of its cells must be strings")
 
     def result(self) -> Result:
         number = len(self.job["cells"])
@@ -669,7 +669,7 @@ class _Once:
             else:
                 deadline = last_moment
                 if now >= deadline:
-                    raise WorkerDied("a killed notebook did not end")
+                    raise WorkerDied("a notebook's process did not end when we killed it")
             if look_again is not None and now >= look_again:
                 waiting.register(reading, select.POLLIN)
             until = (

@@ -137,7 +137,7 @@ def into_namespaces(control: socket.socket, readable: Iterable[str]) -> str | No
         os.wait()
         os._exit(0)
     os.wait()
-    return said.decode(errors="replace") or "it ended without a word"
+    return said.decode(errors="replace") or "it exited without an error message"
 
 
 def load_libraries() -> None:
@@ -391,7 +391,7 @@ class WarmParent:
         try:
             return self.tried(self.layers, None, target)
         except IsolationError as error:
-            return [f"the layers do not work together: {error}"]
+            return [f"the layers of isolation do not work together: {error}"]
 
     def why_not(self, layer: str, target: Target) -> str | None:
         if layer in self.off:
@@ -505,7 +505,7 @@ class WarmParent:
             self.confine(self.layers, run["limits"], folder)
             os.dup2(1, 2)  # from here on nothing is heard of it but records
             if os.getppid() != parent:
-                raise ProcessLookupError("the warm parent ended before it could be watched")
+                raise ProcessLookupError("the parent process of the sandbox exited too early")
             os.environ.update(HOME=folder, TMPDIR=folder, MPLCONFIGDIR=folder)
             code = 1
             from coursework.grading.execution import notebook

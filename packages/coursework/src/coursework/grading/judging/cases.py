@@ -158,7 +158,7 @@ def case_of(
             cases and case.edition != next(iter(cases.values())).edition
         ):
             continue
-        rule = f"{case.rule}, as the source stood before" if number else case.rule
+        rule = f"{case.rule}, as the source was before" if number else case.rule
         cases[case.own.variant] = replace(case, rule=rule)
         texts[case.own.variant] = text_of(own[case.own.variant].variant)
         for place in (case.own, *case.siblings.values()):

@@ -732,9 +732,9 @@ class Journal:
         if {"student", "question", "words"} <= header:
             return self._take_in_appeals(rows, records, who)
         raise ValueError(
-            f"{path}: decisions are a copy of undecided.csv, with its columns id and version, "
-            "and with credit filled in; appeals have the columns student, question and "
-            f"words. This table has {', '.join(sorted(header)) or 'none'}."
+            f"{path}: a table of decisions is a copy of undecided.csv, with its columns "
+            "id and version and with credit filled in; a table of appeals has the columns student, "
+            f"question and words. This table has {', '.join(sorted(header)) or 'none'}."
         )
 
     def _take_in_decisions(

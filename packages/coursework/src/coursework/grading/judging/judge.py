@@ -107,7 +107,9 @@ class Judge:
                 found[begun] = self._stopped(record, begun)
 
     def _stopped(self, record: Record, name: str) -> Mark:
-        self.log(f"not judged, too much work: {record.student!r} {record.assignment} {name}")
+        self.log(
+            f"not judged, because it takes too long: {record.student!r} {record.assignment} {name}"
+        )
         own, _ = marking.of_student(
             {name: self.questions[record.assignment][name]}, record.student, record, self.contracts
         )

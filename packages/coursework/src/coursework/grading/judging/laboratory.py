@@ -2,7 +2,7 @@
 and who loses, and a person agrees.
 
 A mark is new, or it was given before. New marks are given at once. One that was given moves only
-through :func:`settle`, whatever would move it: work that was handed in anew, a question that was
+through :func:`settle`, whatever would move it: work that was handed in again, a question that was
 mended, another worth, a decision, a policy, a newer version of the software. What a mended question
 may do to marks is for its author to choose, as a policy: nobody loses by it, all who had a faulty
 variant have its points, or it counts for nobody.
@@ -285,7 +285,7 @@ def settle(
     agree : function
         Hears what would move, and says whether it shall. Asked only where something would.
     why : str
-        What moves a mark, where it is not work that was handed in anew.
+        What moves a mark, where it is not work that was handed in again.
     dry_run : bool
         Give nothing.
     """
@@ -341,7 +341,7 @@ def _given(record: Record, before: Given | None, why: str, who: str) -> Given:
     elif sorted(before.files.values()) != sorted(files.values()):
         beaten = {one.sha256 for one in record.superseded if one.comes_to_less}
         all_beaten = beaten.issuperset(before.files.values())
-        why = "another attempt is the best now" if all_beaten else "handed in anew"
+        why = "another attempt is now the best" if all_beaten else "handed in again"
     else:
         moved = [
             record.marks[name] for name, part in marks.items() if before.marks.get(name) != part

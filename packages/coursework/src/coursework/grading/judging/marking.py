@@ -56,7 +56,8 @@ UNJUDGED = Mark(
     "undecided",
     "too much work",
     messages=(
-        "Evaluating this answer exceeds the limits of time or memory, so your instructor decides.",
+        "Evaluating this answer exceeds the limits of time or memory, so your instructor will "
+        "decide.",
     ),
 )
 #: A figure in the text of a question, as :func:`coursework.checking.variants.image` writes it.
@@ -484,7 +485,7 @@ def _by_a_sibling(contract: Contract, found: Mark, sibling: str) -> Mark:
         return replace(found, note="by a sibling", points=contract.worth, messages=(said,))
     said = (
         f"You solved `{sibling}` without help, but not the question itself, so your instructor "
-        "decides."
+        "will decide."
     )
     messages = (*found.messages, said)
     return replace(

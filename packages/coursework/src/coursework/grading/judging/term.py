@@ -98,8 +98,8 @@ class Assignment:
         """What a sitting does to homework on the same questions, in a sentence."""
         if self.homework_cap is not None:
             return (
-                "Homework on these questions counts at most the share that a student shows here, "
-                f"plus {100 * self.homework_cap:g} % of the points."
+                "Homework on these questions counts for at most the share that a student earns "
+                f"here, plus {100 * self.homework_cap:g} % of the points."
             )
         if self.homework_factor is not None:
             share = f"{100 * self.homework_factor:g} %"

@@ -259,7 +259,7 @@ def _earlier(path: str | Path) -> Year:
     try:
         year = Year.from_json(json.loads(Path(path).read_text("utf8")), "it")
         if year.format != FORMAT:
-            raise ValueError("it is of another format")
+            raise ValueError("it has a different format")
         return year
     except (OSError, ValueError) as error:
         raise BadTerm(f"{path} does not contain course statistics ({error}).") from None

@@ -182,7 +182,7 @@ class Roster:
             if kind == "github" and kind not in self.kinds:
                 return None, (
                     "The roster has no column `github`, and a GitHub name alone proves nothing, "
-                    "since anybody may choose one."
+                    "since anybody can choose one."
                 )
         return None, "Nobody in the roster matches."
 

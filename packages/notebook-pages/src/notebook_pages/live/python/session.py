@@ -365,7 +365,7 @@ def hint(error, name):
         return (
             f"\n\n{error.name} is not part of this page's Python, and nothing can be installed "
             "here: it has the standard library, SymPy, and what this book's own cells use. Check "
-            "the spelling, or take the notebook away and run it in your own Jupyter."
+            "the spelling, or download the notebook and run it in your own Jupyter."
         )
     if not isinstance(error, SyntaxError) or error.filename != name:
         return ""
@@ -374,22 +374,24 @@ def hint(error, name):
         command = line.lstrip("%!").split()[0] if line.lstrip("%!").split() else ""
         if command in ("pip", "conda"):
             return (
-                "\n\nOn this page nothing can be installed: it has SymPy and this book's own "
-                "packages."
+                "\n\nNothing can be installed on this page. It has SymPy and "
+                "this book's own packages."
             )
         if command in ("time", "timeit"):
             return (
-                "\n\nCommands that begin with % are Jupyter's. Here: import timeit, and call "
-                "timeit.timeit."
+                "\n\nCommands that begin with % work only in Jupyter. Here, import "
+                "timeit and call timeit.timeit."
             )
-        return "\n\nCommands that begin with % or ! are Jupyter's; this page has only Python."
+        return (
+            "\n\nCommands that begin with % or ! work only in Jupyter; this page has only Python."
+        )
     if line.endswith("?") or line.startswith("?"):
-        return f"\n\nThe question mark is Jupyter's. Here: help({line.strip('?')})"
+        return f"\n\nThe question mark works only in Jupyter. Here, write help({line.strip('?')})"
     return ""
 
 
 def cannot_ask(prompt=""):
-    raise RuntimeError("input() cannot ask on this page: write the value into the code instead")
+    raise RuntimeError("input() does not work on this page: write the value into the code instead")
 
 
 def ends_in_semicolon(code):

@@ -91,7 +91,7 @@ export function checkDcm(matrix) {
   const worst = fault([p, q, product]), turned = determinant(matrix);
   if (worst <= 2 * TOLERANCE && turned < 0) {
     return `dcm is orthogonal but left-handed: its determinant is ${general(turned)}, not +1. One row or column `
-      + 'has the wrong sign, or two have changed places';
+      + 'has the wrong sign, or two are swapped';
   }
   const what = p === q ? `row ${AXES[p]} has length ${general(Math.sqrt(product), 12)}, not 1`
     : `rows ${AXES[p]} and ${AXES[q]} have dot product ${general(product)}, not 0`;
@@ -102,8 +102,8 @@ export function checkDcm(matrix) {
   let cause = 'An entry or a sign is wrong, or the rows are not unit vectors of one triad';
   if (matrix.flat().every((entry) => entry === 0)) cause = 'Every entry is zero';
   else if (scaled) {
-    cause = `The whole matrix is ${general(Math.sqrt(most), 8)} times an orthogonal one, as from a quaternion `
-      + 'that is not of unit length';
+    cause = `The whole matrix is ${general(Math.sqrt(most), 8)} times an orthogonal one, as if from a quaternion `
+      + 'that does not have unit length';
   } else if (worst < 0.1) {
     cause = 'Were its entries rounded or measured? nearest_dcm finds the nearest valid matrix';
   }

@@ -39,7 +39,7 @@ const firstOf = (pattern, text) => text.match(pattern)?.[0].trim();
 export function readPoses(given, name, table, kind = null, noise = 0) {
   const { rows, half, declared } = rowsOf(given, name, spellingOf(table));
   const numbers = posesOf(rows, name, kind, half);
-  if (numbers.some((pose) => pose.some((value) => !Number.isFinite(value)))) throw new Error(`the ${name} side holds a number that is not finite`);
+  if (numbers.some((pose) => pose.some((value) => !Number.isFinite(value)))) throw new Error(`the ${name} side contains a number that is not finite`);
   const kinds = kindsOf(numbers, kind, half + noise, name);
   return { kinds, numbers, half, declared, large: numbers.flat().some((value) => Math.abs(value) > 2 * Math.PI + 0.01) };
 }
@@ -54,13 +54,13 @@ function rowsOf(given, name, spelling) {
   if (has(spelling.number, bare)) text = bare;   // what stands in comments alone was meant
   text = withoutPlaces(decimalPoints(text), spelling);
   const wrong = firstOf(spelling['not a number'], text), arithmetic = firstOf(spelling.arithmetic, text);
-  if (wrong) throw new Error(`the ${name} side holds '${wrong}', which is not a number`);
-  if (arithmetic) throw new Error(`the ${name} side holds '${arithmetic}': work it out and paste the result`);
+  if (wrong) throw new Error(`the ${name} side contains '${wrong}', which is not a number`);
+  if (arithmetic) throw new Error(`the ${name} side contains '${arithmetic}': work it out and paste the result`);
   text = sums(text, spelling);
   const found = text.match(spelling.number);
   if (!found) {
     const start = text.trim().replace(/\s+/g, ' ').slice(0, 40);
-    throw new Error(start ? `the ${name} side holds no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
+    throw new Error(start ? `the ${name} side contains no numbers: '${start}'` : `the ${name} side is empty: paste its numbers`);
   }
   const declared = has(spelling.degrees, text) ? { unit: 'degrees' } : has(spelling.radians, text) ? { unit: 'radians' } : {};
   const named = labelled(text, spelling);
@@ -200,7 +200,7 @@ function posesOf(rows, name, kind, half) {
   const place = total > 4 && four ? quaternionAmong([flat], half) : null;
   if (place !== null) return [flat.slice(place, place + 4)];
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
-  throw new Error(`the ${name} side holds ${total} number${total === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
+  throw new Error(`the ${name} side contains ${total} number${total === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
     + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
     + 'next to a position, a quaternion must be four consecutive numbers of length 1');
 }
@@ -226,7 +226,7 @@ const isUnit = (vectors, doubt) => vectors.every((vector) => Math.abs(length(vec
 
 function kindsOf(numbers, kind, doubt, name) {
   const count = numbers[0].length;
-  if (kind !== null && COUNT[kind] !== count) throw new Error(`the ${name} side holds ${count} numbers per pose; a ${kind} takes ${COUNT[kind]}`);
+  if (kind !== null && COUNT[kind] !== count) throw new Error(`the ${name} side contains ${count} numbers per pose; a ${kind} takes ${COUNT[kind]}`);
   const four = count === 4 && isUnit(numbers, doubt + NORMALISED / 2) ? ['quaternion'] : ['axis and angle'];
   const kinds = kind !== null ? [kind] : { 9: ['matrix'], 3: ['Euler angles', 'rotation vector'] }[count] ?? four;
   if (kinds[0] === 'matrix') demandOrthogonal(numbers, doubt, name);
@@ -727,9 +727,9 @@ function namedAxes(relation, swapped, table) {
 }
 
 function insideWords([what, read, built, places]) {
-  if (what === 'quaternion') return `a quaternion on the way was stored as ${[...read].join(', ')} and read as ${[...built].join(', ')}, or the other way round`;
+  if (what === 'quaternion') return `a quaternion on the way was stored as ${[...read].join(', ')} and read as ${[...built].join(', ')}, or vice versa`;
   const put = places === '321' ? `${[...built].reverse().join('-')} (space fixed)` : `${[...built].join('-')} (body fixed)${places === '123' ? '' : `, taking them in the order ${[...places].join(', ')}`}`;
-  return `angles on the way: they were read off as ${[...read].join('-')} (body fixed) and put together as ${put}`;
+  return `angles on the way: they were computed as ${[...read].join('-')} (body fixed) and combined as ${put}`;
 }
 
 // Whether the second side's numbers are the inverse of what is meant: all answers that are open.
@@ -779,7 +779,7 @@ function namesOf(best, others, known, ways, table) {
       orders.forEach((order, k) => { if (order) declare[k].order = order; });
       if (orders.some(Boolean)) {
         const each = orders.map((order, k) => order && `${ORDERS[order] ?? order} in the ${['first', 'second'][k]}`).filter(Boolean).join(' and ');
-        conditions.push(`the scalar part stands ${orders[0] === orders[1] ? `${ORDERS[orders[0]]} in both` : each}`);
+        conditions.push(`the scalar part comes ${orders[0] === orders[1] ? `${ORDERS[orders[0]]} in both` : each}`);
       }
       const matrix = [chain.first.kind, chain.second.kind].includes('matrix');
       if (swaps.length > 1) {
@@ -798,13 +798,13 @@ function namesOf(best, others, known, ways, table) {
   if (names.length < 2) return { names: [], question: '' };
   const differ = (what) => new Set(names.map(({ declare }) => declare[0][what])).size > 1, asked = [];
   if (names.some(({ faults }) => faults[0].includes('on the way'))) asked.push('Did angles or a quaternion pass from one program to the other?');
-  if (differ('order')) asked.push('Does the scalar part of the quaternions stand first or last?');
+  if (differ('order')) asked.push('Does the scalar part of the quaternions come first or last?');
   if (differ('way')) {
-    asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Which way does the first matrix lead: are the body\'s axes its rows or its columns?'
+    asked.push([best.first.kind, best.second.kind].includes('matrix') ? 'Are the body\'s axes the rows or the columns of the first matrix?'
       : 'Which side gives the inverse, the world as seen from the body?');
   }
   if (differ(TURNS)) asked.push('Which side\'s rotations are about axes of the body (body fixed), and which side\'s about axes that stay fixed (space fixed)?');
-  if (differ('sequence')) asked.push('Which sequence of rotations does the first program use? The numbers stay the same if the axes of both programs are renamed alike.');
+  if (differ('sequence')) asked.push('Which sequence of rotations does the first program use? The numbers stay the same if the axes of both programs are renamed in the same way.');
   return { names, question: asked.join(' ') };
 }
 
@@ -847,7 +847,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     counts[which] = 1;
   }
   if (counts[0] !== counts[1]) {
-    throw new Error(`the first side holds ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
+    throw new Error(`the first side has ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
   }
   // What stands in the text goes before what the manual says, and what the reader says before both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));

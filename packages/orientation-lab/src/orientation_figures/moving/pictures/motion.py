@@ -190,14 +190,14 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         f"A {figure.body} that spins freely about its {figure.axis} axis, with moments of "
         f"inertia {', '.join(f'{moment:g}' for moment in figure.moments)} g m^2 about x, y and z, "
-        f"drawn with its triad A from its {_DESCRIPTIONS[figure.description]} after "
-        f"{run['time'][-1]:.1f} seconds, {restored}, with the {_METHODS[figure.method]} method in "
-        f"steps of {1000 * figure.step:g} milliseconds. It {times}. The unit vectors of A, which "
-        f"should have length 1, have lengths {lengths}. The matrix departs from orthogonality by "
-        f"{_words(fault)}, and the orientation is wrong by {_words(error)} radians. The dashed "
-        "reference was computed with steps ten times finer, and every description uses the "
-        "angular velocity of those steps. The arrow H is the angular momentum, which keeps its "
-        "direction. The triad of N is in the corner.",
+        f"and its triad A after {run['time'][-1]:.1f} seconds, computed with the "
+        f"{_DESCRIPTIONS[figure.description]} by the {_METHODS[figure.method]} method in steps of "
+        f"{1000 * figure.step:g} milliseconds, {restored}. It {times}. The unit vectors of A, "
+        f"which should have length 1, have lengths {lengths}. The matrix departs from "
+        f"orthogonality by {_words(fault)}, and the orientation is wrong by {_words(error)} "
+        "radians. The dashed reference was computed with steps ten times finer, and every "
+        "description uses the angular velocity of those steps. The arrow H is the angular "
+        "momentum, which keeps its direction. The triad of N is in the corner.",
         scale=SIZE,
     )
     reference = dcm_from_quaternion(run["reference"][-1])
