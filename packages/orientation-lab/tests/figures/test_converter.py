@@ -193,6 +193,7 @@ def test_the_example_of_a_manual_that_cannot_be_run():
     "form, text, message",
     [
         ("quaternion", "1 0 0", "There are 3 numbers here, but quaternion needs 4"),
+        ("quaternion", "1", "There is 1 number here, but quaternion needs 4"),
         ("quaternion", "2, 0, 0, 0", "length 2.0000, not 1"),
         ("matrix", "1 0 0 0 1 0 0 0 -1", "left-handed"),
         ("matrix", "nothing", "0 numbers"),

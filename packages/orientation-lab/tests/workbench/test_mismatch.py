@@ -568,6 +568,7 @@ def test_the_command(tmp_path, capsys):
         (["first.txt", "1 0 0 0"], "no such file: first.txt"),
         (["runs/2026-11/first.csv", "1 0 0 0"], "no such file: runs"),
         (["1 0 0 0"], "required: second"),
+        (["1 0 0 0", "1 0 0 0\n0 1 0 0"], "the first side has 1 pose and the second 2:"),
         (["1 0 0 0", "1 0 0 0", "--noise", "much"], "--noise"),
         (["1 0 0 0", "1 0 0 0", "--first", "Maya"], "unknown program"),
         (["1 0 0 0", "1 0 0 0", "--first-is", "sideways"], "not a kind of description"),

@@ -232,7 +232,7 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     broken = [*text[:400], text[400].replace(text[400].split(",")[4], "ERR"), *text[401:]]
     [table] = read_tables("\n".join(broken))
     assert (
-        "line 401, column 5 (acc_x): 'ERR'" in table.remarks[0]
+        "left out 1 row: line 401, column 5 (acc_x): 'ERR'" in table.remarks[0]
         and len(table.values) == len(text) - 2
     )
     bad = [line if k % 9 else line.replace(",", ",x", 1) for k, line in enumerate(text)]

@@ -133,8 +133,8 @@ def explain(
         counts[side] = 1
     if counts[0] != counts[1]:
         raise ValueError(
-            f"the first side has {counts[0]} poses and the second {counts[1]}: they must be the "
-            "same poses, in order"
+            f"the first side has {counts[0]} pose{'s' * (counts[0] != 1)} and the second "
+            f"{counts[1]}: they must be the same poses, in order"
         )
     one, other = (
         search.side(poses.kinds, poses.numbers, poses.half, declared, noise)

@@ -38,6 +38,7 @@ from .motion import (
     stretches,
     written,
 )
+from .table import number_of
 
 if TYPE_CHECKING:
     from .content import Content, Group
@@ -185,13 +186,14 @@ class _Bench:
             self.say(
                 "order of time",
                 RED,
-                f"time stands still or runs backwards {back} times",
+                f"time stands still or runs backwards {number_of(back, 'time')}",
                 {"times": back},
             )
         long = steps > 2.5 * step
         lost = float(steps[long].sum() / time[-1]) if time[-1] > 0 else 0.0
         words = (
-            f"{int(long.sum())} gaps, the longest of {steps.max():.3g} s, {lost:.1%} of the time"
+            f"{number_of(int(long.sum()), 'gap')}, the longest of {steps.max():.3g} s, {lost:.1%} "
+            "of the time"
             if long.any()
             else "none"
         )
@@ -451,7 +453,7 @@ class _Bench:
             self.say(
                 "scale of the gyroscope",
                 UNKNOWN,
-                f"{len(poses)} still pose{'s' * (len(poses) != 1)}: "
+                f"{number_of(len(poses), 'still pose')}: "
                 f"{'too few' if len(poses) < 4 else 'too alike'} to track gravity from pose to "
                 "pose",
                 {},
@@ -493,7 +495,7 @@ class _Bench:
     def _scale(self, fitted: ScaleFit, poses: Sequence[Stretch], drifting: bool) -> float | Array:
         """What to multiply the gyroscope by, if that is known."""
         (common, uncertain), left = fitted.common, fitted.left
-        carries = f"its rotations carry gravity through {len(poses)} poses"
+        carries = f"its rotations carry gravity through {number_of(len(poses), 'pose')}"
         self.facts["scale of the gyroscope"] = common
         if self.counts:
             self.facts["unit of the gyroscope"] *= common
@@ -682,7 +684,7 @@ class _Bench:
             return self.say(
                 "accelerometer",
                 UNKNOWN,
-                f"{len(means)} still pose{'s' * (len(means) != 1)}: too few or too alike to "
+                f"{number_of(len(means), 'still pose')}: too few or too alike to "
                 "separate offset and scale",
                 {},
                 "Hold it still in nine poses, each tilted a different way.",
@@ -691,7 +693,8 @@ class _Bench:
         uneven, spread, advice = float(np.ptp(lengths)), float(np.std(lengths)), ""
         light = YELLOW if uneven > 0.04 else GREEN
         words = (
-            f"gravity measures {lengths.min():.3f} to {lengths.max():.3f} g in {len(means)} poses"
+            f"gravity measures {lengths.min():.3f} to {lengths.max():.3f} g in "
+            f"{number_of(len(means), 'pose')}"
         )
         name, offset, scales, left = uneven_lengths(means)
         if light == YELLOW and self._cut_off("accelerometer"):
@@ -875,9 +878,10 @@ class _Bench:
             return self.say(
                 "missing samples",
                 RED,
-                f"at {int(leaps.sum())} places, the first at {self.time[1:][leaps][0]:.2f} s, "
-                "gravity and field jump further than a rotation between two samples could take "
-                "them: samples are missing there, although the times continue as if none were",
+                f"at {number_of(int(leaps.sum()), 'place')}, the first at "
+                f"{self.time[1:][leaps][0]:.2f} s, gravity and field jump further than a rotation "
+                "between two samples could take them: samples are missing there, although the "
+                "times continue as if none were",
                 {"places": int(leaps.sum())},
                 "Record the instrument's own time with each sample: no filter can reconstruct what "
                 "was lost.",

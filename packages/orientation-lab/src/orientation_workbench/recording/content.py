@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from .table import RecordingError, Table, read_tables
+from .table import RecordingError, Table, number_of, read_tables
 
 if TYPE_CHECKING:
     from .table import Array, Source
@@ -272,7 +272,7 @@ def _time(table: Table) -> tuple[int | None, Array, str, bool]:
     if not candidates:
         back = (np.diff(table.values, axis=0) < 0).sum(axis=0)
         words = "there is no time column" + "".join(
-            f": {column} runs backwards {times} times"
+            f": {column} runs backwards {number_of(times, 'time')}"
             for column, times in zip(table.columns, back, strict=True)
             if re.search(TIME, column.lower()) and times
         )

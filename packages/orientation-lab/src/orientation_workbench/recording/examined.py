@@ -109,12 +109,16 @@ def as_text(examined: Examined) -> str:
             f"  -> {verdict.advice}" if verdict.advice else "",
         )
     ]
-    lines = [
-        line
-        for row in rows
-        for line in wrap(row, WIDTH, subsequent_indent=" " * 5, break_long_words=False)
-    ]
-    return "\n".join([examined.name, *lines])
+    return "\n".join(
+        [
+            examined.name,
+            *(
+                line
+                for row in rows
+                for line in wrap(row, WIDTH, subsequent_indent=" " * 5, break_long_words=False)
+            ),
+        ]
+    )
 
 
 def as_data(examined: Examined) -> dict[str, object]:

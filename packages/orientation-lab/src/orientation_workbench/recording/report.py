@@ -209,8 +209,8 @@ def plots(examined: Examined) -> list[tuple[str, str]]:
     if examined.rates is not None:
         still = sum(stretch.still for stretch in examined.still)
         words = (
-            f"How fast it rotates. Shaded: {still} stretches in which it lies still, "
-            f"{len(examined.still) - still} in which it is held."
+            f"How fast it rotates. Shaded: the stretches in which it lies still ({still}) and in "
+            f"which it is held ({len(examined.still) - still})."
         )
         with drawing(2.6, words, "time (s)", "rate (°/s)") as axes:
             rates = np.degrees(np.linalg.norm(examined.rates[few], axis=1))

@@ -85,6 +85,15 @@ class Table(NamedTuple):
     head: str = ""
 
 
+def number_of(count: int, noun: str) -> str:
+    """A number of things in words.
+
+    >>> number_of(1, 'row'), number_of(2, 'row')
+    ('1 row', '2 rows')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def read_tables(source: Source, name: str | None = None) -> list[Table]:
     """Read all tables of files, of a folder, or of a text that is at hand.
 
@@ -184,8 +193,7 @@ def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
             # Beside the measurements there are often settings and remarks.
             reasons.append(str(error))
     if not tables:
-        told = "".join(f"; {reason}" for reason in broken + reasons)
-        raise RecordingError(f"{name} contains no table of numbers{told}")
+        raise RecordingError("; ".join([f"{name} contains no table of numbers", *broken, *reasons]))
     tables[0].remarks.extend(broken)
     return tables
 
@@ -338,9 +346,9 @@ def _table(
     if len(numeric) < 3 or len(full) < 8:
         line, row = (sample or there)[0]
         raise RecordingError(
-            f"{name} is not a table of numbers: it has {len(full)} rows of one form with "
-            f"{len(numeric)} columns of numbers, and a recording needs at least eight rows and "
-            "three columns. "
+            f"{name} is not a table of numbers: it has {number_of(len(full), 'row')} of one form "
+            f"with {number_of(len(numeric), 'column')} of numbers, and a recording needs at least "
+            "eight rows and three columns. "
             f"Line {line} begins: {' '.join(row)[:60]!r}"
         )
 
@@ -358,7 +366,9 @@ def _table(
     broken: list[str] = []
     for line, row in there[begin:]:
         if len(row) != width:
-            broken.append(f"line {line} has {len(row)} columns where the others have {width}")
+            broken.append(
+                f"line {line} has {number_of(len(row), 'column')} where the others have {width}"
+            )
             continue
         found: list[float | None]
         try:
@@ -380,7 +390,7 @@ def _table(
         raise BrokenTable(
             f"{name}: {len(broken)} of {len(kept) + len(broken)} rows do not fit. {told}"
         )
-    remarks = [f"{len(broken)} rows are left out: {told}"] if broken else []
+    remarks = [f"left out {number_of(len(broken), 'row')}: {told}"] if broken else []
     head = "\n".join(",".join(row) for _, row in there[:begin])
     return Table(name, [columns[k] for k in numeric], np.array(kept, dtype=float), remarks, head)
 

@@ -1,7 +1,7 @@
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, checkDcm, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, dcmFromSpaceFixed, decimalPoints, degrees, determinant, dot, gimbalLockMargin, IDENTITY,
   length, multiply, nearestDcm, quaternionFromDcm, radians, reversed, scale, SEQUENCES,
-  spaceFixedFromDcm, transpose, unit } from './mathematics.js';
+  several, spaceFixedFromDcm, transpose, unit } from './mathematics.js';
 import { picture, SIZE } from './converter_picture.js';
 import { canTakeAway, languageChoice, textBox, textOf, textsIn } from './take_away.js';
 import { button, change, choice, element, fixed, follow, group, liveText, numberTable, onceAFrame, open, put,
@@ -35,7 +35,7 @@ export const sequencesOf = (side, programs) => programs[side.program]?.sequences
 export function read(side, text) {
   const numbers = (decimalPoints(text).replace(MINUS, '-').match(NUMBER) ?? []).map(Number), wanted = FORMS[side.form];
   const commas = numbers.length > wanted && /\d,\d/.test(text) ? ' Write 0.5 for a half: a comma separates two numbers.' : '';
-  if (numbers.length !== wanted) throw new Error(`There are ${numbers.length} numbers here, but ${side.form} needs ${wanted}.${commas}`);
+  if (numbers.length !== wanted) throw new Error(`There ${numbers.length === 1 ? 'is' : 'are'} ${several(numbers.length, 'number')} here, but ${side.form} needs ${wanted}.${commas}`);
   let dcm = null, said = '';
   if (side.form === 'matrix') {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));

@@ -11,6 +11,7 @@ export const AXES = ['x', 'y', 'z'];
 export const SEQUENCES = [...PROPER_EULER, ...TAIT_BRYAN];
 export const IDENTITY = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const TOLERANCE = 1e-9;
+export const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 // Vectors and matrices.
 

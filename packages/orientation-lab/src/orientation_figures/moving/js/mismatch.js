@@ -4,7 +4,7 @@
 // tests/test_mismatch_in_the_page.py.
 import { AXES, axisAngleFromDcm, bodyFixedFromDcm, cross, dcmFromAxisAngle, dcmFromBodyFixed,
   dcmFromQuaternion, decimalPoints, determinant, distance, dot, IDENTITY, length, multiply, nearestDcm, quaternionFromDcm, scale,
-  SEQUENCES, transpose, unit } from './mathematics.js';
+  SEQUENCES, several, transpose, unit } from './mathematics.js';
 
 const SINGLE_PRECISION = 2e-6, BY_CHANCE = 1e-3, LOOKED_AT = 300, MANY = 500, MOTION = 3, LOOSER = 6, EXACT = 20, DEARER = 1.15, DEARER_ON_ONE_SIDE = 0.4, DEARER_CROSSED = 1.7, READ_AS = 60, SLACK = 1e-4, NORMALISED = 1e-3;
 const COUNT = { matrix: 9, quaternion: 4, 'Euler angles': 3, 'rotation vector': 3, 'axis and angle': 4 };
@@ -200,7 +200,7 @@ function posesOf(rows, name, kind, half) {
   const place = total > 4 && four ? quaternionAmong([flat], half) : null;
   if (place !== null) return [flat.slice(place, place + 4)];
   const where = rows.length === 1 ? 'one line' : `${rows.length} lines`;
-  throw new Error(`the ${name} side contains ${total} number${total === 1 ? '' : 's'} in ${where}: a pose takes 3 (angles, or a rotation `
+  throw new Error(`the ${name} side contains ${several(total, 'number')} in ${where}: a pose takes 3 (angles, or a rotation `
     + 'vector), 4 (a quaternion, or an axis and its angle), 9 (a matrix) or 16 (a matrix with a translation); '
     + 'next to a position, a quaternion must be four consecutive numbers of length 1');
 }
@@ -847,7 +847,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     counts[which] = 1;
   }
   if (counts[0] !== counts[1]) {
-    throw new Error(`the first side has ${counts[0]} poses and the second ${counts[1]}: they must be the same poses, in order`);
+    throw new Error(`the first side has ${several(counts[0], 'pose')} and the second ${counts[1]}: they must be the same poses, in order`);
   }
   // What stands in the text goes before what the manual says, and what the reader says before both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));

@@ -1,4 +1,4 @@
-import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, slerp } from './mathematics.js';
+import { dcmFromQuaternion, determinant, IDENTITY, quaternionFromDcm, several, slerp } from './mathematics.js';
 import { carriedBy, fragmentOf } from './address.js';
 import { drawnDcms, explaining, formulaOf, mendingLine, taughtBy, TURNS } from './mismatch.js';
 import { picture, SIZE } from './workbench_picture.js';
@@ -36,7 +36,6 @@ const UNANSWERED = { order: UNKNOWN, way: UNKNOWN, [TURNS]: UNKNOWN };
 const NOTHING_KNOWN = { program: UNKNOWN, kind: UNKNOWN, sequence: UNKNOWN, ...UNANSWERED };
 const knownOf = (side) => Object.fromEntries(Object.entries(side).filter(([name, value]) => value !== UNKNOWN && name !== 'program'
   && (name !== 'sequence' || side.kind === 'Euler angles' || side.kind === UNKNOWN)));
-const several = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 export function render({ model, el }) {
   const table = model.get('table'), examples = model.get('examples'), programs = Object.keys(table.programs);
