@@ -162,3 +162,11 @@ def browser():
         chromium.new_context = open_patient_context
         yield chromium
         chromium.close()
+
+
+@pytest.fixture
+def page(browser):
+    """A page in a window as wide as a laptop's, which keeps nothing of another test."""
+    context = browser.new_context(viewport={"width": 1300, "height": 900})
+    yield context.new_page()
+    context.close()

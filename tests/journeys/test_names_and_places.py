@@ -11,13 +11,6 @@ SETTLED = "() => !document.documentElement.matches('.settling, .in-parts')"
 READY = ".moving[data-figure=successive][data-ready]"
 
 
-@pytest.fixture
-def page(browser):
-    context = browser.new_context(viewport={"width": 1300, "height": 900})
-    yield context.new_page()
-    context.close()
-
-
 def test_no_two_buttons_of_questions_have_the_same_name(page, site):
     page.goto(site + PAGES[0])
     page.wait_for_function(SETTLED)

@@ -65,13 +65,6 @@ def test_a_field_takes_a_decimal_comma_and_an_angle_of_more_than_half_a_turn(eng
         engine.wait(f"() => ({value})() === '{shown}'")
 
 
-@pytest.fixture
-def page(browser):
-    context = browser.new_context(viewport={"width": 1300, "height": 900})
-    yield context.new_page()
-    context.close()
-
-
 def write_in_a_cell(page, site):
     page.goto(site + CELL)
     page.wait_for_function(SETTLED)

@@ -1,6 +1,5 @@
 """What a check remembers, says and offers, whatever was judged: the judging is the test's own."""
 
-import itertools
 import sys
 from types import SimpleNamespace
 
@@ -218,17 +217,6 @@ def test_where_errors_count_what_is_not_right_is_one(desk, monkeypatch):
             check(ARM, answer)
 
 
-def test_it_is_kept_whose_numbers_an_answer_is_for(desk):
-    for student, name in (("ann", SAW), ("", SAW), ("", ARM)):
-        desk.student = student
-        check(name, "half")
-        assert entry_of(name).whose == (None if name == ARM else student)
-    for count, whose in ((1, None), (2, "")):
-        desk.questions[WORDS] = Sealed(Question("free text", variant=Variant(count=count)))
-        check(WORDS, "right")
-        assert entry_of(WORDS).whose == whose
-
-
 def test_a_mistake_is_worth_another_look_until_it_is_right_some_days_later(desk):
     check(ARM, "half")
     for days, mistake in ((2.9, "half"), (3, "half"), (3.1, "")):
@@ -368,40 +356,6 @@ def test_a_code_opens_the_worked_solution(desk):
     assert entry_of().help == "solution"
 
 
-def offered(notice, order):
-    name = SAW + ("/sibling", "/sibling-2")[order]
-    return (
-        f"You had help: {notice}. For practice, solve it with other numbers and without help. "
-        f"`variant('{name}')` shows them, and `check('{name}', ...)` checks your answer."
-    )
-
-
-def test_who_had_help_is_offered_a_sibling(desk):
-    check(SAW, "half")
-    reply = check(SAW, "right")
-    assert (reply.help, reply.sibling) == ("mistake", f"{SAW}/sibling")
-    assert reply.messages == ["Said.", offered("we named your mistake", 0)]
-    given_up = check_module.worked_solution(f"{SAW}/sibling", "abcd")
-    assert given_up.messages == [GIVES_UP, offered("we showed the worked solution", 1)]
-    assert given_up.sibling == f"{SAW}/sibling-2"
-    check(f"{SAW}/sibling-2", "half")
-    last = check(f"{SAW}/sibling-2", "right")
-    assert last.messages[1:] == ["You had help: we named your mistake. There are no more siblings."]
-    assert last.sibling == ""
-    Progress.read().put({f"{SAW}/sibling": Entry("wrong", help="of another kind")})
-    assert "You had help: we showed it." in check(f"{SAW}/sibling", "right").messages[1]
-
-
-def test_who_had_none_is_told_so_at_a_sibling(desk):
-    assert check(SAW, "right").messages == ["Said."]
-    assert check(f"{SAW}/sibling", "right").messages == [
-        "Said.",
-        "Solved without help.",
-    ]
-    check(ARM, "half")
-    assert check(ARM, "right").messages == ["Said."]  # all have the same numbers
-
-
 # --- progress -----------------------------------------------------------------------------------
 
 
@@ -469,31 +423,6 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
     put(saw=Entry("wrong", mistake="double", mistake_at=desk.now - 4 * DAY))
     [line] = check_module.progress().messages[2:]
     assert line.endswith(f"`{ARM}` (3 days ago: half), `{SAW}` (4 days ago: double).")
-
-
-def test_what_is_right_with_other_numbers_is_told_apart(desk):
-    put(saw=Entry("correct", variant=1, numbers="one", whose="bob"), arm=Entry("correct"))
-    desk.numbers = {SAW: (2, "two")}
-    messages = [f"Right with other numbers, but not yet with yours: `{SAW}`."]
-    assert check_module.progress().messages[2:] == messages
-    put(arm=Entry("correct", others=(Entry("correct", variant=1, numbers="one"),)))
-    assert check_module.progress().messages[2:] == messages
-    put(arm=Entry())
-    assert check_module.progress().messages == messages
-    desk.numbers = {SAW: (1, "one")}
-    assert check_module.progress().messages[0] == "The one question that you have tried is right."
-    put(saw=Entry("wrong", variant=1, numbers="one"))
-    desk.numbers = {SAW: (2, "two")}
-    assert check_module.progress().messages == ["You have not checked anything in this folder yet."]
-    check(SAW, "half")
-    assert (
-        entry_of(SAW).variant == 2
-        and entry_of(SAW).whose == "ann"
-        and len(entry_of(SAW).others) == 1
-    )
-    for which in itertools.islice(itertools.cycle([(1, "one"), (2, "two")]), 4):
-        desk.numbers = {SAW: which}
-        assert check(SAW, "half").tries == 1
 
 
 def test_the_judge_is_given_plain_data(desk, monkeypatch):

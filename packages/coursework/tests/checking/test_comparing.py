@@ -489,47 +489,6 @@ def student_with(number):
     )
 
 
-def test_questions_are_found_in_the_variant_of_a_student(folder):
-    first = find_question("levers/arm", "")
-    assert first.question.variant.number == 0 and first.pages == ("p0", "p1")
-    for number in (1, 2):
-        student = student_with(number)
-        sealed_question = find_question("levers/arm", student)
-        assert sealed_question.question.given == {"arm": number} and sealed_question.answer == "arm"
-        assert (
-            sealed_question.pages == ("p0", "p1", "p2") and sealed_question.others == first.others
-        )
-        assert sealed_question.ladder == ()
-        siblings = [
-            find_question(f"levers/arm/sibling{which}", student).question.given["arm"]
-            for which in ("", "-2")
-        ]
-        assert siblings == [(number + 1) % 3, (number + 2) % 3]
-        shown = questions.own_numbers("levers/arm", student)
-        assert shown[0] == number and len(shown[1]) == 12
-        assert questions.own_numbers("levers/arm/sibling", student)[0] == siblings[0]
-    assert questions.own_numbers("levers/arm", "")[0] == 0
-    assert find_question("third/a", "ada").question.kind == EXACT.kind
-    for name in ("levers/plain", "a/b", "later/a"):
-        assert questions.own_numbers(name, "ada") == (0, "")
-    student = student_with(1)
-    (folder / "variants" / "levers-1.json").unlink()
-    questions.notebook_questions.cache_clear()
-    assert questions.own_numbers("levers/arm", student) == (1, "")
-    with pytest.raises(NoSuchQuestion, match=r"^Your numbers .* `sealed/variants/levers-1\.json`"):
-        find_question("levers/arm", student)
-
-
-def test_a_variant_is_shown_with_its_own_numbers(folder, monkeypatch):
-    monkeypatch.setattr(questions, "identity", lambda: "")
-    own_numbers = questions.variant("levers/arm")
-    assert own_numbers._repr_markdown_() == "An arm of 0." and own_numbers.arm == 0
-    assert questions.variant("levers/plain")._repr_markdown_() == ""
-    student = student_with(2)
-    monkeypatch.setattr(questions, "identity", lambda: student)
-    assert questions.variant("levers/arm")._repr_markdown_() == "An arm of 2."
-
-
 def test_an_answer_to_other_numbers_is_told(folder):
     student = student_with(1)
     sealed = find_question("levers/arm", student)

@@ -369,16 +369,6 @@ def test_output_is_the_same_in_every_run():
         assert run.stdout.strip() == here
 
 
-def test_the_module_loads_no_pictures_by_itself():
-    code = (
-        'import sys, orientation; print([name for name in ("matplotlib", '
-        '"orientation_figures.drawing") if name '
-        "in sys.modules])"
-    )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == "[]"
-
-
 # Motion.
 
 
@@ -406,12 +396,6 @@ def key_frames(animation, letter, number):
     )
     every = np.linspace(0, 1, len(animation.moments))
     return np.column_stack([np.interp(every, times, tips[:, k]) for k in (0, 1)])
-
-
-def test_one_after_another():
-    assert one_after_another((1, 2, 3), 0) == [0, 0, 0]
-    assert one_after_another((1, 2, 3), 1.5) == [1, 1, 0]
-    assert one_after_another((1, 2, 3), 3) == [1, 2, 3]
 
 
 @pytest.mark.parametrize(

@@ -273,6 +273,8 @@ DRAGS = [
     ("gimbal", "C", 12, (15, -45)),
     ("gimbal", "D", None, (10, 35)),
     ("nine_numbers", "0", None, (-10, 45)),
+    ("quaternion", "q", None, (10, 45)),
+    ("successive", "2", None, (-40, 50)),
 ]
 
 

@@ -281,12 +281,6 @@ def test_a_matrix_and_a_quaternion_of_ones_own(seed):
         moving.ChallengeFigure(task="undo", goal=dcm)
 
 
-def test_angel_is_not_angle():
-    figure = TriadFigure()
-    with pytest.raises(AttributeError, match="did you mean angle?"):
-        figure.angel = 1
-
-
 @pytest.mark.parametrize(
     "figure, name, value, message",
     [
