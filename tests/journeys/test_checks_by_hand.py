@@ -1,6 +1,7 @@
 """A check judges the present content of the notebook, in a kernel and on a page."""
 
 import shutil
+from contextlib import suppress
 
 import nbformat
 import pytest
@@ -25,15 +26,13 @@ def kernel(tmp_path_factory):
     with client.setup_kernel():
 
         def run(code):
-            """Run a cell as a student does; return its output, or the name of its error."""
+            """Run a cell as a student does; return its output, and the name of its error."""
             cell = nbformat.v4.new_code_cell(code)
             client.nb.cells.append(cell)
-            try:
+            with suppress(CellExecutionError):
                 client.execute_cell(cell, len(client.nb.cells) - 1)
-            except CellExecutionError as error:
-                return error.ename
             return "".join(
-                part.get("data", {}).get("text/html", "") + part.get("text", "")
+                part.get("data", {}).get("text/html", "") + part.get("text", part.get("ename", ""))
                 for part in cell.outputs
             )
 
@@ -70,9 +69,20 @@ def test_a_cell_that_failed_says_nothing_of_other_answers(kernel):
     assert "stopped before its end" in kernel(CHECK)
 
 
+def test_a_check_of_a_name_that_was_never_set_says_which_cell_to_run(kernel):
+    assert "No cell that you have run sets `boom_C_N`." in kernel(
+        CHECK.replace("B_C_N", "boom_C_N")
+    )
+
+
 @pytest.mark.parametrize(
     ("answer", "shown"),
     [
+        ("None", "Your answer is <code>None</code>. A function that returns nothing"),
+        ("{beta, 1}", "This is a set, which has no order: write a list, in square brackets."),
+        ("[[float('nan')] * 3] * 3", "The answer has no finite value: it is NaN"),
+        ("{'answer': beta}", "This is a dictionary. Give the value in it"),
+        ("lambda beta: beta", "This is a function. Call it, and give what it returns."),
         ("sm.eye(3).row(0)", r'We read: <span class="math">$\begin{bmatrix} 1 &amp; 0 &amp; 0'),
         ("[[1, 0, 0], [0, 1, 0], [0, 0, sm.cos(beta)/2]]", r"\frac{1}{2} \, \cos(\beta)"),
         ("'A'", "We read: <code>&#x27;A&#x27;</code>"),

@@ -376,14 +376,14 @@ def test_the_progress_with_one_question(desk):
     put(arm=Entry("wrong"))
     reply = check_module.progress()
     assert reply.outcome == "hints" and reply.messages == [
-        "The one question that you have tried is not right yet.",
+        "You have tried 1 question: 0 right.",
         f"*levers*: 0 of 2 right, 0 of 5 points. Still open: `{ARM}`, `{SAW}`.",
     ]
     put(arm=Entry("correct"))
     reply = check_module.progress()
     assert (reply.question, reply.outcome, reply.note) == ("progress", "correct", "")
     assert reply.messages == [
-        "The one question that you have tried is right.",
+        "You have tried 1 question: 1 right.",
         f"*levers*: 1 of 2 right, 2 of 5 points. Still open: `{SAW}`.",
     ]
 
@@ -392,14 +392,14 @@ def test_the_progress_with_several_questions(desk):
     put(saw=Entry("correct", help="hint"), words=Entry("recorded"), gone=Entry("wrong"))
     lines = check_module.progress().messages
     assert lines == [
-        "You have tried 3 questions, of which 1 is right.",
-        "*gone*: 0 of 1 right, 0 of 1 points. Still open: `gone/a`.",
+        "You have tried 3 questions: 1 right.",
+        "*gone*: 0 of 1 right, 0 of 1 point. Still open: `gone/a`.",
         f"*levers*: 1 of 2 right, 3 of 5 points. Still open: `{ARM}`.",
         f"*texts*: 0 of 1 right, 0 of 4 points. Recorded, to be marked later: `{WORDS}`.",
     ]
     put(gone=Entry("correct", help="hint"), arm=Entry("correct", help="hint"))
     lines = check_module.progress().messages
-    assert lines[0] == "You have tried 4 questions, of which 3 are right."
+    assert lines[0] == "You have tried 4 questions: 3 right."
     assert lines[2] == "*levers*: 2 of 2 right, 5 of 5 points."
     put(saw=Entry("wrong"))
     lines = check_module.progress().messages

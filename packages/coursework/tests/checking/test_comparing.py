@@ -523,7 +523,7 @@ LONG = "levers/" + "a" * 90
         ("levers", "^'levers' is a notebook. Its questions are 'levers/arm', 'levers/plain'"),
         ("levers/plan", r"^There is no question 'levers/plan'\. Did you mean 'levers/plain'\?$"),
         ("Levers/Arm", r"Did you mean 'levers/arm'\?"),
-        ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers'\?"),
+        ("lever/arm", r"^There is no question 'lever/arm'. Did you mean 'levers/arm'\?"),
         ("third/zzzzzzzz", r"Did you mean 'third/a'\?"),
         ("zzzzzzzz", r"^There is no question 'zzzzzzzz'\.$"),
         ("../levers/arm", "There is no question"),

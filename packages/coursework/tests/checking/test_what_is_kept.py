@@ -153,18 +153,18 @@ def test_who_works_here_is_said_once(folder, capsys):
     for nobody in ("", "your ID"):
         identity.student(nobody)
         assert capsys.readouterr().out == identity.FORGOTTEN + "\n"
-    identity.student("  Ann   Ä\t")
-    assert identity.identity() == "ann ä" == identity.KEPT.read_text("utf8")
+    identity.student("  Ann   Ä.\t")
+    assert identity.identity() == "ann ä." == identity.KEPT.read_text("utf8")
     assert capsys.readouterr().out == "You are ann ä. The numbers below are yours.\n"
     monkey = identity._identity
     identity.student()
     assert identity.identity() == monkey
     assert capsys.readouterr().out.startswith("You are still ann ä. The numbers below are yours.\n")
     # The same name, stored in other characters, changes nothing; another name is told.
-    identity.student("Ann A\u0308\u200b")
+    identity.student("Ann A\u0308\u200b.")
     assert "before" not in capsys.readouterr().out and identity.identity() == monkey
     identity.student("Anne Ä")
-    assert "You are anne ä now, and were ann ä before, " in capsys.readouterr().out
+    assert "You are anne ä now, and were ann ä. before, " in capsys.readouterr().out
     # Another notebook of the folder that asks nobody works with the same numbers.
     identity._identity = None
     assert identity.identity() == "anne ä"

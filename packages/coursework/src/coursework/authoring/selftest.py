@@ -21,7 +21,7 @@ from typing import NamedTuple, TypedDict
 import sympy
 
 from ..checking.catalogue import message
-from ..checking.kinds import Fault, Undecidable
+from ..checking.kinds import Fault, Undecidable, number_of
 from ..checking.mistakes import GENERAL
 from ..checking.plain import NotPlain
 from ..checking.plugins import kinds
@@ -129,7 +129,7 @@ def try_question(question: AuthoredQuestion, against_sealed: bool = True) -> Fin
             )
     words = kinds()[question.public.kind].text or question.public.kind == "function"
     if len(forms) < FORMS and not words and not hasattr(question.answer, "to_matrix"):
-        faults.append(f"We tried the right answer in only {len(forms)} forms.")
+        faults.append(f"We tried the right answer in only {number_of(len(forms), 'form')}.")
     there = against_sealed and question.name in notebook_questions(question.name.partition("/")[0])
     sealed = (
         notebook_questions(question.name.partition("/")[0], question.number)[question.name]
@@ -489,9 +489,9 @@ def write_page(
         "<title>Self-test of the exercises</title>"
         '<meta name="viewport" content="width=device-width, '
         f'initial-scale=1"><style>{STYLE}</style>'
-        f"<h1>Self-test of the exercises</h1><p>{_of(len(findings), 'question')}; "
+        f"<h1>Self-test of the exercises</h1><p>{number_of(len(findings), 'question')}; "
         f"{sum(bool(f.faults) for f in findings)} with "
-        f"faults. {_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
+        f"faults. {number_of(sum(len(f.mistakes) for f in findings), 'mistake')} recognised.</p>"
         "<p>The second-to-last column counts the possible answers where an answer is a few words, "
         "an order or small whole numbers, since a program can try them all. A program that builds "
         "formulas finds more.</p>"
@@ -499,10 +499,6 @@ def write_page(
         + "".join(f'<th scope="col">{head}</th>' for head in COLUMNS)
         + f"</tr></thead><tbody>{''.join(rows)}</tbody></table></html>"
     )
-
-
-def _of(count: float, noun: str) -> str:
-    return f"{count} {noun}{'' if count == 1 else 's'}"
 
 
 def _folded(summary: int, inside: str) -> str:

@@ -60,6 +60,13 @@ def ends(result: object) -> None:
     """Record the names that a cell has not set, or only before an error."""
     if not getattr(result, "success", True):
         _outdated.update(dict.fromkeys(names_set_by(_running[0]), STOPPED))
+        error = getattr(sys, "last_value", None)
+        checked = re.search(r"\bcheck\(.*", _running[0], re.DOTALL)
+        if type(error) is NameError and checked and error.name in re.findall(r"\w+", checked[0]):
+            print(
+                f"No cell that you have run sets `{error.name}`. If it is spelled right, run the "
+                "cell that sets it, and then run this check again."
+            )
 
 
 def outdated() -> list[str]:
@@ -71,8 +78,7 @@ def outdated() -> list[str]:
 def watch() -> None:
     """Follow the cells of the kernel in which this runs, if there is one."""
     # Without a kernel there may be no IPython, or only a replacement.
-    get_shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)
-    shell = get_shell()
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
     if events := getattr(shell, "events", None):
         events.register("pre_run_cell", begins)
         events.register("post_run_cell", ends)

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from .cells import outdated, watch
 from .identity import identity
+from .kinds import number_of
 from .plain import NotPlain, Plain, by_frame, text_of, to_plain
 from .plugins import kinds
 from .progress import Entry, Progress
@@ -81,6 +82,11 @@ def check(name: str, answer: object) -> Reply:
         reply = judge(name, sealed, plain, student)
         if reply.outcome != "not attempted":
             reply.shown = shown(sealed.question, plain)
+        elif answer is None:
+            reply.messages = [
+                "Your answer is `None`. A function that returns nothing, such as `print`, gives "
+                "`None`. Set your answer to a value, and run the cells again."
+            ]
     except NotPlain as error:
         reply = Reply(name, "invalid", "unreadable", [str(error)])
     if reply.outcome == "correct" and reply.opened and reply.opened.solution:
@@ -165,8 +171,13 @@ def worked_solution(name: str, code: str) -> Reply:
             ],
         )
     entry = _note_help(name, student, "solution")
-    said = ["Read it, close it, and write it out for yourself."]
-    reply = Reply(name, "hints", "", said, solution_on(sealed, locker.solution))
+    reply = Reply(
+        name,
+        "hints",
+        "",
+        ["Read it, close it, and write it out for yourself."],
+        solution_on(sealed, locker.solution),
+    )
     _offer_sibling(reply, sealed.question, entry.help)
     return reply
 
@@ -258,16 +269,13 @@ def progress() -> Reply:
             "progress", "hints", "", others or ["You have not checked anything in this folder yet."]
         )
     right = {name for name, entry in record.items() if entry.outcome == "correct"}
-    are = "is" if len(right) == 1 else "are"
-    lines = [f"You have tried {len(record)} questions, of which {len(right)} {are} right."]
-    if len(record) == 1:
-        lines = [
-            f"The one question that you have tried is {'right' if right else 'not right yet'}."
-        ]
-    for notebook in sorted({name.split("/")[0] for name in record}):
-        lines.append(_of_notebook(notebook, record, right))
-    lines += others
-    lines += _worth_another_look(record)
+    notebooks = sorted({name.split("/")[0] for name in record})
+    lines = [
+        f"You have tried {number_of(len(record), 'question')}: {len(right)} right.",
+        *(_of_notebook(notebook, record, right) for notebook in notebooks),
+        *others,
+        *_worth_another_look(record),
+    ]
     return Reply("progress", "correct" if len(right) == len(record) else "hints", "", lines)
 
 
@@ -286,7 +294,7 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
     open_.sort(key=lambda name: name not in record)
     line = (
         f"*{notebook}*: {len(right & set(questions))} of {len(questions)} right, {earned} of "
-        f"{points} points."
+        f"{number_of(points, 'point')}."
     )
     if taken_down:
         line += (
@@ -299,7 +307,7 @@ def _of_notebook(notebook: str, record: Mapping[str, Entry], right: set[str]) ->
 def _worth_another_look(record: Mapping[str, Entry]) -> list[str]:
     today = time.time()
     reminders = [
-        f"`{name}` ({days} days ago: {entry.mistake})"
+        f"`{name}` ({number_of(days, 'day')} ago: {entry.mistake})"
         for name, entry in sorted(record.items())
         if (days := int((today - (entry.mistake_at or today)) / DAY)) >= REVIEW_AFTER
         and entry.mistake

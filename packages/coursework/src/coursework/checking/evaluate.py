@@ -104,7 +104,7 @@ def real(result: Result, absolute: Number = ROUNDING, relative: Number = ROUNDIN
     """
     result = number(result)
     if result in (MP.inf, -MP.inf):
-        raise Undefined("infinite")
+        raise Undefined("it is infinite")
     if isinstance(result, MP.mpc):
         if abs(result.imag) > absolute + relative * abs(result.real):
             raise ValueError("complex")
@@ -160,8 +160,8 @@ def _leaf(operation: str, parts: Sequence[str], point: Mapping[str, Number]) -> 
         return MP.mpf(int(text))
     if operation == "float":
         return _bounded(MP.mpf(text))
-    if text in ("ComplexInfinity", "NaN"):  # SymPy's result of a division by zero
-        raise Undefined("division by zero")
+    if text in ("ComplexInfinity", "NaN"):  # SymPy's results of 1/0 and of 0/0
+        raise Undefined("division by zero" if text == "ComplexInfinity" else NOT_A_NUMBER)
     if text not in CONSTANTS:
         raise NotSupported(text)
     return CONSTANTS[text]
@@ -175,9 +175,9 @@ def _bounded(result: Number) -> Number:
         elif between < -APART:
             result = MP.mpc(0, result.imag)
     if MP.isnan(result):
-        raise Undefined("no number")
+        raise Undefined(NOT_A_NUMBER)
     if MP.isinf(result):
-        raise Undefined("infinite")
+        raise Undefined("it is infinite")
     if abs(result) > LARGEST:
         raise TooLarge("the value is larger than 10^60")
     if result and MP.mag(result) < SMALLEST:
@@ -232,6 +232,7 @@ def _real_only(function: Callable[..., Number]) -> Callable[..., Number]:
     return lambda *arguments: function(*map(_ordered, arguments))
 
 
+NOT_A_NUMBER = "it is NaN, which is not a number"
 CONSTANTS = {
     "Pi": +MP.pi,
     "Exp1": +MP.e,

@@ -38,14 +38,18 @@ def student(identity: str = "") -> None:
     _identity, before = plain_identity("" if identity == PLACEHOLDER else identity), _kept()
     if not _identity and before:
         _identity = before
-        print(f"You are still {before}. The numbers below are yours.")
+        print(f"You are still {before.removesuffix('.')}. The numbers below are yours.")
     elif before not in ("", _identity):
         print(
             f"You are {_identity} now, and were {before} before, so your numbers have changed. We "
             "keep the record of what you solved before."
         )
     else:
-        print(f"You are {_identity}. The numbers below are yours." if _identity else FORGOTTEN)
+        print(
+            f"You are {_identity.removesuffix('.')}. The numbers below are yours."
+            if _identity
+            else FORGOTTEN
+        )
     with suppress(OSError):  # in a read-only folder, each notebook asks again
         if _identity:
             KEPT.parent.mkdir(exist_ok=True)

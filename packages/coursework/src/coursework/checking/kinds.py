@@ -58,6 +58,15 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in names)
 
 
+def number_of(count: float, noun: str, plural: str = "") -> str:
+    """Return a number of things in words.
+
+    >>> number_of(1, "file"), number_of(0, "file"), number_of(2, "entry", "entries")
+    ('1 file', '0 files', '2 entries')
+    """
+    return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
+
+
 def shape_fault(expected: str, got: Value | str) -> Fault:
     return Fault(
         "shape",
@@ -75,10 +84,12 @@ def _describe(value: Value) -> str:
         lengths = {len(parts_of(row)) for row in parts if row[0] == "list"}
         if len(lengths) == 1 and all(row[0] == "list" for row in parts):
             rows, each = (f"{len(parts)} rows", " each") if len(parts) > 1 else ("one row", "")
-            return f"a list of {rows} with {lengths.pop()} entries{each}"
+            return f"a list of {rows} with {number_of(lengths.pop(), 'entry', 'entries')}{each}"
         if [part[0] for part in parts] == ["expression", "text"]:
             return "a number with a unit, or with a string"
-        return f"a list with {len(parts)} entr{'y' if len(parts) == 1 else 'ies'}"
+        return (
+            f"a list with {number_of(len(parts), 'entry', 'entries')}" if parts else "an empty list"
+        )
     return {
         "text": "a string",
         "truth": "a Boolean",
@@ -229,9 +240,9 @@ def _spelled(plain: Plain) -> str | None:
     return str(node[1]) if node[0] in ("integer", "symbol") else None
 
 
-def _choice(question: Question, plain: Plain) -> str:
+def _choice(question: Question, plain: Plain, entry: str = "") -> str:
     answer = _spelled(plain) or word(
-        plain, f"One of {listed(question.options)}, in quotation marks"
+        plain, f"One of {listed(question.options)}{entry}, in quotation marks"
     )
     answer = " ".join(answer.split())
     # A typographic minus is no mistake, and neither is an unrequested or missing plus.
@@ -246,7 +257,8 @@ def _choice(question: Question, plain: Plain) -> str:
     ]
     if not matches:
         raise Fault(
-            "shape", f"The answer must be one of {listed(question.options)}, not `{answer[:40]}`."
+            "shape",
+            f"The answer{entry} must be one of {listed(question.options)}, not `{answer[:40]}`.",
         )
     return matches[0]
 
@@ -254,7 +266,10 @@ def _choice(question: Question, plain: Plain) -> str:
 def _choices(question: Question, plain: Plain) -> list[str]:
     """Return each part of a list as one of the options."""
     nodes = plain["nodes"]
-    return [_choice(question, {"value": part, "nodes": nodes}) for part in parts_of(plain["value"])]
+    return [
+        _choice(question, {"value": part, "nodes": nodes}, f" in entry {order}")
+        for order, part in enumerate(parts_of(plain["value"]), 1)
+    ]
 
 
 def _truths(question: Question, plain: Plain) -> str:

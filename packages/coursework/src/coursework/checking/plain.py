@@ -286,14 +286,20 @@ class _Writer:
             return self.array(answer, depth)
         if origin == "orientation" and hasattr(answer, "reference_frames"):
             return self.of_frames(cast(FrameGraph, answer), depth)
-        if isinstance(answer, dict) and len(answer) == 1:
+        if (
+            isinstance(answer, dict)
+            and len(answer) == 1
+            and isinstance(next(iter(answer)), sympy.Basic)
+        ):
             # The result of `solve` for one unknown: {theta: pi/4}.
             return self.value(next(iter(answer.values())), depth)
-        if isinstance(answer, (Iterator, KeysView, ValuesView)):
+        if isinstance(answer, (Iterator, KeysView, ValuesView, range)):
             kind = type(answer).__name__[:40]
             raise NotPlain(f"This is of type `{kind}`: write `list(...)` around it.")
+        if isinstance(answer, (set, frozenset)) and len(answer) > 1:
+            raise NotPlain("This is a set, which has no order: write a list, in square brackets.")
         if isinstance(answer, (list, tuple, set, frozenset)):
-            return self.parts(_in_order(answer), depth)
+            return self.parts(list(answer), depth)
         return self.of_sympy(answer, depth)
 
     def parts(self, answer: Sequence[object], depth: int) -> Value:
@@ -401,8 +407,13 @@ class _Writer:
             return ["list", parts]
         if isinstance(answer, sympy.Expr):
             return ["expression", self.expression(answer)]
+        whole = "One entry" if depth else "This"
         raise NotPlain(
-            f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
+            f"{whole} is a dictionary. Give the value in it that the question asks for."
+            if isinstance(answer, dict)
+            else f"{whole} is a function. Call it, and give what it returns."
+            if callable(answer)
+            else f"An answer of type `{type(answer).__name__[:40]}` cannot be read. "
             "Give a SymPy expression, a matrix, a list of numbers or a string."
         )
 
@@ -774,10 +785,6 @@ def _number_and_unit(answer: sympy.Expr, units: ModuleType) -> tuple[sympy.Expr,
         f"{symbol.name}^{powers[symbol]}" for symbol in base.values() if symbol in powers
     )
     return sympy.Add(*terms), unit or "1"
-
-
-def _in_order(parts: Iterable[object]) -> list[object]:
-    return list(parts) if isinstance(parts, (list, tuple)) else sorted(parts, key=str)
 
 
 def _connected(frames: Iterable[CoordinateFrame]) -> list[CoordinateFrame]:

@@ -24,7 +24,7 @@ from .catalogue import by_short_name, message
 from .evaluate import MP
 from .fields import Fields, Json, Misread, anything, by_name, text, whole
 from .identity import identity
-from .kinds import Blank, Fault, Number, Undecidable
+from .kinds import Blank, Fault, Number, Undecidable, number_of
 from .plain import Plain
 from .plugins import kind_of_values, kinds, sealed_folders
 from .points import spellings
@@ -209,8 +209,8 @@ def find_question(name: str, student: str) -> Sealed:
         )
     import difflib  # needed here alone
 
-    named = questions or notebook_questions(notebook.lower())
-    near = difflib.get_close_matches(name.lower(), [*named, *notebooks], cutoff=0.5)
+    nearest = difflib.get_close_matches(notebook.lower(), notebooks, 1, cutoff=0)
+    near = difflib.get_close_matches(name.lower(), notebook_questions(nearest[0]), cutoff=0.5)
     raise NoSuchQuestion(
         f"There is no question '{name[:80]}'." + (f" Did you mean '{near[0]}'?" if near else "")
     )
@@ -377,8 +377,7 @@ def compare(
         if kinds()[question.kind].by_a_person:
             words = len(cast(str, reading.text).split())
             message_text = (
-                f"Somebody will read this answer of {words} {'word' if words == 1 else 'words'} "
-                "and mark it."
+                f"Somebody will read this answer of {number_of(words, 'word')} and mark it."
             )
             return Reply(name, "undecided", "for a person", [message_text])
         text = fingerprint(question, reading)
@@ -622,10 +621,9 @@ def _few_digits(question: Question, plain: Plain) -> str:
         places = len(digits.partition(".")[2])
         allowed = absolute + relative * abs(float(digits))
         if 0.5 * 10.0**-places > allowed and Fraction(digits).denominator > 4:
-            count = f"{places} place{'' if places == 1 else 's'}"
             return (
-                f"If you rounded, keep all digits until the end: `{float(digits):g}` has {count}, "
-                f"and an answer may be off by {allowed:.1g}."
+                f"If you rounded, keep all digits until the end: `{float(digits):g}` has "
+                f"{number_of(places, 'place')}, and an answer may be off by {allowed:.1g}."
             )
     return ""
 

@@ -20,7 +20,7 @@ import itertools
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from .evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol, real, values
 from .kinds import Blank, Fault, Number, Undecidable, is_blank, listed
@@ -76,7 +76,7 @@ def read(question: Question, plain: Plain) -> Reading:
     Blank, Fault, Undecidable
     """
     value = plain["value"]
-    if is_blank(value):
+    if is_blank(value) or value == ["text", ""]:
         raise Blank
     if question.kind == "function":
         return _read_function(question, plain)
@@ -84,10 +84,11 @@ def read(question: Question, plain: Plain) -> Reading:
     if kind.text:
         return Reading([], kind.text(question, plain))
     leaves = _entries(question, value)
+    varies = any(node[0] == "symbol" for node in plain["nodes"])
     numbers = []
     for point in points(question):
         results = values(plain["nodes"], point)
-        numbers.append([_number(question, results[leaf]) for leaf in leaves])
+        numbers.append([_number(question, results[leaf], varies) for leaf in leaves])
     return Reading(
         _with_units(question, value, numbers) if question.kind == "measurement" else numbers
     )
@@ -231,11 +232,10 @@ def _entries(question: Question, value: Value) -> Sequence[int]:
     """
     entries = kinds()[question.kind].entries
     assert entries is not None
-    nodes_of_entries: Sequence[int] = entries(question, value)
-    return nodes_of_entries
+    return cast("Sequence[int]", entries(question, value))
 
 
-def _number(question: Question, result: Any) -> Number:
+def _number(question: Question, result: Any, varies: bool = False) -> Number:
     try:
         # What may remain of exponentials that should cancel: as much as the answer may be off by.
         return real(result, *(max(part, EXACT) for part in tolerances(question)))
@@ -249,7 +249,7 @@ def _number(question: Question, result: Any) -> Number:
         )
         raise Fault("stray symbol", f"The answer contains `{name}`, but {expected}.") from None
     except Undefined as error:
-        somewhere = " for some values of its symbols" if question.symbols else ""
+        somewhere = " for some values of its symbols" if varies else ""
         raise Fault("undefined", f"The answer has no finite value{somewhere}: {error}.") from None
     except TooLarge as error:
         raise Fault("too large", f"We cannot evaluate the answer: {error}.") from None

@@ -223,7 +223,8 @@ class _Printer:
         if kind == "list":
             return f"[{self.parts(rest[0], self.value)}]"
         if kind == "function":
-            return f"returned {self.parts(rest[0], self.value, '; ')}"
+            begin = "" if rest[0] and rest[0][0][0] in ("printed", "raised") else "returned "
+            return begin + self.parts(rest[0], self.value, "; ")
         if kind == "frames":
             frames = sorted(rest[0])
             return self.parts(frames, lambda name: f"{readable(name)} {self.named(rest[0][name])}")

@@ -459,8 +459,8 @@ def _merge_journal(journal: Journal, store: Store, path: str, dry_run: bool) -> 
         students = dict.fromkeys(decision.student for decision in foreign)
         whose = ", ".join(in_a_line(name, 60) for name in students)
         print(
-            f"  {len(foreign)} of them are about answers missing from this folder: {whose}. We "
-            "ignored them."
+            f"  We ignored {len(foreign)} of them, about answers missing from this folder "
+            f"({whose})."
         )
     for first, second in differing:
         print(

@@ -328,7 +328,8 @@ def demand_own_numbers(
         "these IDs."
     )
     raise NothingToGrade(
-        f"Of {saying} notebooks with an ID, {len(wrong)} carry another student's: for example, "
+        f"Of {number_of(saying, 'notebook')} with an ID, {len(wrong)} carry another student's: for "
+        f"example, "
         f"{notebook.says!r} would be graded as {one.student!r}. A student's numbers depend on the "
         f"ID, so we would judge their answers by the wrong numbers. {why} If the list is right "
         "anyway, add --as-listed."
@@ -360,10 +361,10 @@ def say_other_numbers(
                 other += mark.note == "other numbers"
         if other > max(FEW_FOREIGN, MANY_OTHER_NUMBERS * given):
             print(
-                f"LOOK AT THIS FIRST: in {assignment}, {other} of {given} answers are right for "
-                "numbers other than the student's own, so they earn nothing. Are these the IDs "
-                "that the students wrote in their notebooks? If not, grade again with the right "
-                "roster in term.toml. Nothing is lost.",
+                f"LOOK AT THIS FIRST: in {assignment}, {other} of {number_of(given, 'answer')} are "
+                "right for numbers other than the student's own, so they earn nothing. Are these "
+                "the IDs that the students wrote in their notebooks? If not, grade again with the "
+                "right roster in term.toml. Nothing is lost.",
                 file=show,
             )
 

@@ -6,6 +6,7 @@ import itertools
 import unicodedata
 from collections.abc import Iterable, Iterator
 
+from ..checking.kinds import number_of as number_of
 from ..checking.writing import readable
 
 STARTS_A_FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -42,15 +43,6 @@ def as_written(cell: str) -> str:
 def number(value: float) -> str:
     """Points without needless zeros."""
     return f"{value:.4f}".rstrip("0").rstrip(".") if value != int(value) else str(int(value))
-
-
-def number_of(count: int, noun: str) -> str:
-    """A number of things in words.
-
-    >>> number_of(1, "file"), number_of(0, "file")
-    ('1 file', '0 files')
-    """
-    return f"{count} {noun}{'s' * (count != 1)}"
 
 
 def table(header: Iterable[str], rows: Iterable[Iterable[object]]) -> str:

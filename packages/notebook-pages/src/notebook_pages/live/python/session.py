@@ -305,8 +305,11 @@ class Shell:
                 outcome = {"status": "interrupted"}
             except BaseException as error:
                 outcome = self.explain(error, name)
-        succeeded = types.SimpleNamespace(success=outcome["status"] == "ok")
-        self.events.trigger("post_run_cell", succeeded)
+                # IPython stores it there, and packages look there for it.
+                sys.last_value = error
+            self.events.trigger(
+                "post_run_cell", types.SimpleNamespace(success=outcome["status"] == "ok")
+            )
         return json.dumps(outcome)
 
     @contextlib.contextmanager
