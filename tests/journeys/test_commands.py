@@ -31,8 +31,7 @@ def run(script, **environment):
     ],
 )
 def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):
-    output = run(f'("$PYTHON" -m {command} | true) 2>&1', PYTHONUNBUFFERED=unbuffered)
-    assert output == ""
+    assert run(f'("$PYTHON" -m {command} | true) 2>&1', PYTHONUNBUFFERED=unbuffered) == ""
 
 
 @pytest.mark.parametrize(

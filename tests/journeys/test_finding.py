@@ -18,11 +18,23 @@ def page(browser, site):
     context.close()
 
 
-def first_place(page, words):
-    """Return the address and the title of the first place that the search shows for ``words``."""
+def search(page, words):
     page.locator("form.bd-search:not(dialog form) input").click()
     page.keyboard.press("Control+a")
     page.keyboard.type(words)
+
+
+@pytest.mark.parametrize(
+    ("symbol", "reply"), [("∑", "Nothing in this book. Try a word"), ("θ", "Enter opens the first")]
+)
+def test_a_symbol_brings_places_or_what_to_try(page, symbol, reply):
+    search(page, symbol)
+    expect(page.locator("#search-results .found-count")).to_contain_text(reply)
+
+
+def first_place(page, words):
+    """Return the address and the title of the first place that the search shows for ``words``."""
+    search(page, words)
     place = page.locator("#search-results ul.found a").first
     expect(place).to_be_visible()
     return place.evaluate("(link) => [link.pathname, link.querySelector('b').textContent]")
@@ -45,6 +57,7 @@ def test_four_letters_of_a_title_bring_its_chapter_first(page):
         ("axis and angle", "axis-and-angle"),
         ("the map", "map-of-descriptions"),
         ("gimbal", "gimbal-lock"),
+        ("oiler angles", "euler-angles"),
     ],
 )
 def test_a_subject_brings_its_chapter_first(page, words, chapter):

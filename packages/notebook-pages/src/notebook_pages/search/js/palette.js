@@ -48,10 +48,11 @@ function attach(form) {
     if (list.contains(document.activeElement)) return; // whoever is among the answers keeps them
     const query = field.value.trim();
     const numbers = numbersFirst(query); // in which there is nothing to be looked for
-    const found = query.length < 3 ? [] : numbers.length ? numbers : find(query).map(shown);
+    const begun = query.length < 3 && /^[\p{Script=Latin}\d\s]*$/u.test(query); // a word, or nothing yet
+    const found = begun ? [] : numbers.length ? numbers : find(query).map(shown);
     list.replaceChildren(...found);
-    count.textContent = query.length < 3 ? "" : found.length
-      ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing in this book. Try another word for it.";
+    count.textContent = begun ? "" : found.length
+      ? `${found.length} ${found.length === 1 ? "place" : "places"}; Enter opens the first` : "Nothing in this book. Try a word for it, or another word.";
   };
   fields.push(answer);
   field.addEventListener("input", answer);
@@ -62,7 +63,6 @@ function attach(form) {
   });
   const move = (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (!step) return;
     const all = [field, ...links()], next = all[all.indexOf(document.activeElement) + step];
     if (next) event.preventDefault(), next.focus();
   };

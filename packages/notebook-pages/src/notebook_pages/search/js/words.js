@@ -36,7 +36,7 @@ const WEAK_WORDS = "3d able access accurate action actual actually add additiona
   // Programs and languages: the convention card names them, and most questions that do ask for something else.
   + " arduino babylon blender cpp directx eigen glm glsl godot java javascript js matlab numpy opencv opengl pyopengl pytorch qt"
   + " ros space unity unreal webgl";
-const IRREGULAR = new Map(Object.entries({ matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90", meaning: "meaning", handed: "handed" }));
+const IRREGULAR = new Map(Object.entries({ matrices: "matrix", axes: "axis", vertices: "vertex", indices: "index", gimble: "gimbal", gimbals: "gimbal", euler: "euler", eulers: "euler", oiler: "euler", inertia: "inertia", bias: "bias", unity: "unity", derivative: "derivative", derivatives: "derivative", biases: "bias", radians: "radian", rad: "radian", deg: "degre", ninety: "90", meaning: "meaning", handed: "handed" }));
 const ENDINGS = /(?:ati(?:ons?|ves?|ng|onal)|at(?:es?|ed|ors?)|i(?:ng|ngs|es|ed)|ed|es|ly|s|e|y)$/;
 const GREEK = { α: "alpha", β: "beta", γ: "gamma", δ: "delta", θ: "theta", λ: "lambda", π: "pi", σ: "sigma", φ: "phi", ϕ: "phi", ψ: "psi", ω: "omega", Ω: "omega" };
 // What words are told apart by: names of the software whole, numbers of sections whole, arrows.
