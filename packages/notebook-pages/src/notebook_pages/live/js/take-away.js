@@ -128,7 +128,7 @@ export async function restore() {
   } catch {
     return `${file.name} is not a backup of this book: nothing was changed.`;
   }
-  if (saved.version > VERSION) return `${file.name} was saved by a newer edition of this book, in a form that this page does not know: nothing was changed.`;
+  if (saved.version > VERSION) return `${file.name} was saved by a newer edition of this book, in a format that this page cannot read: nothing was changed.`;
   let brought = 0, kept = true;
   for (const [key, value] of Object.entries(saved.kept)) {
     const [, page, name] = key.match(/^answer (\S+) (.*)$/s) ?? [];

@@ -125,7 +125,7 @@ function watchModules() {
       } catch (error) {
         if (error instanceof WebAssembly.CompileError || error instanceof WebAssembly.LinkError) {
           const forbidden = /Content Security Policy|unsafe-eval|disallowed/i.test(errorText(error));
-          const reason = forbidden ? "the rules of this site forbid WebAssembly" : `a file of Python is broken (${errorText(error)})`;
+          const reason = forbidden ? "the rules of this site forbid WebAssembly" : `one of the files of Python is damaged (${errorText(error)})`;
           postMessage({ type: "dead", reason: faults[0] ?? reason });
         }
         throw error;

@@ -41,7 +41,7 @@ export function read(side, text) {
     dcm = [0, 3, 6].map((k) => numbers.slice(k, k + 3));
     const fault = checkDcm(dcm), near = fault ? nearestDcm(dcm) : null;
     if (near && !(near.dcm && near.distance < ROUNDED)) throw new Error(`${fault}.`);
-    if (near && near.distance > EXACT) said = `The matrix was rounded: the nearest valid one, ${near.distance.toFixed(4)} away, is used.`;
+    if (near && near.distance > EXACT) said = `The matrix was rounded: we use the nearest valid one, ${near.distance.toFixed(4)} away.`;
     dcm = near ? near.dcm : dcm;
   } else if (side.form === 'quaternion') {
     const parts = side.scalar === 'last' ? [numbers[3], ...numbers.slice(0, 3)] : numbers, long = length(parts);

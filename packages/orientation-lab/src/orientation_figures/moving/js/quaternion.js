@@ -162,7 +162,7 @@ function speedAt(way, share) {
 function wayView(model) {
   const self = { redraw() {} };
   const sheet = new Sheet({ bounds: [-180, -142, 180, 222], size: BALL, changed: () => self.redraw(),
-    name: 'The sphere that the tip of a unit vector moves on, its three ways from A to B, and below it their speeds.' });
+    name: 'The sphere that the tip of a unit vector moves on, its three paths from A to B, and below it their speeds.' });
   let edited = 'second', kept = {};
   const ends = choice({ name: 'Set the angles z-x-y of', options: [['first', 'A, the start'], ['second', 'B, the end']], change(value) {
     edited = value;

@@ -75,9 +75,9 @@ export function render({ model, el }) {
     } });
   const noise = numberField({ name: 'They may differ by, in degrees', step: 0.5, min: 0, max: 30, change: (value) => change(model, { noise: value }) });
   const verdict = element('div', { class: 'controls answer' });
-  const code = element('output', { class: 'result', 'aria-label': 'The line that mends it' });
+  const code = element('output', { class: 'result', 'aria-label': 'The line that fixes it' });
   const language = choice({ name: 'Language of the line', options: Object.keys(LANGUAGES).map((name) => [name, name]), hidden: true, change: () => mended() });
-  const mend = group('The line that mends it', 'controls line', element('div', { class: 'row-of-controls' }, element('div', { class: 'title' }, 'The line that mends it'),
+  const mend = group('The line that fixes it', 'controls line', element('div', { class: 'row-of-controls' }, element('div', { class: 'title' }, 'The line that fixes it'),
     language.element, button('Copy the line', async () => {
       await navigator.clipboard.writeText(`${code.textContent}\n`);
       words.say('The line is copied.');
