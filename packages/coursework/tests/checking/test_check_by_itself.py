@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import pytest
 
 from coursework.checking.check import DAY, NotCorrect
-from coursework.checking.plain import to_plain
 from coursework.checking.progress import Entry, Progress
 from coursework.checking.question import KnownAnswer, Locker, Place, Question, Sealed, Variant
 from coursework.checking.questions import OTHER_NUMBERS, code_text
@@ -423,13 +422,3 @@ def test_a_mistake_of_some_days_ago_is_worth_another_look(desk):
     put(saw=Entry("wrong", mistake="double", mistake_at=desk.now - 4 * DAY))
     [line] = check_module.progress().messages[2:]
     assert line.endswith(f"`{ARM}` (3 days ago: half), `{SAW}` (4 days ago: double).")
-
-
-def test_the_judge_is_given_plain_data(desk, monkeypatch):
-    seen = []
-    judge = desk.judge
-    monkeypatch.setattr(
-        check_module, "judge", lambda *arguments: seen.append(arguments) or judge(*arguments)
-    )
-    check(ARM, "half")
-    assert seen == [(ARM, desk.questions[ARM], to_plain("half"), "ann")]

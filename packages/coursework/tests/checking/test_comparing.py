@@ -4,7 +4,6 @@ import concurrent.futures
 import hashlib
 import json
 import math
-import threading
 from dataclasses import replace
 
 import pytest
@@ -215,15 +214,6 @@ def test_numbers_with_fewer_places_than_count_may_be_rounded():
     assert {reply_to(vector, {}, exact)[2] for exact in ([0.6, -0.8], [3.6, 4.8])} == {ALL_WRONG}
 
 
-def test_large_decimal_fractions_are_as_exact_as_their_digits():
-    def precision(digits):
-        return questions._precision({"nodes": [["float", digits]]})
-
-    assert precision("12345.0000000005") == (True, False)
-    # Of so large a square hardly any digit after the point is known.
-    assert precision("123456.79") == (False, True)
-
-
 def test_numbers_that_nearly_fit_together_may_be_rounded():
     unit = Question("vector", salt="s", tolerance=1e-6, unit_vector=True)
     right, coarse, wrong = (
@@ -250,6 +240,8 @@ def test_of_decimal_fractions_some_are_plainly_exact_and_some_plainly_rounded():
         "0.0010010010010010010": (True, False), "0.0009990009990009990": (False, False),
         "12345.333333333334": (True, False), "0.50000000000015": (False, False),
         "0.1234567891234": (False, False), "0.12345678": (False, True), "1e10": (True, False),
+        # Of so large a square hardly any digit after the point is known.
+        "12345.0000000005": (True, False), "123456.79": (False, True),
     }  # fmt: skip
     precision = {text: questions._precision({"nodes": [["float", text]]}) for text in texts}
     assert precision == texts
@@ -274,22 +266,7 @@ def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
         assert reply == (expected if known else ("correct", ""))
 
 
-def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
-    together = threading.Barrier(2, timeout=5)
-
-    def find(text):
-        together.wait()
-        return text * 2
-
-    assert questions._each(find, ["a", "b"]) == ["aa", "bb"]
-    assert questions._each(lambda text: threading.current_thread(), ["a"]) == [
-        threading.main_thread()
-    ]
-    asked = threading.Event()
-    answer = questions._begun(lambda: asked.wait(5))
-    asked.set()
-    assert answer() is True
-
+def test_where_no_thread_can_be_started_the_work_is_done_all_the_same(monkeypatch):
     class NoThreads(concurrent.futures.ThreadPoolExecutor):
         def submit(self, *_, **__):
             raise RuntimeError("can't start new thread")

@@ -5,7 +5,6 @@ import random
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 import sympy as sm
 
@@ -91,13 +90,6 @@ def test_the_value_is_what_sympy_gives(expression):
 def test_every_function_was_compared():
     written = {node[0] for expression in EXPRESSIONS for node in to_plain(expression)["nodes"]}
     assert set(FUNCTIONS) - written - {"Add", "Mul"} == set()
-
-
-def test_plain_numbers_and_numpy_numbers():
-    assert value_of(3) == 3
-    assert abs(value_of(0.1) - 0.1) < 1e-17
-    assert value_of(np.float64(0.25)) == 0.25
-    assert value_of(1 + 2j) == MP.mpc(1, 2)
 
 
 def test_a_shared_part_is_written_once():

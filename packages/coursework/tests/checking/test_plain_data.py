@@ -18,14 +18,7 @@ from coursework.checking import plain
 from coursework.checking.evaluate import MP, number, values
 from coursework.checking.plain import (
     NotPlain,
-    by_frame,
-    entries_of,
-    node_of,
-    operands,
-    parts_of,
     read_plain,
-    size_of,
-    text_of,
     to_plain,
 )
 
@@ -178,11 +171,6 @@ def test_what_is_written_stays_what_it_is(answer, expected):
     assert written(answer) == expected
 
 
-def test_of_a_function_of_time_the_name_alone_is_written():
-    assert to_plain(f(t))["nodes"] == [["symbol", "f"]]
-    assert to_plain(f(t).diff(t))["nodes"] == [["symbol", "f'"]]
-
-
 def test_a_vector_is_written_in_each_frame():
     kind, parts = written(2 * A.x + 3 * N.z)
     cosine, sine = f"cos({X})", f"sin({X})"
@@ -190,16 +178,6 @@ def test_a_vector_is_written_in_each_frame():
     assert parts["A"] == f"3x1: {TWO} integer(0) integer(3)"
     assert parts["N"] == f"3x1: Mul({TWO}, {cosine}) Mul({TWO}, {sine}) integer(3)"
     assert sorted(written(A)[2]) == ["A", "N"] and written(A)[1] == "A"
-
-
-def test_parts_of_the_data_are_found():
-    nodes, matrix = [["Add", 3, 4]], ["matrix", 2, 1, [5, 6]]
-    assert (operands(*nodes), size_of(matrix), entries_of(matrix)) == ([3, 4], (2, 1), [5, 6])
-    frame = ["frame", "N", {"A": matrix}]
-    assert by_frame(frame) == by_frame(["vector", {"A": matrix}]) == {"A": matrix}
-    assert (node_of(["expression", 7]), text_of(["text", "a"]), parts_of(["list", [frame]])) == (
-        7, "a", [frame],
-    )  # fmt: skip
 
 
 def test_what_calls_give_is_written_with_what_they_print_and_raise():

@@ -13,7 +13,7 @@ from coursework.checking import points, reply
 from coursework.checking.elsewhere import fetched
 from coursework.checking.evaluate import MP
 from coursework.checking.question import Question
-from coursework.checking.reply import HELP, OUTCOMES, Reply
+from coursework.checking.reply import OUTCOMES, Reply
 
 # --- points -------------------------------------------------------------------------------------
 
@@ -83,36 +83,6 @@ def test_no_two_signs_of_sines_and_cosines_always_agree():
             assert len({math.floor(row[name] / (math.pi / 2)) for row in rows}) == 4
 
 
-def test_where_no_choice_is_perfect_the_best_is_taken(monkeypatch):
-    """Twelve signs that have to differ, of which five points can tell fifteen."""
-    symbols = [(-3.0, 3.0)] * 7
-
-    def different(rows):
-        patterns = [
-            tuple((function(value) >= 0) == (function(column[0]) >= 0) for value in column)
-            for column in zip(*rows)
-            for function in (math.sin, math.cos)
-        ]
-        return len({pattern for pattern in patterns if not all(pattern)})
-
-    placements = []
-    for tries in range(1, 9):
-        monkeypatch.setattr(points, "MOST_TRIES", tries)
-        placements.append(points._placed("salt", symbols))
-    numbers = [*map(different, placements)]
-    assert numbers == sorted(numbers) and numbers[0] < numbers[-1]
-    assert len({tuple(rows[0]) for rows in placements}) == len(set(numbers))  # of equals the first
-
-
-def test_a_range_within_a_quadrant_leaves_nothing_to_place(monkeypatch):
-    made = []
-    column = points._column
-    monkeypatch.setattr(
-        points, "_column", lambda *arguments: made.append(arguments) or column(*arguments)
-    )
-    assert len(points._placed("salt", [(0.1, 1.0)])) == points.POINTS and len(made) == 1
-
-
 def test_without_symbols_there_is_one_point_and_none_is_shared():
     assert points.points(Question("expression")) == [{}]
     question = Question("expression", symbols={"x": (1, 2)})
@@ -175,20 +145,6 @@ SAID = (
 def test_a_reply_as_a_page(about, known, tries):
     page = shown(**about)._repr_html_()
     assert page == f"{BEGINS}{known}{STYLE}{HEAD}{tries}</span></p>{SAID}"
-
-
-def test_a_new_reply_knows_nothing_that_it_was_not_told():
-    reply = Reply("a", "correct")
-    assert vars(reply) == {
-        "question": "a", "outcome": "correct", "note": "", "messages": [], "solution": "",
-        "answer": "", "tries": 0, "tried": [], "help": "", "sibling": "", "details": {},
-        "shown": None, "opened": None, "known": None,
-    }  # fmt: skip
-    two = Reply("a", "wrong", "n", ("m",), "s", "opened", "known", {"d": 1})
-    assert [*vars(two).values()] == [
-        "a", "wrong", "n", ["m"], "s", "", 0, [], "", "", {"d": 1}, None, "opened", "known",
-    ]  # fmt: skip
-    assert set(HELP) == {"mistake", "hint", "solution"}
 
 
 PAGE = "<p>$$x &lt; 1$$ and $y &amp; z$</p>"

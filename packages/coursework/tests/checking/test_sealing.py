@@ -68,20 +68,6 @@ def test_a_browsers_slow_hash_is_everybodys(password):
     assert sealing.portable_pbkdf2(password, b"salt", 3) == right
 
 
-def test_a_page_holds_its_content_as_short_as_it_gets():
-    chance = random.Random(4)
-    words = "".join(chance.choice("abc") for _ in range(3000))
-    for content in (CONTENT, words, ""):
-        data = base64.b85decode(sealing.seal(content, KEY))[: -sealing.PAGE_TAG]
-        plain = sealing._mask(data, KEY, "page")
-        packed = zlib.compress(json.dumps(content, ensure_ascii=False, sort_keys=True).encode(), 9)
-        packed = len(packed).to_bytes(4, "big") + packed
-        assert plain.rstrip(b"\0") == packed.rstrip(b"\0")
-        assert len(plain) % sealing.BLOCK == 0 <= len(plain) - len(packed) < sealing.BLOCK
-        assert sealing.unseal(sealing.seal(content, KEY), KEY) == content
-    assert len(sealing.shorten(words, words)) < 100
-
-
 def test_what_was_changed_is_refused():
     data = base64.b85decode(PAGE)
     for place in range(len(data)):
