@@ -144,7 +144,7 @@ def test_a_page_calls_nothing_right_that_no_longer_stands_there(reader):
     write("other = 1")
     reply = run()
     # The book has no result of a question that nobody has answered, so none is announced.
-    assert "NameError" in reply and "The book’s result" not in reply
+    assert "No cell that you have run sets `B_C_N`." in reply and "The book’s result" not in reply
     write(right)
     reply = run()
     assert "Correct" in reply and "earlier answer" not in reply

@@ -94,8 +94,8 @@ def main() -> None:
     else:
         size = sum((site / path).stat().st_size for path in carried)
         print(
-            f"{len(carried)} files ({size / 1e6:.1f} MB) of the previous edition are kept, for "
-            "readers who still have it open."
+            f"Kept for readers who still have the previous edition open: {len(carried)} of its "
+            f"files ({size / 1e6:.1f} MB)."
         )
 
 

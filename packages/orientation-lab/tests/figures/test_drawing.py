@@ -204,7 +204,7 @@ def test_a_cylinder_touches_its_ends():
 
 @pytest.mark.parametrize("alt", ["", " " * 60, "A triad.", "x" * 39])
 def test_a_figure_without_words_is_refused(alt):
-    with pytest.raises(ValueError, match=f"alt has {len(alt.strip())} characters"):
+    with pytest.raises(ValueError, match=f"alt has {len(alt.strip())} of the 40 characters"):
         Drawing(alt)
 
 

@@ -44,7 +44,7 @@ def main():
         sys.exit(f"Could not download all the wheels from {address}: {error}")
     size = sum(path.stat().st_size for path in folder.glob("*.whl")) / 1e6
     print(
-        f"{len(fetched)} wheels downloaded; {folder} holds {size:.0f} MB, each file under its "
+        f"Wheels downloaded: {len(fetched)}; {folder} holds {size:.0f} MB, each file under its "
         "official name."
     )
     print(f"`BOOK_NUMPY={folder} make book` adds them to the site.")
