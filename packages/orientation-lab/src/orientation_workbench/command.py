@@ -164,13 +164,16 @@ def _given(argument):
 
 def _declared(words):
     """Return the conventions that the words name; each word names one."""
-    groups = {
-        choice["value"]: group["group"]
-        for groups in KINDS.values()
-        for group in groups
-        for choice in group["choices"]
-    }
-    groups |= dict.fromkeys(WAYS, "way") | dict.fromkeys(COUNTS, "kind")
+    groups = (
+        {
+            choice["value"]: group["group"]
+            for groups in KINDS.values()
+            for group in groups
+            for choice in group["choices"]
+        }
+        | dict.fromkeys(WAYS, "way")
+        | dict.fromkeys(COUNTS, "kind")
+    )
     for word in words:
         if word not in groups:
             raise ValueError(
@@ -182,6 +185,8 @@ def _declared(words):
 
 def _explain(chosen):
     try:
+        if not chosen.noise >= 0:
+            raise ValueError(f"--noise is {chosen.noise:g}: give degrees, from 0 on")
         texts = [_given(chosen.first), _given(chosen.second)]
         declared = [_declared(words) for words in (chosen.first_is, chosen.second_is)]
         found = explain(

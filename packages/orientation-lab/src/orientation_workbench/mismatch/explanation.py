@@ -125,9 +125,8 @@ def explain(
     # Three rows that are no matrix were taken for three triples of angles.
     if sorted(counts) == [1, 3]:
         side = counts.index(3)
-        given = (first, second)[side]
         sides[side] = (
-            read_poses(given, ("first", "second")[side], "matrix", noise),
+            read_poses((first, second)[side], ("first", "second")[side], "matrix", noise),
             sides[side][1],
         )
         counts[side] = 1
