@@ -1,6 +1,7 @@
 """The borders of what is worked out, and what is said beyond them."""
 
 import pytest
+import sympy as sm
 
 from coursework.checking import evaluate
 from coursework.checking.evaluate import MP, NotSupported, TooLarge, Undefined, UnknownSymbol
@@ -129,3 +130,22 @@ def test_no_function_is_given_what_it_is_not_made_for():
     assert larger(MP.one, MP.mpc(2, 0)) == 2
     with pytest.raises(NotSupported):
         larger(MP.one, MP.mpc(2, 1))
+
+
+def test_nothing_to_the_power_of_nothing_is_one():
+    nodes = [["integer", "0"], ["Pow", 0, 0], ["float", "0.0"], ["Pow", 2, 0], ["Pow", 0, 2]]
+    assert [evaluate.values(nodes, {})[place] for place in (1, 3, 4)] == [1, 1, 1]
+    assert sm.Integer(0) ** 0 == 1
+
+
+@pytest.mark.parametrize(("operation", "count"), [("sin", 1_500), ("Add", 12_000), ("Mul", 12_000)])
+def test_complex_numbers_are_dearer(operation, count):
+    """Many times the time of real ones: what is enough for real
+    numbers is too much for complex ones.
+    """
+
+    def last(first):
+        return evaluate.values([first, *([operation, 0] for _ in range(count))], {})[-1]
+
+    assert not isinstance(last(["rational", "1", "2"]), Exception)
+    assert isinstance(last(["constant", "ImaginaryUnit"]), evaluate.TooLarge)

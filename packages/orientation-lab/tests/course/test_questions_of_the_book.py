@@ -1,13 +1,19 @@
-"""The book's variants: small, alike from outside, and each opened by its own answer alone."""
+"""The book's questions: variants that are small, alike from outside, and opened by their own answer
+alone; what another system and the grader make of them; and those to ask aloud.
+"""
 
 import collections
 import json
 import random
+import re
 
+import pytest
 from seed import SEED
+from test_bank import FORMATS, judged_as_here
 from test_release import COURSE, needs_solutions
 
 import coursework
+from coursework.authoring.release import CHAPTERS
 from coursework.authoring.selftest import try_question
 from coursework.authoring.source import read_source
 from coursework.checking import questions, sealing, variants
@@ -93,3 +99,76 @@ def test_a_variant_of_the_book_is_opened_by_its_own_answer_and_by_no_other():
             ).outcome
             assert (outcome == "correct") == (number == other_number), (name, number, other_number)
     coursework.student("")
+
+
+# --- for another system ---------------------------------------------------------------------------
+
+
+EXPORTED = [
+    "simple-orientations/crank",
+    "euler-angles/which-sequence",
+    "measured-matrices/eight-tables",
+]
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_the_books_variants_are_judged_elsewhere_as_they_are_here(format, tmp_path):
+    assert judged_as_here(COURSE, format, EXPORTED, tmp_path) == []
+
+
+# --- for the grader -------------------------------------------------------------------------------
+
+
+NAMES = [path.stem for path in sorted(COURSE.sources.glob("*.ipynb")) if path.stem != "chapters"]
+
+
+# Two variants of one notebook; with --every-case all of all.
+@pytest.mark.parametrize(
+    ("name", "last"),
+    [
+        ("simple-orientations", 2),
+        *(pytest.param(name, None, marks=pytest.mark.further) for name in NAMES),
+    ],
+)
+def test_what_is_marked_does_not_depend_on_the_cells_that_were_left_out(name, last):
+    path = COURSE.sources / f"{name}.ipynb"
+    rules = read_source(path).rules
+    for number in range(1, max((rule.count for rule in rules.values()), default=1))[:last]:
+        having = [question for question, rule in rules.items() if number < rule.count]
+        whole, part = (
+            read_source(path, number).questions,
+            read_source(path, number, only=having).questions,
+        )
+        assert list(whole) == list(part)
+        for full, partial in zip(whole.values(), part.values(), strict=True):
+            without_pictures = [
+                {**question.public.as_json(), "picture": None} for question in (full, partial)
+            ]
+            assert without_pictures[0] == without_pictures[1]
+            assert (full.plain, full.entries, full.near, full.credit) == (
+                partial.plain,
+                partial.entries,
+                partial.near,
+                partial.credit,
+            )
+
+
+# --- to ask aloud ---------------------------------------------------------------------------------
+
+
+def _parts(text, heading):
+    """What stands under each heading of this level, by the heading."""
+    parts = re.split(rf"^{heading} (.*)$", text, flags=re.MULTILINE)
+    return dict(zip(parts[1::2], parts[2::2], strict=True))
+
+
+@needs_solutions
+def test_each_notebook_has_three_questions_with_a_good_answer_and_three_wrong_ones():
+    notebooks = _parts((COURSE.sources / "spoken-questions.md").read_text("utf8"), "##")
+    assert set(notebooks) == {path.stem for path in COURSE.sources.glob("*.ipynb")} - {CHAPTERS}
+    for name, text in notebooks.items():
+        questions = _parts(text, "###")
+        assert len(questions) == 3, name
+        for title, question in questions.items():
+            assert question.count("\n**A good answer**: ") == 1, (name, title)
+            assert len(re.findall(r"^- \*\*.+?\*\*", question, re.MULTILINE)) == 3, (name, title)
