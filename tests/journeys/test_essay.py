@@ -27,9 +27,37 @@ def page(request, browser):
 def open_essay(page, address):
     page.goto("about:blank")
     page.goto(address)
+    page.locator(".world").hover()
     page.locator(".world:is([data-ready], [data-stills])").wait_for()
     if page.locator(".world[data-stills]").count():
         pytest.skip("this browser has no WebGL")
+
+
+def test_a_finger_on_the_still_takes_hold_of_the_gimbal(browser, site):
+    context = browser.new_context(viewport={"width": 380, "height": 760}, has_touch=True)
+    page = context.new_page()
+    page.goto(site + ESSAY)
+    page.wait_for_timeout(1500)
+    assert not page.locator(".world[data-ready]").count(), "nobody has touched it"
+    box = page.locator(".world > .still svg").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    finger = context.new_cdp_session(page)
+
+    def touch(kind, *places):
+        points = [{"x": x + place, "y": y} for place in places]
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    touch("touchStart", 0)
+    touch("touchMove", 12)
+    page.locator(".world:is([data-ready], [data-stills])").wait_for()
+    if page.locator(".world[data-stills]").count():
+        pytest.skip("this browser has no WebGL")
+    page.wait_for_function("document.querySelector('.world').world.held")
+    for place in range(20, 90, 10):
+        touch("touchMove", place)
+    touch("touchEnd")
+    assert page.evaluate("document.querySelector('.world').world.state.free")
+    context.close()
 
 
 def wait_for_stop(page, stop):

@@ -88,7 +88,8 @@ def measure(browser, address, slowed):
     session = context.new_cdp_session(page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
     session.send("Emulation.setCPUThrottlingRate", {"rate": slowed})
-    page.goto(address, wait_until="commit")
+    page.goto(address)
+    page.locator(".world").hover()
     page.locator(".world[data-ready]").wait_for(timeout=120_000)
     page.wait_for_function("document.querySelector('.world').world.picture")
     first = page.evaluate(DRAG, 3)["first"]

@@ -372,6 +372,7 @@ def test_where_scripts_run_the_stills_wait_to_be_printed(browser):
     page, asked = browser.new_page(), []
     page.on("request", lambda request: asked.append(request.url))
     page.goto((HTML / "rotations.html").resolve().as_uri())
+    page.locator(".world").hover()
     page.locator(".world:is([data-ready], [data-stills])").wait_for()
     assert "/stills/" not in "".join(asked)
     page.pdf()

@@ -29,21 +29,40 @@ OWN |= {
 # Figures that use npm packages. This script is the source of what their page loads when they come
 # into view, and each has its own style sheet.
 BUILT = {"rotations": FOLDER.parent / "rotations" / "js" / "world.js"}
-# This loads that script when the page is complete and the figure is in sight. The browser fetches
-# the stills where they are shown: on paper, without scripts, and where figure and text do not fit
-# beside each other (as in essay.css). Before printing, the page asks for all of them.
+# This loads that script when the reader begins: with a movement of the pointer, a touch, a key or
+# scrolling, while the figure is in sight. Until then its still is shown, which takes no time to
+# draw. A figure begins at once if it plays by itself, if it is under the pointer, or if the page
+# opens at an address or further down. A finger or pointer that is already on the figure takes hold
+# of it (world.js). The browser fetches the stills where they are shown: on paper, without scripts,
+# and where figure and text do not fit beside each other (as in essay.css). Before printing, the
+# page asks for all of them.
 LOADER = """(() => {
 const source = new URL('FILE', document.currentScript.src).href;
+const ACTS = 'pointermove pointerdown touchstart scroll keydown focusin hashchange'.split(' ');
 addEventListener('beforeprint', () => {
   for (const still of document.querySelectorAll('[data-stop] > img')) still.loading = 'eager';
 });
+const load = () => {
+  for (const act of ACTS) removeEventListener(act, load, true);
+  document.head.append(Object.assign(document.createElement('script'), { src: source }));
+};
 const begin = () => {
   const seen = new IntersectionObserver((entries) => {
-    if (!entries.some((entry) => entry.isIntersecting)) return;
+    const figure = entries.find((entry) => entry.isIntersecting)?.target;
+    if (!figure) return;
     seen.disconnect();
-    document.head.append(Object.assign(document.createElement('script'), { src: source }));
+    const begun = location.hash || scrollY || figure.matches(':hover');
+    if (begun || 'play' in figure.dataset) return load();
+    const early = { rel: 'prefetch', href: source };
+    document.head.append(Object.assign(document.createElement('link'), early));
+    for (const act of ACTS) addEventListener(act, load, { capture: true, passive: true });
   });
-  for (const figure of document.querySelectorAll('.world')) seen.observe(figure);
+  for (const figure of document.querySelectorAll('.world')) {
+    seen.observe(figure);
+    for (const [act, held] of [['pointerdown', true], ['pointerup'], ['pointercancel']]) {
+      figure.addEventListener(act, (event) => { figure.pressed = held && event; });
+    }
+  }
 };
 if (document.readyState === 'loading') addEventListener('DOMContentLoaded', begin); else begin();
 })();

@@ -703,6 +703,8 @@ for (const figure of document.querySelectorAll('.world:not([data-ready], [data-s
   try {
     figure.world = new World(figure, sections);
     figure.dataset.ready = '';
+    // What has been taken hold of while this script was on its way is held from the first picture on.
+    requestAnimationFrame(() => figure.pressed && figure.world.hold(figure.pressed));
   } catch (error) {
     if (error.message !== 'WebGL') throw error;
     // Without WebGL the stills take turns in the place of the figure.
