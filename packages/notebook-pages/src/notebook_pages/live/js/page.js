@@ -169,8 +169,15 @@
     });
   });
   const answers = [...boxes.keys()].filter((number) => data.cells[number]?.name);
-  if ((answers.length || document.querySelector(".tag_takes-file")) && !apart) addEventListener("load", () => setTimeout(() =>
+  if (answers.length && !apart) addEventListener("load", () => setTimeout(() =>
     open().then(({ cells }) => answers.forEach((number) => cells[number].edit()), () => (page = undefined))));
+  // A cell that takes files can be given one as soon as it is nearly in sight.
+  const near = new IntersectionObserver((entries) => {
+    if (!entries.some(({ isIntersecting }) => isIntersecting)) return;
+    near.disconnect();
+    open().catch(() => (page = undefined));
+  }, { rootMargin: "50%" });
+  if (!apart) document.querySelectorAll(".tag_takes-file").forEach((box) => near.observe(box));
   const runPage = document.querySelector("button.run-page");
   runPage.addEventListener("click", () => ask(-1));
 

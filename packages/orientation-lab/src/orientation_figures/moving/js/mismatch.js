@@ -344,11 +344,12 @@ function beyond(relation, expected) {
     right: transpose(axesMatrix(names.world)), said: relation };
 }
 
-export function relationsOf(mirrored, table) {
+export function* relationsOf(mirrored, table) {
   const best = new Map(), axes = SIGNED_AXES.map((names) => ({ names, body: axesChoice(names, true, table), world: axesChoice(names, false, table),
     left: determinant(axesMatrix(names)) < 0 }));
   for (const inverse of [false, true]) {
     for (const body of axes) {
+      yield;
       for (const world of axes) {
         if ((body.left !== world.left) !== mirrored) continue;
         const hand = body.names === world.names && body.names.replaceAll('-', '') === SAME_AXES && body.names.split('-').length === 2;
@@ -463,11 +464,11 @@ function gapOf(relation, first, second) {
 // The relations of two sides as they depart from what is expected, and those of up to so many faults: kept, for they are
 // thousands.
 const KEPT = onceFor(() => new Map());
-function expectedRelations(mirrored, expected, table) {
+function* expectedRelations(mirrored, expected, table) {
   const aside = determinant(axesMatrix(expected.body)) !== determinant(axesMatrix(expected.world));
   const kept = KEPT(table), key = JSON.stringify([mirrored, expected]);
   if (!kept.has(key)) {
-    const relations = relationsOf(mirrored !== aside, table).map((relation) => beyond(relation, expected));
+    const relations = (yield* relationsOf(mirrored !== aside, table)).map((relation) => beyond(relation, expected));
     kept.set(key, { relations, exactly: [0, 1, 2, 3].map((count) => relations.filter(({ faults }) => faults === count)) });
   }
   return kept.get(key);
@@ -475,7 +476,7 @@ function expectedRelations(mirrored, expected, table) {
 const isMirrored = (first, second) => (determinant(first[0].dcms[0]) > 0) !== (determinant(second[0].dcms[0]) > 0);
 
 function* chainsOf(first, second, noise, table, expected, special) {
-  const mirrored = isMirrored(first, second), { exactly } = expectedRelations(mirrored, expected, table);
+  const mirrored = isMirrored(first, second), { exactly } = yield* expectedRelations(mirrored, expected, table);
   const fits = [], tried = [0, 0, 0, 0], pairs = [[], [], [], []], most = table['most faults'];
   yield;
   for (const one of first) {
@@ -515,7 +516,10 @@ function* chainsOf(first, second, noise, table, expected, special) {
     if (fits.length) lowest = Math.min(lowest, level);
   }
   if (!mirrored && !(special && fits.length)) yield* insideOf(first, second, noise, table, fits, tried, fits.length ? lowest : most);
-  for (const chain of fits) chain.words = wordsOf(chain, table).join('; ');
+  for (const chain of fits) {
+    chain.words = wordsOf(chain, table).join('; ');
+    yield;
+  }
   fits.sort((a, b) => price(a, b) || (a.words < b.words ? -1 : Number(a.words > b.words)));
   return { fits, tried };
 }
@@ -547,7 +551,7 @@ function* distinctOf(table) {
   const key = (dcm) => dcm.flat().map((entry) => Math.round(entry * 1e6) + 0).join(), [dcm] = SAMPLES;
   const plain = { inverse: false, body: SAME_AXES, world: SAME_AXES };
   const renamed = new Set(), distinct = [];
-  for (const relation of expectedRelations(false, plain, table).relations) {
+  for (const relation of (yield* expectedRelations(false, plain, table)).relations) {
     renamed.add(key(related(relation, dcm)));
     yield;
   }
@@ -590,14 +594,16 @@ function* insideOf(first, second, noise, table, fits, tried, most) {
 }
 
 // The cheapest chain for each order, scalar first or last, of the quaternions in the best one.
-function withOrders(best, first, second, noise, table, expected) {
-  const { relations } = expectedRelations(isMirrored(first, second), expected, table);
+function* withOrders(best, first, second, noise, table, expected) {
+  const { relations } = yield* expectedRelations(isMirrored(first, second), expected, table), cheapest = [];
   const usual = (side, reading) => side.filter((one) => one.reading === reading || (reading.kind === 'quaternion' && one.reading.choices.order in ORDERS));
-  return usual(first, best.first).flatMap((one) => usual(second, best.second).flatMap((other) => {
+  for (const one of usual(first, best.first)) for (const other of usual(second, best.second)) {
+    yield;
     const tolerance = Math.max(one.doubt + other.doubt, SINGLE_PRECISION) + noise, both = ofBoth(one.reading, other.reading);
-    return relations.map((relation) => ({ first: one.reading, second: other.reading, relation, residual: gapOf(relation, one.dcms, other.dcms),
-      faults: both.faults + relation.faults, rarity: both.rarity + relation.rarity })).filter(({ residual }) => residual <= tolerance).sort(price).slice(0, 1);
-  }));
+    cheapest.push(...relations.map((relation) => ({ first: one.reading, second: other.reading, relation, residual: gapOf(relation, one.dcms, other.dcms),
+      faults: both.faults + relation.faults, rarity: both.rarity + relation.rarity })).filter(({ residual }) => residual <= tolerance).sort(price).slice(0, 1));
+  }
+  return cheapest;
 }
 
 // A constant turn on the body's side, on the world's, or both: three poses tell one, four tell two.
@@ -694,15 +700,21 @@ function turnedNumbers(reading, numbers, turns) {
   return numbersFromDcm(reading, dcm.map((row) => scale(hand, row)))[0];
 }
 
-function furtherPose(chains, readings, poses, special, table) {
+function* furtherPose(chains, readings, poses, special, table) {
+  const further = table['further poses'], last = further.at(-1)[0];
   // From a special pose a turn or two leave zeros in one side's numbers: special again.
-  if (special || chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return table['further poses'].at(-1)[0];
-  const decides = ([, turns]) => readings.every((reading) => {
-    const own = chains.filter(({ first }) => first.kind === reading.kind);
-    const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table);
-    return new Set(keys.flat()).size === keys.flat().length;
-  });
-  return (table['further poses'].find(decides) ?? table['further poses'].at(-1))[0];
+  if (special || chains.length > LOOKED_AT || readings.length > READ_AS || chains.length === 1) return last;
+  for (const [words, turns] of further) {
+    let decides = true;
+    for (const reading of readings) {
+      yield;
+      const own = chains.filter(({ first }) => first.kind === reading.kind);
+      const keys = predictionsOf(own, { [reading.kind]: [turnedNumbers(reading, poses.numbers.at(-1), turns)] }, 2, table).flat();
+      if (!(decides = new Set(keys).size === keys.length)) break;
+    }
+    if (decides) return words;
+  }
+  return last;
 }
 
 // ---- the answer ----------------------------------------------------------------------------------------
@@ -840,6 +852,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
     const poses = readPoses(text, name, table, declared.kind ?? null, noise);
     return programs[k] && !declared.kind && poses.kinds.length === 2 ? { ...poses, kinds: [programs[k]['three numbers']] } : poses;
   });
+  yield;
   const counts = sides.map(({ numbers }) => numbers.length);
   if (Math.min(...counts) === 1 && Math.max(...counts) === 3) {   // three rows that are no matrix were taken for three triples
     const which = counts.indexOf(3);
@@ -852,6 +865,7 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   // What stands in the text goes before what the manual says, and what the reader says before both.
   const declared = sides.map((poses, k) => ({ ...programs[k]?.declared, ...poses.declared, ...given[k][2] }));
   const [one, other] = sides.map((poses, k) => sideOf(poses, declared[k], table, noise));
+  yield;
   const kinds = sides.map((side) => side.kinds[0]), expected = expectedRelation(programs, kinds, table);
   const ways = kinds.map((kind, k) => table.ways[given[k][2].way] ?? (programs[k] ? programs[k].inverse.includes(kind) : null));
   const special = sides.some(isSpecial), { fits, tried } = yield* chainsOf(one, other, noise, table, expected, special);
@@ -864,19 +878,21 @@ export function* explaining(first, second, table, { firstDeclared = {}, secondDe
   const hands = [one, other].map((side) => determinant(side[0].dcms[0]) > 0);
   const mirrored = hands[0] === hands[1] ? '' : ['first', 'second'][hands.indexOf(false)];
   if (!chains.length) return { verdict: 'unrelated', mirrored, asTheirManualsSay, faults: [], residual: null, chains, furtherPose: '', poses: counts[0], sides };
+  yield;
   const [best] = chains, chance = chanceOf(best, one, tried);
   let verdict = chains.length > 1 || special || chance >= BY_CHANCE ? 'undecided' : 'named', asked = { names: [], question: '' };
   // Of a special pose some sequence nearly always says the same.
   if (best.faults === 0 && (noise === 0 || chance < BY_CHANCE) && !(special && wordsOf(best, table, ways).length)) verdict = 'same';
-  if (verdict === 'named') asked = namesOf(best, [...withOrders(best, one, other, noise, table, expected), ...together[0]], declared, ways, table);
+  if (verdict === 'named') asked = namesOf(best, [...yield* withOrders(best, one, other, noise, table, expected), ...together[0]], declared, ways, table);
   if (asked.names.length) verdict = 'undecided';
+  yield;
   const remarks = sides.flatMap(({ kinds: [kind], numbers, half }, k) => {
     const worst = numbers.map(length).reduce((held, size) => (Math.abs(size - 1) > Math.abs(held - 1) ? size : held), 1);
     return kind === 'quaternion' && Math.abs(worst - 1) > SLACK + 2 * half ? [`A quaternion of the ${['first', 'second'][k]} side has length ${short(worst)}: it was normalised to length 1.`] : [];
   });
   return { ...asked, remarks, asTheirManualsSay, mirrored, verdict, ways, faults: wordsOf(best, table, ways), chains, sides, poses: counts[0],
     residual: 2 * Math.asin(Math.min(1, best.residual / 2)) / DEGREE,
-    furtherPose: !(verdict === 'undecided' || (verdict === 'same' && chains.length > 1)) || asked.names.length ? '' : furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], special, table) };
+    furtherPose: !(verdict === 'undecided' || (verdict === 'same' && chains.length > 1)) || asked.names.length ? '' : yield* furtherPose(chains, [...new Set(fits.map((chain) => chain.first))], sides[0], special, table) };
 }
 
 // The orientations of both sides at one pose, as the simplest chain reads them: what is drawn.

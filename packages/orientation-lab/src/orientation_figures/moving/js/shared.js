@@ -441,11 +441,12 @@ export function onceAFrame(draw) {
 // The value of a generator, run for a few milliseconds at a time so that the page stays responsive, as long as it is wanted.
 export async function inSlices(steps, isWanted) {
   for (;;) {
-    const until = performance.now() + 8;
+    await new Promise((resume) => { setTimeout(resume); });
+    if (!isWanted()) return undefined;
+    const until = performance.now() + 5;
     let step = steps.next();
     while (!step.done && performance.now() < until) step = steps.next();
-    if (step.done || !isWanted()) return step.value;
-    await new Promise((resume) => { setTimeout(resume); });
+    if (step.done) return step.value;
   }
 }
 
