@@ -52,6 +52,8 @@ BELIEVED = 1.3
 FASTEST = 10_000
 #: More assignments than these are not listed.
 FEW = 8
+#: What is fitted to a magnetometer with the rotations of the gyroscope, at the same times.
+OF_THE_FIELD = ("offset of the magnetometer", "shape of the magnetometer", "field")
 
 
 def examine(
@@ -447,6 +449,7 @@ class _Bench:
         drifting = bool(drift.any())
         if self.forces is not None:
             fitted = fit_scales(self.time, self.rates - drift, self.forces, poses, bias)
+        constant = fitted
         if fitted is not None and len(poses) > 4 and not at_rest:
             fitted, drifting = self._drift_between(poses, lying, bias, fitted)
         if fitted is None:
@@ -460,7 +463,7 @@ class _Bench:
                 "Hold it still in at least four poses, tilted well away from each other.",
             )
         else:
-            scale = self._scale(fitted, poses, drifting)
+            scale = self._scale(fitted, constant, poses, drifting)
             if bias is None and fitted.common[1] < 0.03 and fitted.left < 0.25:
                 bias, spread = fitted.bias, fitted.bias_spreads
         if bias is None:
@@ -492,8 +495,12 @@ class _Bench:
         parts = np.concatenate([self.rates[one.first : one.last] for one in lying])
         return parts.mean(axis=0), parts.std(axis=0) / np.sqrt(len(parts))
 
-    def _scale(self, fitted: ScaleFit, poses: Sequence[Stretch], drifting: bool) -> float | Array:
-        """What to multiply the gyroscope by, if that is known."""
+    def _scale(
+        self, fitted: ScaleFit, constant: ScaleFit, poses: Sequence[Stretch], drifting: bool
+    ) -> float | Array:
+        """What to multiply the gyroscope by, if that is known. Of an axis with a scale of its own
+        that is so if it does not depend on whether the bias may drift.
+        """
         (common, uncertain), left = fitted.common, fitted.left
         carries = f"its rotations carry gravity through {number_of(len(poses), 'pose')}"
         self.facts["scale of the gyroscope"] = common
@@ -509,7 +516,8 @@ class _Bench:
                 f"Multiply by {np.degrees(unit):.4g} to get °/s.",
             )
             return common
-        off = np.abs(fitted.scales / np.median(fitted.scales) - 1)
+        both = np.array([fitted.scales, constant.scales])
+        off = np.abs(both / np.median(both, axis=1, keepdims=True) - 1).min(axis=0)
         odd = np.flatnonzero(off > np.maximum(0.04, 5 * fitted.spreads))
         # An accelerometer that errs bends the paths of gravity as well.
         means = [self.forces[pose.first : pose.last].mean(axis=0) for pose in poses]
@@ -585,6 +593,10 @@ class _Bench:
         if fit.left > min(np.radians(1.5), 0.8 * constant.left):
             return constant, False
         worst = int(np.argmax(np.abs(fit.drift) / fit.drift_spreads))
+        line = fit.bias + fit.drift * course[:, None]
+        at_rest = [self._resting([one])[0] - line[(one.first + one.last) // 2] for one in lying[1:]]
+        if np.abs(at_rest).max(initial=0) > 0.3 * abs(fit.drift[worst]):
+            return constant, False
         # From few poses a drift explains nearly anything.
         if len(poses) < 7 or abs(fit.drift[worst]) < max(
             5 * fit.drift_spreads[worst], np.radians(1)
@@ -592,7 +604,7 @@ class _Bench:
             return fit, False
         slope = fit.drift[worst] / np.ptp(self.warmth) if len(fits) > 1 and by_warmth else None
         ends = [0, -1]
-        self._say_drift(worst, ends, fit.bias[worst] + fit.drift[worst] * course[ends], slope)
+        self._say_drift(worst, ends, line[ends, worst], slope)
         return fit, True
 
     def _say_drift(self, axis: int, samples: list[int], biases: Array, slope: float | None) -> None:
@@ -777,6 +789,8 @@ class _Bench:
             if useless
             else "There was iron nearby for a while: do not use the field there."
         )
+        if light != GREEN:
+            self._leave_open((YELLOW,), "changing field")
         self.say("field", light, words, evidence, cause if uneven > 0.06 else "")
         if dips and dips[0] < -5 and not any("axes" in about for about in self._trouble()):
             self.say(
@@ -865,6 +879,8 @@ class _Bench:
 
     def timing(self) -> None:
         """Delays between the sensors, and samples that are missing where time was counted on."""
+        if self._cut_off("gyroscope"):
+            self._leave_open((RED, YELLOW), "clipped rotations")
         steps = np.diff(self.time)
         step = float(np.median(steps))
         if self.rates is None or self.content.counted or len(self.time) * step < 3:
@@ -875,6 +891,7 @@ class _Bench:
         # A clock whose steps are not all alike measures time, and does not count it on.
         counted_on = np.ptp(steps) < 0.02 * step and len(seen) > 1 and not self._pushed()
         if counted_on and 0 < leaps.mean() < 0.02:
+            self._leave_open((RED, YELLOW), "missing samples")
             return self.say(
                 "missing samples",
                 RED,
@@ -909,6 +926,16 @@ class _Bench:
             {"seconds": round(lag * step, 3)},
             f"First of all, shift its times {'back' if lag > 0 else 'forward'} by that much.",
         )
+        self._leave_open((RED, YELLOW), "wrong times")
+
+    def _leave_open(self, lights: Sequence[str], cause: str) -> None:
+        """Leave open what was fitted to the magnetometer and another fault may have caused."""
+        for place, verdict in enumerate(self.verdicts):
+            if verdict.about in OF_THE_FIELD and verdict.light in lights:
+                words = f"{verdict.words}, which the {cause} may have caused"
+                advice = f"Judge it again without the {cause}."
+                self.verdicts[place] = Verdict(verdict.about, UNKNOWN, words, {}, advice)
+                self.facts.pop(verdict.about, None)
 
     # --- the orientation ------------------------------------------------------------------------
 
@@ -1122,12 +1149,18 @@ def _leaps(rates: Array, vectors: Array, step: float) -> Array:
 
 
 def _by_lengths(raw: Array) -> FieldFit | None:
-    """A magnetometer's offset and shape from the lengths alone, if
-    they are much the better for it.
+    """A magnetometer's offset and shape from the lengths alone, if they are much the better for it
+    and each four fifths of the recording give that offset too.
     """
-    fit = fit_ellipsoid(raw[:: max(1, len(raw) // 4000)], most=0.05)
-    better = fit and spread_of_lengths(fit.corrected(raw)) <= 0.7 * spread_of_lengths(raw) + 0.01
-    return fit if better else None
+    some = raw[:: max(1, len(raw) // 4000)]
+    fit = fit_ellipsoid(some, most=0.05)
+    if fit is None or spread_of_lengths(fit.corrected(raw)) > 0.7 * spread_of_lengths(raw) + 0.01:
+        return None
+    for fifth in np.array_split(np.arange(len(some)), 5):
+        again = fit_ellipsoid(np.delete(some, fifth, axis=0))
+        if again is None or np.linalg.norm(again.offset - fit.offset) > 0.05 * fit.strength:
+            return None
+    return fit
 
 
 def _at(time: Array, source: Array, values: Array) -> Array:
