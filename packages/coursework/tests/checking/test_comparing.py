@@ -4,6 +4,7 @@ import concurrent.futures
 import hashlib
 import json
 import math
+import threading
 from dataclasses import replace
 
 import pytest
@@ -266,7 +267,10 @@ def test_which_faults_of_the_form_no_right_value_makes_good(monkeypatch):
         assert reply == (expected if known else ("correct", ""))
 
 
-def test_where_no_thread_can_be_started_the_work_is_done_all_the_same(monkeypatch):
+def test_slow_work_is_done_side_by_side_where_there_are_threads(monkeypatch):
+    together = threading.Barrier(2, timeout=5)
+    assert sorted(questions._each(lambda text: together.wait(), ["a", "b"])) == [0, 1]
+
     class NoThreads(concurrent.futures.ThreadPoolExecutor):
         def submit(self, *_, **__):
             raise RuntimeError("can't start new thread")

@@ -126,14 +126,11 @@ def test_who_gets_which_variant_never_changes():
     assert variants.own_variant("ben", "a/b", Question("vector"), 1) == 0
 
 
-def test_names_of_variants_follow_from_what_is_given_and_shown():
+def test_names_of_variants_follow_from_what_is_given_and_siblings_are_two():
     full = Variant(given={"b": 1, "a": 2}, shown={"c": "3"})
     names = variants.names_of_variants([full, full, Variant(), full, Variant(given={"c": "3"})])
     first, empty, last = "bb4224fbae1c", "44136fa355b3", "b71907f1f20f"
     assert names == [first, f"{first}+", empty, f"{first}++", last]
-
-
-def test_siblings_are_two_and_have_names():
     assert [variants.siblings_of("a/b", count) for count in range(5)] == [
         [], [], ["a/b/sibling"], *[["a/b/sibling", "a/b/sibling-2"]] * 2,
     ]  # fmt: skip

@@ -199,14 +199,14 @@ def test_keys_alone(open_figure, kind):
             else:
                 pytest.fail(f"no key moves {stop['name']}")
         elif stop["tag"] == "svg":
-            page.keyboard.press("ArrowUp")
-            settle(page)
-            assert drawing(page) != before
-            # A view is turned back by Home; where the keys turn a frame
-            # instead, by the opposite key.
-            page.keyboard.press("Home" if "Home" in stop["name"] else "ArrowDown")
-            settle(page)
-            assert drawing(page) == before
+            # A view is turned back by Home; where the keys turn a frame instead, by the opposite key.
+            for key, opposite in (("ArrowUp", "ArrowDown"), ("ArrowLeft", "ArrowRight")):
+                page.keyboard.press(key)
+                settle(page)
+                assert drawing(page) != before
+                page.keyboard.press("Home" if "Home" in stop["name"] else opposite)
+                settle(page)
+                assert drawing(page) == before
         elif stop["type"] == "select-one":
             page.keyboard.press("ArrowDown")
             settle(page)
