@@ -278,8 +278,8 @@ def test_a_cluster_listens_to_those_alone_who_have_its_key(tmp_path, submissions
 @pytest.mark.parametrize(
     "address, keys, said",
     [
-        ("tcp://192.0.2.7:8786", None, "asks for no key"),
-        ("192.0.2.7:8786", None, "asks for no key"),
+        ("tcp://192.0.2.7:8786", None, "does not require a key"),
+        ("192.0.2.7:8786", None, "does not require a key"),
         ("tls://192.0.2.7:8786", None, "--keys FOLDER"),
         ("tls://192.0.2.7:8786", "nowhere", "Copy the folder"),
     ],

@@ -481,4 +481,4 @@ def make(site, file, title, author):
             if current == numbers:
                 return finish(printed, headings, title, author)
             numbers = current
-    raise RuntimeError("adding the page numbers to the list of contents moved the pages")
+    raise RuntimeError("adding the page numbers to the table of contents moved the pages")

@@ -57,8 +57,8 @@ def wrist_drawing(angles=(0.3, 0.9, 0.4)):
         "A robot's wrist. "
         "The forearm, frame F, comes from below, and f z points along it. "
         "At its end a first joint turns about f z through psi, a second joint bends the wrist "
-        "through theta about a perpendicular axis, and a third turns the gripper about its own "
-        "length through phi. "
+        "through theta about a perpendicular axis, and a third turns the gripper about its "
+        "long axis through phi. "
         "The gripper, frame G, has two fingers, and g z points out between them. "
         "The three axes meet in one point.",
         view_from(np.radians(-48), np.radians(20)),
@@ -147,9 +147,9 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
         "In its frame P, p x points to the right across the screen, p y to its top edge, and p z "
         "out of the screen. "
         "From its middle an arrow points straight up, which is what the accelerometer measures. "
-        f"Another arrow, the magnetic field, points north and {np.degrees(dip):.0f} degrees into "
-        "the ground. "
-        "Up crossed with the field is level and points west. "
+        f"Another arrow, the magnetic field, points north, {np.degrees(dip):.0f} degrees below "
+        "the horizontal. "
+        "Up crossed with the field is horizontal and points west. "
         "Beside the phone is the frame E: x north, y west, z up.",
         view_from(np.radians(-60), np.radians(22)),
         118,

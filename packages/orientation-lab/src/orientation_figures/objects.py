@@ -117,13 +117,12 @@ TURNING_FRAMES_ALT = (
     "Four frames, each drawn at its own place: A gold with solid arrows, B red with dashed "
     "arrows, C green with dash-dotted arrows, D blue with dotted arrows. At first they are "
     "aligned, x towards the reader and to the left, y to the right, z up. First B, C and D turn "
-    "together through 50 degrees, while the arrows marked z of B, C and D do not move. Then C "
-    "and D turn together through 45 degrees, while the arrows marked x of C and D do not move. "
-    "Last, D turns alone through 40 degrees, while the arrow marked z of D, no longer upright, "
-    "does not move. Seen from the tip of the arrow that does not move, each turn is "
-    "counterclockwise. The still picture shows the end. With each frame a thin grey triad shows "
-    "the frame before it in the order A, B, C, D, and curved arrows lead from the grey arrows to "
-    "the turned arrows."
+    "together through 50 degrees, while their arrows marked z do not move. Then C and D turn "
+    "together through 45 degrees, while their arrows marked x do not move. Last, D turns alone "
+    "through 40 degrees, while its arrow marked z, no longer upright, does not move. Seen from the "
+    "tip of the arrow that does not move, each turn is counterclockwise. The still picture shows "
+    "the end. With each frame a thin grey triad shows the frame before it in the order A, B, C, D, "
+    "and curved arrows lead from the grey arrows to the turned arrows."
 )
 
 

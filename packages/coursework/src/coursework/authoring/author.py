@@ -835,7 +835,7 @@ def question(
         if not abs(high - low) <= WIDEST:  # of what is no number, too
             raise AuthorError(
                 f"{name}: {symbol!r} is tried from {low:g} to {high:g}, but a range must be at "
-                f"most {WIDEST} wide. It need not be realistic, since we compare forms: (0.5, 3) "
-                "will do for any length, force or stiffness."
+                f"most {WIDEST} wide. It need not be realistic: (0.5, 3) will do for any length, "
+                "force or stiffness."
             )
     return AuthoredQuestion(name, public, answer, authored=mistakes, **rest)

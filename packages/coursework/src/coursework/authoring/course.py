@@ -75,7 +75,7 @@ def find_course(start: str | Path = ".") -> Course:
     course = course_around(start)
     if course is None:
         raise AuthorError(
-            f"There is no {FILE} in {Path(start).resolve()}, nor in a folder above it. Create a "
+            f"There is no {FILE} in {Path(start).resolve()}, or in any folder above it. Create a "
             "course with `coursework new COURSE`."
         )
     return course

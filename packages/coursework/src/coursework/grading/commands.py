@@ -487,7 +487,7 @@ def term(
         return
     if roster:
         sys.exit(
-            "coursework term: --roster works only with 'term new'; after that it is in term.toml."
+            "coursework term: --roster works only with 'term new'. Later, change it in term.toml."
         )
     print(
         *write_course(Store(out), read_term(Path(out, FILE)), earlier=earlier),

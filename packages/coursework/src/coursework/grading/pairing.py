@@ -235,7 +235,7 @@ def _say_whose(handed_in: HandedIn, folder: Path, show: TextIO) -> None:
         (enclosing,) = around
         print(
             f"All submissions are in the folder {in_a_line(enclosing, 120)!r}, so we did not "
-            "take it as a student's name.",
+            "take its name for a student's.",
             file=show,
         )
     for student, assignment, file, matched, _, why in itertools.islice(rows, MOST_SHOWN):

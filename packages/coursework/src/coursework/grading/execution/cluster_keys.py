@@ -139,7 +139,7 @@ def demand_keys(address: str, folder: Path | None) -> None:
         options(folder)
     elif urlsplit(address if "://" in address else f"tcp://{address}").hostname not in LOOPBACK:
         raise NoKeys(
-            f"The scheduler at {address} asks for no key: anyone who can reach it can run code on "
-            "all of its machines, and could send any results. "
+            f"The scheduler at {address} does not require a key: anyone who can reach it can run "
+            "code on all of its machines, and could send forged results. "
             "Start one with `coursework cluster --keys FOLDER`, and give its address as tls://..."
         )

@@ -77,7 +77,8 @@ def drawing(figure, Sheet):
         "A wall on the left, a plate on the right, and between them a belt with a red side and a "
         "blue side. "
         f"The plate has been turned by {math.degrees(figure.angle):.0f} degrees about the line of "
-        f"the belt, and the belt has been passed round it by {100 * figure.passed:.0f} per cent. "
+        f"the belt, and the belt has been passed {100 * figure.passed:.0f} per cent of the way "
+        "round it. "
         f"Along the belt the quaternion changes from 1 at the wall to ({q}) at the plate.",
         scale=SIZE,
     )

@@ -21,8 +21,8 @@ def drawing(figure, Sheet):
         "The triad of frame N, and from the same origin the triad of A in the converted "
         f"orientation, whose quaternion, scalar first, is ({scalar}, {', '.join(vector)}). "
         f"Along N, a {', a '.join(rows)}. "
-        f"It is read from the {figure.source['form']} of {figure.source['program']} and written as "
-        f"the {figure.target['form']} of {figure.target['program']}.",
+        f"The orientation is read from the {figure.source['form']} of {figure.source['program']} "
+        f"and written as the {figure.target['form']} of {figure.target['program']}.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.dcm)

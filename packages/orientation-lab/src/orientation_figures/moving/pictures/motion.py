@@ -235,7 +235,7 @@ def plot(figure, Sheet):
     sheet = Sheet(
         f"Three plots over the {SECONDS:.0f} seconds of the run, which has reached "
         f"{times[-1]:.1f} seconds. "
-        "The top plot shows, on a logarithmic scale, by how much each description is not "
+        "The top plot shows, on a logarithmic scale, how far each description is from "
         "orthogonal. The middle plot shows its error against the reference. The bottom plot shows "
         f"the margin of the Euler angles to gimbal lock, at least {margin.min():.0f} degrees. "
         f"At the end: {last}."

@@ -206,11 +206,11 @@ def _ways(figure, Sheet):
         f", cut off at {highest} degrees per second (the highest is {beyond:.0f})" if beyond else ""
     )
     sheet = Sheet(
-        f"A sphere with three paths of the tip of a unit vector {figure.unit_vector} from the "
-        f"orientation of A to that of B, a turn of {math.degrees(angle_between(*ends)):.0f} "
-        "degrees. C moves by slerp, a turn about one axis at constant speed. D moves by "
-        "interpolated Euler angles z-x-y. E moves by the matrix nearest to interpolated entries, "
-        "on the same path as C but at a different speed. "
+        f"A sphere with the paths of the tip of a unit vector {figure.unit_vector} along three "
+        f"ways from A to B, which are {math.degrees(angle_between(*ends)):.0f} degrees apart. "
+        "C moves by slerp, a turn about one axis at constant speed. D moves by interpolated Euler "
+        "angles z-x-y. E moves by interpolated matrix entries, each time restored to the nearest "
+        "valid matrix, on the same path as C but at a different speed. "
         "A straight dashed line inside the sphere shows the blended entries before they are "
         "repaired. "
         f"After {figure.share * SECONDS:.1f} of {SECONDS} seconds, as shown, the speeds of C, D "
