@@ -512,6 +512,7 @@ def test_a_file_that_is_dropped_is_handed_to_python_and_to_nobody_else(context, 
     page.page.on("request", lambda request: sent.append(request.post_data))
     content = bytes(range(256)) * 40
     name = "a walk.csv"
+    page.page.locator("div.cell.tag_takes-file").scroll_into_view_if_needed()
     page.page.set_input_files(
         "label.takes-file input", {"name": name, "mimeType": "text/csv", "buffer": content}
     )
