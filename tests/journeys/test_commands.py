@@ -28,6 +28,8 @@ def run(script, **environment):
         "orientation_workbench explain '0.1 0.2 0.3' '0.1 0.2 -0.3'",
         "orientation_workbench.command explain --help",
         "coursework grade --help",
+        "orientation_workbench --version",
+        "coursework --version",
     ],
 )
 def test_a_reader_that_has_seen_enough_gets_no_traceback(command, unbuffered):

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 
+from . import __version__
+
 #: The packages with commands that a student's package leaves out.
 ROOMS = ("authoring", "grading")
 _STUDENTS_USAGE = """%(prog)s [-h] COMMAND ...
@@ -44,6 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         description="Make, grade and update exercises that check themselves.",
         epilog="Run coursework COMMAND --help for the options of a command.",
     )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     update = commands.add_parser(
         "update", help="update your exercises from a newer archive, and keep all your work"

@@ -593,11 +593,17 @@ def test_what_was_decided_goes_with_a_student_whom_a_roster_calls_something_else
     handed_on = {one.student: one for one in Journal(copied).by_people}
     assert (handed_on["somebody"].who, handed_on["somebody"].why) == ("Ann", "appeal; was 'b'")
     assert handed_on["somebody"].when == handed_on["b"].when
+    # Whoever is not in the roster any more has not become the other who handed in the same.
+    roster.write_text("student,name\nthird,c\n")
+    grade(few, copied, show=shown, **options)
+    assert (
+        "'another' is now 'third'" in shown.getvalue()
+        and "'somebody' is now" not in shown.getvalue()
+    )
     (copied / "term.toml").unlink()
     # Folders that are renamed, too: nobody knows which is which.
     for name in ("b", "c"):
         (few / name).rename(few / f"{name}{name}")
-    shown = io.StringIO()
     grade(few, copied, show=shown, **options)
     assert (
         "'somebody' is now 'bb' or 'cc'" in shown.getvalue()

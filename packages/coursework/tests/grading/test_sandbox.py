@@ -221,7 +221,7 @@ def test_errors_are_named_with_their_line(sandbox):
     errors = [(cell.get("error", "")[:40], cell.get("line")) for cell in result["cells"][1:]]
     assert errors[:4] == [
         ("NameError: name 'nothing' is not defined"[:40], 2),
-        ("SyntaxError: invalid syntax (<cell 2>, l", 1),
+        ("SyntaxError: invalid syntax", 1),
         ("SystemExit", 1),
         ("ZeroDivisionError: division by zero", 2),
     ]

@@ -8,6 +8,7 @@ import numpy as np
 
 from .drawing import collapsed, pair, path_data
 from .style import STYLE
+from .vectors import in_degrees
 
 # Without this script the figure is a still. It shows the controls, and lets the slider set the
 # browser's animation clock (SMIL) and the button run it.
@@ -119,7 +120,7 @@ class Animation:
             step = max(int(np.ceil(moment)) - 1, 0)
             more = self.steps[step][1]
             if not isinstance(more, str):
-                more = f", {np.degrees((moment - step) * more):.0f} degrees"
+                more = f", {in_degrees((moment - step) * more)}"
             texts.append((step, more))
         return texts
 

@@ -7,6 +7,7 @@ from orientation.direction_cosines import simple_dcm
 from orientation.euler_angles import dcm_from_body_fixed
 
 from .drawing import Drawing, hatted, view_from
+from .vectors import in_degrees
 
 # The frame north, east, down by rows, along the north, west and up of these drawings.
 NORTH_EAST_DOWN = np.diag([1.0, -1.0, -1.0])
@@ -16,7 +17,7 @@ def aircraft_drawing(bank=np.radians(30)):
     """Return a drawing of an airliner in a right turn, banked by ``bank`` radians, from ahead."""
     drawing = Drawing(
         "An airliner seen from ahead and a little above, banked to the right by "
-        f"{np.degrees(bank):.0f} degrees. "
+        f"{in_degrees(bank)}. "
         "In its frame D, d x points out of the nose, d y along the right wing, which points down "
         "and to the left of the picture, and d z through the floor. "
         "Beside it is the frame N of the ground: x north, y east, z down.",
@@ -147,7 +148,7 @@ def phone_drawing(angles=(0.85, 0.6, 0.1), dip=np.radians(65)):
         "In its frame P, p x points to the right across the screen, p y to its top edge, and p z "
         "out of the screen. "
         "From its middle an arrow points straight up, which is what the accelerometer measures. "
-        f"Another arrow, the magnetic field, points north, {np.degrees(dip):.0f} degrees below "
+        f"Another arrow, the magnetic field, points north, {in_degrees(dip)} below "
         "the horizontal. "
         "Up crossed with the field is horizontal and points west. "
         "Beside the phone is the frame E: x north, y west, z up.",
@@ -230,8 +231,8 @@ def earth_drawing(longitude=np.radians(68), latitude=np.radians(38)):
         "The Earth as a sphere with its equator and one meridian. "
         "From its middle e z points to the north pole, e x to where the meridian of Greenwich "
         "meets the equator, and e y to the east of it. "
-        f"At a place {np.degrees(longitude):.0f} degrees east and {np.degrees(latitude):.0f} "
-        "degrees north there are two triads on the ground. "
+        f"At a place {in_degrees(longitude)} east and {in_degrees(latitude)} "
+        "north there are two triads on the ground. "
         "G: g x east, g y north, g z straight up. "
         "N: n x north, n y east, n z down, into the Earth. "
         "The angle lambda runs along the equator from e x to the meridian of the place, and phi "

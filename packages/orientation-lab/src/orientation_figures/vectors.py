@@ -12,6 +12,12 @@ IDENTITY = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 degrees = math.degrees
 
 
+def in_degrees(angle):
+    """Say an angle in whole degrees, as texts for screen readers do: '1 degree', '71 degrees'."""
+    number = round(degrees(angle))
+    return f"{number} degree{'s' * (abs(number) != 1)}"
+
+
 def add(*vectors):
     return [sum(entries) for entries in zip(*vectors)]
 

@@ -12,6 +12,8 @@ from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 
+from orientation import __version__
+
 from .mismatch import mend
 from .mismatch.explanation import explain, sentences
 from .mismatch.table import COUNTS, KINDS, WAYS
@@ -43,6 +45,7 @@ def main(arguments=None):
         description="Find out which conventions two programs, or a recording, use.",
         epilog="Run orientation COMMAND --help for the options of a command.",
     )
+    parser.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     _add_explain(commands)
     _add_recording(commands)
@@ -140,7 +143,8 @@ def _add_recording(commands):
     parser.add_argument(
         "--convention",
         default="wxyz",
-        help="form of the orientation in --csv: wxyz (default), xyzw or yaw-pitch-roll",
+        choices=("wxyz", "xyzw", "yaw-pitch-roll"),
+        help="form of the orientation in --csv (default: wxyz)",
     )
     parser.add_argument(
         "--quick", action="store_true", help="skip the filter, which takes the longest"

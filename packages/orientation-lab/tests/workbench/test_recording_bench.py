@@ -259,9 +259,20 @@ def test_bad_files_get_a_clear_word_with_line_and_column(tmp_path, capsys):
     with pytest.raises(RecordingError, match="right ascension"):
         examine(DATA / "bright_stars.csv")
     (tmp_path / "empty.csv").write_bytes(b"")
-    with pytest.raises(SystemExit) as ended:
-        main(["recording", str(tmp_path / "empty.csv")])
-    assert ended.value.code == 3 and "empty" in capsys.readouterr().err
+    (tmp_path / "cut.csv.gz").write_bytes(gzip.compress(b"1,2,3,4\n" * 99)[:-9])
+    (tmp_path / "walk.csv").write_text("\n".join(text))
+    for options, words in (
+        (["empty.csv"], "empty"),
+        (["cut.csv.gz"], "cannot be unpacked"),
+        (["walk.csv", "--rate", "-5"], "the rate is -5"),
+        (["walk.csv", "--rate", "0"], "the rate is 0"),
+        (["walk.csv", "--columns", "gyroscope=2-4:furlongs"], "'furlongs' is not a unit"),
+        (["walk.csv", "--html", "none/report.html"], "a folder that exists"),
+        (["walk.csv", "--convention", "zyx"], "invalid choice: 'zyx'"),
+    ):
+        with pytest.raises(SystemExit) as ended:
+            main(["recording", str(tmp_path / options[0]), *options[1:]])
+        assert ended.value.code == 3 and words in capsys.readouterr().err
 
 
 def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path):
@@ -290,6 +301,10 @@ def test_folders_and_zips_in_them_are_opened_and_a_broken_table_is_told(tmp_path
         found = read_content(source)
         assert set(found.groups) == {"gyroscope", "accelerometer"}
         assert "line 10, column 2" in " ".join(found.remarks) and len(found.remarks) == 1
+    # Two walks with the same columns.
+    gyroscope = read_content(tmp_path / "deep").groups["gyroscope"].names
+    (tmp_path / "deep" / "later.zip").write_bytes((tmp_path / "deep" / "walk.zip").read_bytes())
+    assert f"{', '.join(gyroscope)} of gyroscope" in read_content(tmp_path / "deep").unused
     with pytest.raises(RecordingError, match="no table of numbers; .*ulog2csv"):
         (tmp_path / "only").mkdir()
         (tmp_path / "only" / "flight.log").write_bytes(b"ULog\1\2")

@@ -290,12 +290,16 @@ def read_source(
                 ) from error
             if "figure" in cell.metadata.get("tags", []):
                 figures[number] = value
-    unasked = sorted((set(answers) if not variant and only is None else set()) - set(questions))
-    if unasked:
+    if unasked := sorted(
+        (set(answers) if not variant and only is None else set()) - set(questions)
+    ):
         raise author.AuthorError(f"{path.name}: checks without a question: {', '.join(unasked)}.")
     variables = checked_names(notebook)
-    if len(set(variables.values())) < len(variables):
-        raise author.AuthorError(f"{path.name}: two answers have the same name. Give each its own.")
+    names = list(variables.values())
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise author.AuthorError(
+            f"{path.name}: two answers have the same name, {', '.join(twice)}. Give each its own."
+        )
     for name, question in questions.items():
         question.variable = variables[name]
     if only is None and not variant:

@@ -286,7 +286,7 @@ def grade(
         desk.ask(course, (one.assignment for one in handed_in.work), closing)
         if not as_listed:
             demand_own_numbers(handed_in.work, desk.questions, foreign, desk.term.roster)
-        desk.tell(*put_renamed_aside(desk.store, handed_in.work, desk.journal, dry_run))
+        desk.tell(*put_renamed_aside(desk.store, handed_in, desk.journal, dry_run))
         keys = [(one, key_of(one, desk.asked(one)[0], running)) for one in handed_in.work]
         waiting = [one for one, key in keys if not _is_done(desk.store, one, key)]
         kept, refused = len(keys) - len(waiting), len(handed_in.refused)

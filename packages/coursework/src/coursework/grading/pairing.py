@@ -403,21 +403,26 @@ def demand_a_class(work: Sequence[Work], roster: Roster | None, student: str | N
 
 
 def put_renamed_aside(
-    store: Store, work: Sequence[Work], journal: Journal, dry_run: bool = False
+    store: Store, handed_in: HandedIn, journal: Journal, dry_run: bool = False
 ) -> Iterator[str]:
     """Move the record of a student away whose very notebooks are now
     another's: the folder was renamed.
 
-    What people decided on the answers is entered for the new name too.
+    What people decided on the answers is entered for the new name too. A student whose notebook
+    still lies where it lay, but is refused, has no new name: the roster lacks the old one.
     """
+    work, refused = handed_in.work, {one.file for one in handed_in.refused}
     present = {(one.student, one.assignment) for one in work}
-    known = set()
-    absent: list[tuple[str, str, set[tuple[str, str]]]] = []
-    for record in store.all():
-        known.add((record.student, record.assignment))
-        if (record.student, record.assignment) not in present:
-            files = {(notebook.file, notebook.sha256) for notebook in record.notebooks}
-            absent.append((record.student, record.assignment, files))
+    records = [
+        (one.student, one.assignment, {(each.file, each.sha256) for each in one.notebooks})
+        for one in store.all()
+    ]
+    known = {record[:2] for record in records}
+    absent = [
+        record
+        for record in records
+        if record[:2] not in present and not refused & {file for file, _ in record[2]}
+    ]
     owners: dict[tuple[str, frozenset[str]], list[Work]] = {}
     for one in work if absent else ():
         if (one.student, one.assignment) not in known:
@@ -438,8 +443,8 @@ def put_renamed_aside(
             if dry_run:
                 yield f"{said}we would move the record of {assignment}."
                 continue
-            place = store.put_aside(student, assignment)
-            said += f"we moved the record of {assignment} to {place}."
+            aside = store.put_aside(student, assignment)
+            said += f"we moved the record of {assignment} to {aside}."
             decisions = [
                 key for key in journal.standing().decisions if key[:2] == (student, assignment)
             ]

@@ -59,7 +59,8 @@ class NeedsMore(SphinxDirective):
             SOURCES.get(setting, SOURCES["folder"]),
             f"Of {len(every)} cells, {alone} ({int(100 * alone / len(every))} per cent) run in the "
             "page without any other server. "
-            f"{len(pages) - len(some)} pages need nothing but SymPy and this book's own packages. "
+            "Pages that need nothing but SymPy and this book's own packages: "
+            f"{len(pages) - len(some)} of {len(pages)}. "
             "The table lists the cells that need more, by their numbers from the top of each page. "
             "A cell that uses a name defined in one of them needs the same packages. "
             "The packages for moving figures are part of this site.",

@@ -27,6 +27,13 @@ def run(chosen: Namespace) -> int:
         )
 
     try:
+        # The filter takes a while; nobody should lose what it found to a misspelt folder.
+        if bad := [
+            str(file)
+            for file in filter(None, (chosen.html, chosen.csv))
+            if file.is_dir() or not file.parent.is_dir()
+        ]:
+            raise ValueError(f"cannot write {bad[0]}: name a file in a folder that exists")
         if shown:
             print("reading", end="", file=sys.stderr, flush=True)
         source, name = (

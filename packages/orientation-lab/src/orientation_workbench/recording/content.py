@@ -128,8 +128,10 @@ def read_content(
     RecordingError
         If the file cannot be read, or holds no instrument.
     """
+    if rate is not None and not 0 < rate < np.inf:
+        raise RecordingError(f"the rate is {rate:g}: give samples per second, more than 0")
     tables = [_told(table, columns) for table in read_tables(source, name)]
-    groups: list[Group] = []
+    by_table: list[tuple[str, list[Group]]] = []
     clocks: list[tuple[str, bool]] = []
     unused: list[str] = []
     remarks: list[str] = []
@@ -141,11 +143,12 @@ def read_content(
         column, time, clock, counted = _time(table)
         clocks.append((clock, counted))
         found, left = _groups(table, column, time)
-        groups += found
+        by_table.append((f" of {table.name}" * (len(tables) > 1), found))
         unused += left
         warm = [k for k, name in enumerate(table.columns) if "temp" in name.lower()]
         if warm and warmth is None and np.isfinite(table.values[:, warm[0]]).all():
             warmth = time, table.values[:, warm[0]]
+    groups = [group for _, found in by_table for group in found]
     chosen = _roles(groups)
     remarks += [
         f"{', '.join(group.names)} never change in {len(group.values)} rows"
@@ -155,8 +158,13 @@ def read_content(
     remarks += _with_gravity(chosen, groups)
     if not set(SENSORS) & set(chosen):
         raise RecordingError(_question(tables, chosen))
-    used = {tuple(group.names) for group in chosen.values()}
-    unused += [", ".join(group.names) for group in groups if tuple(group.names) not in used]
+    played = {id(group.time) for group in chosen.values()}
+    unused += [
+        ", ".join(group.names) + of_table
+        for of_table, found in by_table
+        for group in found
+        if id(group.time) not in played
+    ]
     kinds = {kind: group._replace(kind=kind) for kind, group in chosen.items()}
     first = next(kinds[kind] for kind in SENSORS if kind in kinds)
     clock, counted, said = next(
@@ -184,6 +192,12 @@ def read_content(
 
 #: One entry of what a reader says the columns are.
 _TOLD = re.compile(r"(\w+)=(\d+)(?:-(\d+))?(?::(\S+))?")
+#: The units that an entry can give; elsewhere a unit makes no difference.
+_UNITS_TOLD = {
+    "time": r"[munµμ]?s",
+    "gyroscope": r"m?(?:(?:rad|deg|°)/s|dps)",
+    "accelerometer": r"m?g|c?m/s(?:²|\^?2)",
+}
 #: What an entry can name.
 _NAMED = ("time", *SENSORS, "gravity", "linear", "quaternion", "angles")
 
@@ -200,6 +214,11 @@ def _told(table: Table, columns: str) -> Table:
             raise RecordingError(
                 f"{entry!r} does not fit the {len(names)} columns: write an entry such as "
                 "gyroscope=2-4 or gyroscope=2-4:rad/s"
+            )
+        if told[4] and not re.fullmatch(_UNITS_TOLD.get(told[1], ".*"), told[4], re.IGNORECASE):
+            raise RecordingError(
+                f"{told[4]!r} is not a unit of the {told[1]}: write s or ms, rad/s or deg/s, m/s² "
+                "or g"
             )
         axes = {
             1: [""],

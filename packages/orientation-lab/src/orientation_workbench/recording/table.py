@@ -13,10 +13,12 @@ import io
 import json
 import re
 import zipfile
+import zlib
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
+from functools import partial
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
@@ -139,11 +141,18 @@ def read_tables(source: Source, name: str | None = None) -> list[Table]:
     if [*files] == paths and len(paths) == 1:
         return _from_bytes(paths[0].read_bytes(), name or paths[0].name)
     return _from_several(
-        ((one.name, one.read_bytes()) for one in files), name or ", ".join(map(str, paths))
+        ((one.name, one.read_bytes) for one in files), name or ", ".join(map(str, paths))
     )
 
 
 def _from_bytes(content: bytes, name: str) -> list[Table]:
+    try:
+        return _unpacked(content, name)
+    except (EOFError, RuntimeError, gzip.BadGzipFile, zipfile.BadZipFile, zlib.error) as error:
+        raise RecordingError(f"{name} cannot be unpacked: {error}") from None
+
+
+def _unpacked(content: bytes, name: str) -> list[Table]:
     if content[:2] == b"\x1f\x8b":
         return _from_bytes(gzip.decompress(content), name)
     if content[:4] == b"PK\x03\x04":
@@ -151,12 +160,14 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
             names = archive.namelist()
             if "xl/workbook.xml" in names:
                 raise RecordingError(f"{name} is {EXCEL}")
-            files = [
-                (Path(one).name, archive.read(one))
-                for one in names
-                if Path(one).suffix.lower() in TEXTS
-            ]
-        return _from_several(files, name)
+            return _from_several(
+                [
+                    (Path(one).name, partial(archive.read, one))
+                    for one in names
+                    if Path(one).suffix.lower() in TEXTS
+                ],
+                name,
+            )
     if not content.strip():
         raise RecordingError(f"{name} is empty")
     for begins, words in ELSEWHERE.items():
@@ -177,18 +188,20 @@ def _from_bytes(content: bytes, name: str) -> list[Table]:
     return _from_text(text, name)
 
 
-def _from_several(files: Iterable[tuple[str, bytes]], name: str) -> list[Table]:
-    """All tables of pairs of a name and what it holds."""
+def _from_several(files: Iterable[tuple[str, Callable[[], bytes]]], name: str) -> list[Table]:
+    """All tables of pairs of a name and what reads it."""
     tables: list[Table] = []
     broken: list[str] = []
     reasons: list[str] = []
-    for one, content in files:
+    for one, read in files:
         try:
             tables += _from_bytes(
-                content, one if Path(one).suffix in (".gz", ".zip") else Path(one).stem
+                read(), one if Path(one).suffix in (".gz", ".zip") else Path(one).stem
             )
         except BrokenTable as error:
             broken.append(str(error))
+        except OSError as error:  # Others may move a file of a folder meanwhile, or hold it open.
+            broken.append(f"left out {one}: {error.strerror or error}")
         except RecordingError as error:
             # Beside the measurements there are often settings and remarks.
             reasons.append(str(error))

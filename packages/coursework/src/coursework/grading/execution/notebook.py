@@ -545,7 +545,9 @@ class _Notebook:
         try:
             self.start_timers(0.2, 0.4)
             try:
-                text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+                # The feedback says which cell and line; Python's own words count cells from 0.
+                words = error.msg if isinstance(error, SyntaxError) else str(error)
+                text = f"{type(error).__name__}: {words}" if words else type(error).__name__
                 line, trace = None, error.__traceback__
                 while trace is not None:
                     if trace.tb_frame.f_code.co_filename == f"<cell {self.cell}>":

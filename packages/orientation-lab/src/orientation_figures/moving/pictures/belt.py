@@ -4,7 +4,7 @@ import math
 
 from orientation.quaternions import dcm_from_quaternion
 
-from ...vectors import IDENTITY, add, dot, scale
+from ...vectors import IDENTITY, add, dot, in_degrees, scale
 
 SIZE = 96
 LENGTH = 3.0
@@ -76,7 +76,7 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         "A wall on the left, a plate on the right, and between them a belt with a red side and a "
         "blue side. "
-        f"The plate has been turned by {math.degrees(figure.angle):.0f} degrees about the line of "
+        f"The plate has been turned by {in_degrees(figure.angle)} about the line of "
         f"the belt, and the belt has been passed {100 * figure.passed:.0f} per cent of the way "
         "round it. "
         f"Along the belt the quaternion changes from 1 at the wall to ({q}) at the plate.",

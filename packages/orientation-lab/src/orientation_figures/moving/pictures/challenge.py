@@ -1,8 +1,6 @@
 """The picture of a challenge."""
 
-import math
-
-from ...vectors import IDENTITY
+from ...vectors import IDENTITY, in_degrees
 
 REACH = 1.25
 SIZE = 112
@@ -37,7 +35,7 @@ def drawing(figure, Sheet):
         "A box with the triad of A, and from the same origin the triad of N. "
         f"{_TASKS[figure.task]} Along N, the unit vectors of A are "
         f"{', '.join(rows).replace('-0.00', '0.00')}. "
-        f"A turn of {math.degrees(figure.remaining):.0f} degrees remains.",
+        f"A turn of {in_degrees(figure.remaining)} remains.",
         scale=SIZE,
     )
     return sheet.paint(picture, figure.dcm, figure.goal if figure.task == "ghost" else None)

@@ -5,7 +5,7 @@ import math
 from orientation.direction_cosines import simple_dcm
 from orientation.rotation_vector import dcm_from_rotation_vector
 
-from ...vectors import IDENTITY, add, multiply, scale
+from ...vectors import IDENTITY, add, in_degrees, multiply, scale
 
 COUNT = 200
 SIZE = 112
@@ -64,8 +64,8 @@ def drawing(figure, Sheet):
     frame = "z of the body" if figure.side == "body" else "z of the ground, up"
     sheet = Sheet(
         f"A sphere with the tips of the unit vectors b x and b z of {COUNT} orientations. Their "
-        f"errors are {math.degrees(figure.large):.0f} degrees about {frame}, and "
-        f"{math.degrees(figure.small):.0f} degrees about each axis perpendicular to it (standard "
+        f"errors are {in_degrees(figure.large)} about {frame}, and "
+        f"{in_degrees(figure.small)} about each axis perpendicular to it (standard "
         "deviations). The tips lie along arcs about this axis and form bent clouds. The mean of "
         f"the vectors b x has the length {figure.mean_length:.2f}, inside the sphere. The arrows "
         "b x and b z show the estimate, and the triad N the ground.",

@@ -4,7 +4,7 @@ import math
 
 from orientation.direction_cosines import simple_dcm
 
-from ...vectors import AXES, IDENTITY, add, dot, length, multiply, scale
+from ...vectors import AXES, IDENTITY, add, dot, in_degrees, length, multiply, scale
 
 # Radii of the rings of B and C and of the camera, and the ends of the axes.
 OUTER = 1.05
@@ -109,13 +109,13 @@ def drawing(figure, Sheet):
     from ...drawing import view_from
 
     spoken = ", ".join(
-        f"{name} {math.degrees(angle):.0f} degrees about {axis}"
+        f"{name} {in_degrees(angle)} about {axis}"
         for name, angle, axis in zip(("psi", "theta", "phi"), figure.angles, figure.sequence)
     )
     sheet = Sheet(
         "A camera gimbal: a handgrip A, an outer ring B, an inner ring C and a camera D, each "
         f"turned from the frame before it about a shared axis: {spoken}. "
-        f"The axes of psi and phi are {math.degrees(figure.margin):.0f} degrees apart. At 0 the "
+        f"The axes of psi and phi are {in_degrees(figure.margin)} apart. At 0 the "
         "gimbal is locked. "
         "Beside it are the triads of A and D.",
         view=view_from(math.radians(58), math.radians(22)),

@@ -1,8 +1,6 @@
 """The picture of a graph of frames."""
 
-import math
-
-from ...vectors import AXES, add, length, scale, subtract
+from ...vectors import AXES, add, in_degrees, length, scale, subtract
 
 SIZE = 96
 REACH = 0.5
@@ -80,7 +78,7 @@ def picture(sheet, edges, dcms, path):
 
 def drawing(figure, Sheet):
     words = "; ".join(
-        f"{frame} is turned in {reference} about {axis} by {math.degrees(angle):.0f} degrees"
+        f"{frame} is turned in {reference} about {axis} by {in_degrees(angle)}"
         for frame, reference, axis, angle in figure.edges
     )
     sheet = Sheet(

@@ -9,6 +9,7 @@ from ...vectors import (
     IDENTITY,
     degrees,
     dot,
+    in_degrees,
     length,
     multiply,
     scale,
@@ -173,16 +174,15 @@ def drawing(figure, Sheet):
 
 
 def _double(figure, Sheet):
-    half = figure.angle / 2
     q = ", ".join(f"{entry:.3f}" for entry in figure.quaternion)
     sheet = Sheet(
         "The triad of N, and from the same origin the triad of A, turned from N through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees, about the unit vector e with the components "
+        f"{in_degrees(figure.angle)}, about the unit vector e with the components "
         f"({', '.join(f'{entry:.2f}' for entry in figure.axis)}). "
         "Beside it is a circle of radius 1, with the scalar part of a quaternion to the right and "
         "its part along e upwards. "
-        f"The point q is at half the angle, {math.degrees(half):.0f} "
-        f"degrees{', and minus q is opposite' if figure.more else ''}. "
+        f"The point q is at half the angle, {in_degrees(figure.angle / 2)}"
+        f"{', and minus q is opposite' if figure.more else ''}. "
         f"q is ({q}), scalar first{'. Minus q is the same orientation' if figure.more else ''}.",
         scale=SIZE,
     )
@@ -207,7 +207,7 @@ def _ways(figure, Sheet):
     )
     sheet = Sheet(
         f"A sphere with the paths of the tip of a unit vector {figure.unit_vector} along three "
-        f"ways from A to B, which are {math.degrees(angle_between(*ends)):.0f} degrees apart. "
+        f"ways from A to B, which are {in_degrees(angle_between(*ends))} apart. "
         "C moves by slerp, a turn about one axis at constant speed. D moves by interpolated Euler "
         "angles z-x-y. E moves by interpolated matrix entries, each time restored to the nearest "
         "valid matrix, on the same path as C but at a different speed. "

@@ -1,8 +1,6 @@
 """The picture of a simple orientation."""
 
-import math
-
-from ...vectors import AXES, IDENTITY, add, scale
+from ...vectors import AXES, IDENTITY, add, in_degrees, scale
 
 REACH = 1.25
 SIZE = 112
@@ -33,7 +31,7 @@ def drawing(figure, Sheet):
     sheet = Sheet(
         "The triads of the frames N and A from one origin, and a weather vane that belongs to A. "
         f"The frames share {figure.axis}, and A is turned about it through theta, "
-        f"{math.degrees(figure.angle):.0f} degrees. "
+        f"{in_degrees(figure.angle)}. "
         f"Along N, {', '.join(rows)}.",
         scale=SIZE,
     )

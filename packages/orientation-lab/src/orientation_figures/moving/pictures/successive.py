@@ -4,7 +4,7 @@ import math
 
 from orientation.axis_angle import axis_angle_from_dcm
 
-from ...vectors import AXES, IDENTITY, multiply, scale, times, transpose
+from ...vectors import AXES, IDENTITY, in_degrees, multiply, scale, times, transpose
 from .common import around, chain, partly
 
 REACH = 1.25  # of the arrows of N
@@ -105,7 +105,7 @@ def drawing(figure, Sheet):
 def _words(figure, now, frames):
     about = ["n" if figure.fixed == "space" else letter.lower() for letter in LETTERS]
     steps = "; ".join(
-        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {math.degrees(angle):.0f} degrees "
+        f"{LETTERS[k + 1]} is turned from {LETTERS[k]} through {in_degrees(angle)} "
         f"about {about[k]} {axis}"
         for k, (axis, angle) in enumerate(now)
     )

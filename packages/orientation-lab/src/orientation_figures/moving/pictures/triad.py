@@ -1,8 +1,6 @@
 """The picture of a triad rotated in a frame about an axis."""
 
-import math
-
-from ...vectors import IDENTITY, scale
+from ...vectors import IDENTITY, in_degrees, scale
 from .common import around
 
 REACH = 1.25  # of the arrows of N
@@ -29,7 +27,7 @@ def drawing(figure, Sheet):
     ]
     sheet = Sheet(
         "The triad of frame N, and from the same origin the triad of A, turned from N through "
-        f"theta, {math.degrees(figure.angle):.0f} degrees, about the unit vector e, which has the "
+        f"theta, {in_degrees(figure.angle)}, about the unit vector e, which has the "
         f"components ({', '.join(f'{entry:.2f}' for entry in figure.axis)}) in both frames. "
         f"Along N, a {', a '.join(rows)}. "
         "Thin arcs show the path of each tip about e.",
