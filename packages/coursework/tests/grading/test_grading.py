@@ -623,7 +623,8 @@ def test_a_journal_of_other_answers_is_said(course, copied, capsys, tmp_path):
     said = capsys.readouterr().out
     assert (
         ": 3 decisions" in said
-        and "2 of them are about answers missing from this folder: stranger, mistaken. We" in said
+        and "We ignored 2 of them, about answers missing from this folder (stranger, mistaken)"
+        in said
     )
 
 

@@ -665,7 +665,7 @@ def test_a_grader_that_is_killed_while_it_starts_leaves_nothing(environment):
 
 
 def test_a_job_that_is_no_job_is_refused(sandbox):
-    with pytest.raises(TypeError, match="texts"):
+    with pytest.raises(TypeError, match="strings"):
         sandbox.run({"id": 1, "cells": [], "questions": {}})
 
 

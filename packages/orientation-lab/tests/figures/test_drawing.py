@@ -450,7 +450,7 @@ def test_the_words_of_the_exercise_are_what_is_seen():
             assert list(moved) == [letter in named and axis_drawn != axis for axis_drawn in "xyz"]
         assert more.strip("; ").startswith(f"the {axis} arrow")
         assert (
-            f"marked {axis} of" in sentences[step]
+            re.search(rf"marked {axis}\b", sentences[step])
             and f"turn{'s' if step == 2 else ''}" in sentences[step]
         )
 
