@@ -251,7 +251,7 @@ ARGUMENTS = {
                 "--keys",
                 required=True,
                 metavar="FOLDER",
-                help="folder of the keys (if it is empty, we create them)",
+                help="folder for the keys (created if it is empty)",
             ),
             argument(
                 "--host",
