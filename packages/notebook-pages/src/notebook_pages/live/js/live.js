@@ -109,7 +109,7 @@ class Page {
     const check = this.cells.slice(cell.number).find(({ code }) => /\bcheck\(/.test(code));
     check?.output.querySelector(":scope > .live-outdated")?.remove();
     if (!changed || !check?.output.querySelector(":scope > :not(.live-others) .coursework-reply:not([data-outcome='not attempted'])")) return;
-    check.output.prepend(element("p", "live-known live-outdated", "This is the reply to an earlier answer. Run this cell to check the answer above it."));
+    check.output.prepend(element("p", "live-known live-outdated", "This is the reply to an earlier answer. When the answer above runs without an error, run this cell to check it."));
   }
 
   // --- the reader's edits ----------------------------------------------------------------------
