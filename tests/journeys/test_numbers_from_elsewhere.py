@@ -41,7 +41,7 @@ FRD = "0.80403025 -0.50251891 -0.30151134 -0.10050378"
 
 def test_two_quaternions_scalar_last_are_asked_about():
     code, answer = explained(FLU, FRD)
-    assert code == 2 and "Does the scalar part of the quaternions stand first or last?" in answer
+    assert code == 2 and "Does the scalar part of the quaternions come first or last?" in answer
     assert "y and z of the body reversed (FRD and FLU" in answer
     last = ("--first-is", "xyzw", "--second-is", "xyzw")
     assert " ".join(last) in answer  # the answer, ready to be typed
@@ -76,7 +76,7 @@ OPENGL = "0.86869 0.47475 -0.14141\n0.31313 -0.74748 -0.58586\n-0.38384 0.46465 
 
 def test_two_camera_to_world_matrices_are_asked_about():
     code, answer = explained(OPENCV, OPENGL)
-    assert code == 2 and "the body's axes its rows or its columns?" in answer
+    assert code == 2 and "Are the body's axes the rows or the columns" in answer
     for program in (("--first-is", "columns"), ("--first", "nerfstudio"), ("--first", "SciPy")):
         code, answer = explained(*program, OPENCV, OPENGL)
         assert code == 1 and "of the body reversed" in answer and "world" not in answer, answer

@@ -41,7 +41,7 @@ def click(page, button):
 def test_a_click_answers_the_question_of_a_shared_order(page):
     paste(page, FLU, FRD)
     answer(page).get_by_text("One question decides.").wait_for()
-    assert "scalar part of the quaternions stand first or last?" in answer(page).inner_text()
+    assert "scalar part of the quaternions come first or last?" in answer(page).inner_text()
     last = answer(page).get_by_role("listitem").filter(has_text="comes last in both")
     click(page, last.get_by_role("button", name="So it is"))
     answer(page).get_by_text("They differ, and this is how:").wait_for()
@@ -56,7 +56,7 @@ def test_a_click_answers_the_question_of_a_shared_order(page):
 def test_keys_answer_the_question_of_a_shared_layout(page):
     paste(page, OPENCV, OPENGL)
     answer(page).get_by_text("One question decides.").wait_for()
-    assert "are the body's axes its rows or its columns?" in answer(page).inner_text()
+    assert "Are the body's axes the rows or the columns" in answer(page).inner_text()
     # The line under the drawing must not answer the open question either.
     reversed_axes = page.locator(".moving").get_by_text("reversed (").all()
     assert all(each.evaluate("(own) => !!own.closest('.answer')") for each in reversed_axes)

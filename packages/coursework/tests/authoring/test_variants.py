@@ -234,7 +234,7 @@ def test_in_whatever_order_one_says_who_one_is_nothing_is_lost_and_nothing_said_
                 steps
             )
             said = repr(check_module.progress())
-            assert ("is right" in said) == (own in right), (steps, step, said)
+            assert (": 1 right" in said) == (own in right), (steps, step, said)
             assert ("not yet with yours" in said) == bool(right - {own} and own not in right), (
                 steps,
                 step,
@@ -393,7 +393,7 @@ def test_who_had_a_mistake_named_is_offered_a_sibling_with_other_numbers(recorde
     assert alone.outcome == "correct" and not alone.help
     assert "a sibling earns" not in repr(
         coursework.progress()
-    ) and "you have tried is right" in repr(coursework.progress())
+    ) and "You have tried 1 question: 1 right" in repr(coursework.progress())
     with pytest.raises(
         questions.NoSuchQuestion,
         match="the siblings of 'levers/see-saw' are levers/see-saw/sibling and",
