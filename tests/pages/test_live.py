@@ -1045,7 +1045,7 @@ def test_a_failure_is_named_and_the_next_run_tries_again(page_that_has_run):
     [
         (
             "**/*.wasm",
-            "broken",
+            "damaged",
             dict(body=b"\0asm, but broken", content_type="application/wasm"),
         ),
         ("**/sympy*.whl", "not the file of this edition", dict(body=b"no wheel")),
